@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bisect
 import contextlib
 import functools
 import itertools
@@ -48,7 +49,7 @@ DRIVES: dict[str, Any] = {"setpoint": msgs.drive_setpoint, "feedback": msgs.driv
 STATES = ("busy", "active", "done", "aborted", "error")
 
 PATIENCE_S = 30.0  # that writing may be behind
-SILENCE_S = 0.25  # of one component while others are heard, and three of its samples at least
+SILENCE_S = 0.1  # of one component while others are heard, and three of its samples at least
 EARLY_S = 1.0  # of engine time: a log that begins by then holds all that was said
 
 
@@ -93,6 +94,7 @@ class Run:
     )  # of the machine: text, period, version
     sequences: Sequences = field(default_factory=Sequences)
     impossible: int = 0  # messages that were decoded, but cannot be true
+    contradictions: int = 0  # states whose cycle does not fit in the order, or that another one says otherwise
 
 
 @dataclass
@@ -105,6 +107,7 @@ class Log:
     malformed: Counter[str]  # by channel
     left_over: int = 0  # bytes of the file that are no event: it was torn off, or bytes were changed
     wrong: int = 0  # states with numbers that their types have no room for
+    changed: int = 0  # messages whose checksums say that they are not as they were written
 
     @property
     def damaged(self) -> bool:
@@ -113,15 +116,25 @@ class Log:
     @property
     def trouble(self) -> str:
         """What is not whole, in a sentence; empty: nothing."""
+        said = self.reasons
+        return f"The log is not whole: {'; '.join(said)}." if said else ""
+
+    @property
+    def reasons(self) -> list[str]:
+        """The same, each by itself."""
         said = []
         if self.damaged:
             share = f"{self.left_over:,} of {self.path.stat().st_size:,} bytes"
             said.append(f"it ends in the middle of a message, or bytes of it were changed: {share} are left out")
+        if self.changed:
+            said.append(f"{counted(self.changed, 'message')} with a checksum that does not hold")
         if count := sum(self.malformed.values()):
             said.append(f"{counted(count, 'message')} could not be decoded")
         if count := sum(run.impossible for run in self.runs) + self.wrong:
             said.append(f"{counted(count, 'message')} cannot be true")
-        return f"The log is not whole: {'; '.join(said)}." if said else ""
+        if count := sum(run.contradictions for run in self.runs):
+            said.append(f"{counted(count, 'state')} of components in contradiction to others")
+        return said
 
     def starts(self, run: int) -> str:
         """Which one of several starts of the engine a run is, in a sentence; empty: there is but one."""
@@ -144,6 +157,9 @@ def open_log(path: str | os.PathLike[str], progress: Progress | None = None) -> 
         log.messages[event.channel] += 1
         kind = _kind_of(event.channel)
         if kind is None:
+            continue
+        if _core.checksum_holds(event.channel, event.data) is False:
+            log.changed += 1
             continue
         try:
             message = kind.decode(event.data)
@@ -169,6 +185,42 @@ def _leave_out_impossible(run: Run) -> None:
         possible = [message for message in messages if is_possible(message, period)]
         run.impossible += len(messages) - len(possible)
         messages[:] = possible
+    for messages in run.states.values():
+        run.contradictions += _put_in_order(messages)
+
+
+def _put_in_order(states: list[Any]) -> int:
+    """Leaves the states of one component of which each has a later cycle than the one before: as many as there can be,
+    so that one with a cycle of the future costs itself alone. How many others there were, but for those that came twice
+    or late."""
+    if all(one.cycle < other.cycle for one, other in itertools.pairwise(states)):
+        return 0
+    ends: list[int] = []  # of runs of each length, their last cycle, the least there is
+    last: list[int] = []  # and where it stands
+    before: list[int] = []
+    for i, state in enumerate(states):
+        length = bisect.bisect_left(ends, state.cycle)
+        before.append(last[length - 1] if length else -1)
+        if length == len(ends):
+            ends.append(state.cycle)
+            last.append(i)
+        elif state.cycle < ends[length]:  # of the same cycle the first one counts
+            ends[length], last[length] = state.cycle, i
+    chosen, at = [], last[-1]
+    while at >= 0:
+        chosen.append(at)
+        at = before[at]
+    kept = {states[i].cycle: states[i] for i in reversed(chosen)}
+    contradictions, latest, places = 0, -1, set(chosen)
+    for i, state in enumerate(states):
+        if i in places:
+            latest = state.cycle
+        elif state.cycle in kept:
+            contradictions += state.encode() != kept[state.cycle].encode()
+        else:
+            contradictions += state.cycle > latest
+    states[:] = kept.values()
+    return contradictions
 
 
 @functools.lru_cache(4096)
@@ -252,18 +304,21 @@ def to_recording(log: Log, run: int = -1) -> Recording:
     text, period, version = _description(one)
     machine = json.loads(_core.load_machine(text.encode(), str(log.path), files=False))
     tables: dict[str, dict[str, Array]] = {}
-    wrong = 0
-    for name, (kind, _) in components_of(machine).items():
+    components = components_of(machine)
+    wrong = sum(len(states) for name, states in one.states.items() if name not in components)
+    for name, (kind, _) in components.items():
         if name in one.states:
             tables[name], left_out = table_of(kind.name, one.states[name], period)
             wrong += left_out
+    silent, late = _unheard(machine, tables, one, period)
     meta = {
         "source": str(log.path),
         "period_s": period,
         "version": version,
         "losses": one.sequences.lost(),
         "dropped": _dropped(one, period),
-        "silent": _silent(machine, tables, one, period),
+        "silent": silent,
+        "late": late,
         "trouble": log.trouble if not wrong else replace(log, wrong=wrong).trouble,
         "starts": log.starts(run),
         "objects": _lying(one, period).columns(),
@@ -294,22 +349,31 @@ def _dropped(run: Run, period: float) -> dict[str, int]:
     return {name: count for name, count in counts.items() if count > 0}
 
 
-def _silent(machine: dict[str, Any], tables: dict[str, dict[str, Array]], run: Run, period: float) -> dict[str, float]:
+def _unheard(
+    machine: dict[str, Any], tables: dict[str, dict[str, Array]], run: Run, period: float
+) -> tuple[dict[str, float], dict[str, float]]:
     """Components, and channels of what lies on belts, that were not heard any more although others were: since when, in
-    s."""
+    s; and those of which the beginning is missing: until when. Their numbers say that there was one."""
     rates = {own["axis"]: own["rate_hz"] for own in machine["lcm"]["rates"]}
     published = [name for name in components_of(machine) if rates.get(name, machine["lcm"]["axis_rate_hz"]) > 0]
     heard = {name: tables[name]["cycle"].tolist() if name in tables else [] for name in published}
+    numbers = {name: states[0].sequence for name, states in run.states.items() if states}
     for belt in machine["belts"]:
         if belt["name"] in published:
-            heard[OBJECTS + belt["name"]] = [message.cycle for message in run.objects if message.name == belt["name"]]
+            objects = [message for message in run.objects if message.name == belt["name"]]
+            heard[OBJECTS + belt["name"]] = [message.cycle for message in objects]
+            numbers[OBJECTS + belt["name"]] = objects[0].sequence if objects else 0
+    begin = min((cycles[0] for cycles in heard.values() if cycles), default=0)
     end = max((cycles[-1] for cycles in heard.values() if cycles), default=0)
-    silent = {}
+    silent, late = {}, {}
     for name, cycles in heard.items():
         usual = Counter(b - a for a, b in itertools.pairwise(cycles)).most_common(1)
-        if not cycles or end - cycles[-1] > max(SILENCE_S / period, 3 * usual[0][0] if usual else 0):
+        slack = max(SILENCE_S / period, 3 * usual[0][0] if usual else 0)
+        if not cycles or end - cycles[-1] > slack:
             silent[name] = cycles[-1] * period if cycles else 0.0
-    return silent
+        if cycles and cycles[0] - begin > slack and numbers.get(name, 0) > 0:
+            late[name] = cycles[0] * period
+    return silent, late
 
 
 def _events(run: Run, period: float) -> Iterator[tuple[float, str, str, str]]:

@@ -42,6 +42,9 @@ def lost(recording: Recording) -> str:
     silent = (recording.meta.get("silent") or {}).items()
     said += [f"{name} from {seconds(since)} on" for name, since in list(silent)[:NAMED]]
     said += [f"{counted(len(silent) - NAMED, 'other component')}"] if len(silent) > NAMED else []
+    late = (recording.meta.get("late") or {}).items()
+    said += [f"{name} before {seconds(until)}" for name, until in list(late)[:NAMED]]
+    said += [f"the beginning of {counted(len(late) - NAMED, 'other component')}"] if len(late) > NAMED else []
     dropped = [counted(count, *DROPPED[name]) for name, count in (recording.meta.get("dropped") or {}).items()]
     said += [f"{' and '.join(dropped)} that the engine had no room for"] if dropped else []
     return "; ".join(said)

@@ -15,6 +15,7 @@ from takt.counted import counted
 from takt.events import LogError, Progress
 from takt.lcmlog import Run, open_log, run_of
 from takt.replay_comparison import Comparison, StateDifference
+from takt.tables import components_of
 
 CHUNK = 2_000  # cycles between two reports of progress
 WIRES = tuple(_core.servo_inputs())
@@ -94,9 +95,14 @@ def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | N
     missing = _missing(one, cycles, known) or _contradiction(one, cycles, recorded)
     if content.damaged:
         missing = f"the log is cut off or damaged{', and ' + missing if missing else ''}"
+    elif content.trouble:
+        missing = f"the log is not whole: {'; '.join([*content.reasons, *([missing] if missing else [])])}"
     comparable = _in_a_row(cycles)
     text = one.start.text.encode()
     engine = _core.Engine(text, str(content.path), journal=True, period_s=one.start.period_s, checks=False)
+    strange = sorted(one.states.keys() - components_of(json.loads(engine.machine_json)).keys())
+    if strange:
+        missing = missing or f"the log has states of '{strange[0]}', which the machine does not have"
     commands = sorted(one.journal, key=lambda entry: entry.cycle)
     drives = _Drives(engine, one)
     comparison = Comparison(engine, one)
@@ -179,7 +185,7 @@ def _last_cycle(run: Run, cycles: npt.NDArray[np.int64]) -> int:
     known = [int(cycles[-1])] if len(cycles) else []
     known += [entry.cycle for entry in run.journal]
     known += [state.cycle for state in run.engine_states]
-    known += [states[-1].cycle for states in run.states.values()]
+    known += [states[-1].cycle for states in run.states.values() if states]
     return max(known, default=-1)
 
 

@@ -36,8 +36,11 @@ _MOST_RULES = 10_000  # of style sheets
 _MOST_LOOKS = 10_000_000  # of rules at elements
 
 
+_Part = tuple[str, str, str, tuple[str, ...]]  # combinator before, tag, id, classes
+
+
 class _Rule(NamedTuple):
-    parts: tuple[tuple[str, str, str, tuple[str, ...]], ...]  # from the last: combinator before, tag, id, classes
+    parts: tuple[_Part, ...]  # from the last
     weight: tuple[int, int, int, int]  # ids, classes, tags, number
     names: list[tuple[str, str, bool]]
 
@@ -85,12 +88,14 @@ class Styles:
                 _check_unread(head, _declarations(inner))
 
     def _add(self, selector: str, names: list[tuple[str, str, bool]]) -> None:
-        parts, weight = [], [0, 0, 0]
+        parts: list[_Part] = []
+        weight = [0, 0, 0]
         combinator = " "
         for word in reversed(selector.replace(">", " > ").split()):
             if word == ">" and parts and combinator == " ":
                 combinator = ">"
-                parts[-1] = (combinator, *parts[-1][1:])
+                _, tag, identity, classes = parts[-1]
+                parts[-1] = (combinator, tag, identity, classes)
                 continue
             match = _COMPOUND.fullmatch(word)
             combinator = " "
@@ -165,7 +170,7 @@ def _matches(rule: _Rule, key: Key, around: Sequence[Key]) -> bool:
     return True
 
 
-def _fits(part: tuple[str, str, str, tuple[str, ...]], key: Key) -> bool:
+def _fits(part: _Part, key: Key) -> bool:
     _, tag, identity, classes = part
     return tag in ("", key[0]) and identity in ("", key[1]) and all(name in key[2] for name in classes)
 

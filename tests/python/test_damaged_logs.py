@@ -191,6 +191,54 @@ def test_a_number_that_no_engine_says_costs_its_own_sample(tmp_path: Path) -> No
     assert "1 message cannot be true" in recording.meta["trouble"]
 
 
+def test_a_changed_number_costs_its_own_message(
+    whole: bytes, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """EN-36: a bit of a number, where a decoder sees nothing wrong, is found by the checksum of the event."""
+    log = tmp_path / "log"
+    log.write_bytes(whole)
+    name = takt.read_log(log).components[0]
+    channel = f"takt/axis/{name}".encode()
+    chosen = [(begin, end) for begin, end in spans(whole) if whole[begin + HEADER.size :].startswith(channel)]
+    begin, end = chosen[50]
+    state = msgs.axis_state.decode(whole[begin + HEADER.size + len(channel) : end])
+    at = whole.index(struct.pack(">d", state.set_position), begin)
+    log.write_bytes(whole[:at] + bytes([whole[at] ^ 0x40]) + whole[at + 1 :])
+    recording = takt.read_log(log)
+    assert "1 message with a checksum that does not hold" in recording.meta["trouble"]
+    assert f"1 sample of {name} in 1 gap" in all_missing(recording)
+    for tool in ("log", "replay"):
+        assert main([tool, str(log)]) == 1
+        assert "1 message with a checksum that does not hold" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("cycle", [4, 10**6], ids=["a cycle that was", "a cycle of the future"])
+def test_a_forged_state_costs_itself_alone(cycle: int, tmp_path: Path) -> None:
+    """EN-36: one that says otherwise of the same cycle, and one after which true ones would seem to be late."""
+    log = lcm.EventLog(str(tmp_path / "log"), "w", overwrite=True)
+    machine = msgs.machine_description()
+    machine.text, machine.period_s = text_of(MINIMAL["axis"]), 0.001
+    log.write_event(1, "takt/machine", machine.encode())
+
+    def write(cycle: int, position: float) -> None:
+        state = msgs.axis_state()
+        state.name, state.cycle, state.time_ns, state.sequence = "x", cycle, cycle * 10**6, cycle
+        state.set_position = position
+        log.write_event(1, "takt/axis/x", state.encode())
+
+    for i in range(9):
+        write(i, float(i))
+        if i == 5:
+            write(3, 3.0)  # the same again, late: no contradiction
+            write(cycle, 99.0)
+    log.close()
+    recording = takt.read_log(tmp_path / "log")
+    assert recording["x"]["cycle"].tolist() == list(range(9))
+    assert recording["x"]["set_position"].tolist() == list(map(float, range(9)))
+    assert recording.meta["trouble"] == "The log is not whole: 1 state of components in contradiction to others."
+    assert main(["log", str(tmp_path / "log")]) == 1
+
+
 def test_a_description_with_changed_bytes(tmp_path: Path) -> None:
     """The one that is said most often counts; engines repeat it every second."""
     log = lcm.EventLog(str(tmp_path / "log"), "w", overwrite=True)

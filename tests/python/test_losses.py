@@ -11,7 +11,7 @@ import lcm
 import pytest
 import takt
 from every_kind import FULL, text_of
-from takt import msgs
+from takt import checks, msgs
 from takt.cli import main
 from takt.missing import all_missing, lost
 
@@ -135,6 +135,30 @@ def test_what_is_not_heard_any_more(channel: str, since: int, tmp_path: Path) ->
     assert recording.meta["silent"] == {name: pytest.approx(last * PERIOD)}
     assert all_missing(recording) == f"{name} from {last * PERIOD:g} s on"
     assert "lost samples" not in page(run)["meta"]
+
+
+@pytest.mark.parametrize("channel", ["takt/axis/feed", "takt/belt/belt", "takt/belt_objects/belt"])
+def test_a_beginning_that_is_missing(channel: str, tmp_path: Path) -> None:
+    """PY-20: its first number says that there were others before, when other components were heard."""
+    run = write(tmp_path / "run.log", {channel: range(120)})
+    recording = takt.read_log(run)
+    name = CHANNELS[channel][1] if channel in STATES else channel
+    assert all_missing(recording) == f"{name} before {120 * PERIOD:g} s"
+    assert "lost samples" not in page(run)["meta"]
+    if channel in STATES:
+        verdict = checks.complete(recording, name)
+        assert (verdict.passed, verdict.sentence) == (False, f"the samples of {name} before 0.24 s are missing")
+        assert checks.complete(recording.slice(0.3, 0.4), name).passed
+    everything = takt.read_log(write(tmp_path / "late.log", dict.fromkeys(CHANNELS, range(120))))  # joined late
+    assert all_missing(everything) == ""
+
+
+def test_an_end_that_is_missing_is_not_complete(tmp_path: Path) -> None:
+    recording = takt.read_log(write(tmp_path / "run.log", {"takt/axis/feed": range(120, CYCLES)}))
+    verdict = checks.complete(recording, "feed")
+    assert (verdict.passed, verdict.sentence) == (False, "the samples of feed from 0.238 s on are missing")
+    assert checks.complete(recording, "belt").passed
+    assert checks.complete(recording.slice(0.0, 0.2), "feed").passed
 
 
 def test_many_channels_are_counted(tmp_path: Path) -> None:

@@ -155,10 +155,18 @@ def visits_states(
 
 @decided
 def complete(recording: Recording, component: str, *, step: int | None = None) -> Verdict:
-    """No sample was lost: cycle numbers follow each other evenly (`step` cycles apart, where it is known)."""
+    """No sample was lost: cycle numbers follow each other evenly (`step` cycles apart, where it is known), from where
+    other components begin to where they end."""
     check = Check("complete", recording, (component,), None, says_missing=False)
     s = check.series(component, "cycle")
     gaps = recording.gaps(component, step)
+    silent, late = (recording.meta.get(what) or {} for what in ("silent", "late"))
+    if component in late and recording.start_s < late[component]:
+        text = f"the samples of {component} before {seconds(late[component])} are missing"
+        return check.verdict(False, text, when_s=recording.start_s, lanes=(s.lane(),))
+    if component in silent and recording.end_s > silent[component]:
+        text = f"the samples of {component} from {seconds(silent[component])} on are missing"
+        return check.verdict(False, text, when_s=silent[component], lanes=(s.lane(),))
     if not gaps:
         text = f"{component} is complete: {counted(len(s.values), 'sample')}"
         return check.verdict(True, text, lanes=(s.lane(),))

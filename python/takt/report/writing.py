@@ -57,6 +57,7 @@ ELSEWHERE = (
     "losses",
     "dropped",
     "silent",
+    "late",
     "played",
 )
 
