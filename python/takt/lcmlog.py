@@ -7,6 +7,7 @@ import contextlib
 import functools
 import itertools
 import json
+import math
 import os
 from collections import Counter
 from collections.abc import Iterator
@@ -177,9 +178,14 @@ def open_log(path: str | os.PathLike[str], progress: Progress | None = None) -> 
 
 
 def _leave_out_impossible(run: Run) -> None:
-    """Keeps the messages of components and of the engine whose cycle and time say the same."""
-    if not run.descriptions:
+    """Keeps the messages of components and of the engine whose cycle and time say the same, and reports on commands
+    in cycles that there were."""
+    wrong = [one for one in run.descriptions if not 0 < one[1] < 1]
+    if len(wrong) == len(run.descriptions):
+        run.impossible += sum(run.descriptions.values())
         return
+    for one in wrong:
+        run.impossible += run.descriptions.pop(one)
     (_, period, _), _ = run.descriptions.most_common(1)[0]
     for messages in (*run.states.values(), run.objects, run.shapes, run.engine_states):
         possible = [message for message in messages if is_possible(message, period)]
@@ -187,6 +193,21 @@ def _leave_out_impossible(run: Run) -> None:
         messages[:] = possible
     for messages in run.states.values():
         run.contradictions += _put_in_order(messages)
+    run.states = {name: messages for name, messages in run.states.items() if messages}
+    cycles = [one.cycle for one in run.engine_states] + [one[-1].cycle for one in run.states.values()]
+    latest = max(cycles) + 1 / period if cycles else math.inf  # what is said last may be missing
+    possible = [report for report in run.feedback if _is_possible(report, latest)]
+    run.impossible += len(run.feedback) - len(possible)
+    run.feedback[:] = possible
+
+
+def _is_possible(report: msgs.feedback, latest: float) -> bool:
+    """What a cycle has brought says which one it was: all but the refusal of a command that never came so far, and that
+    it is waited for."""
+    if report.cycle >= 0:
+        return bool(report.cycle <= latest)
+    refused = report.state == STATES.index("error") and report.ticket <= 0
+    return refused or report.state == STATES.index("busy")
 
 
 def _put_in_order(states: list[Any]) -> int:
@@ -302,6 +323,8 @@ def to_recording(log: Log, run: int = -1) -> Recording:
     if one.machine is None:
         raise LogError(f"{log.path}: holds no description of a machine (channel takt/machine)")
     text, period, version = _description(one)
+    if not 0 < period < 1:
+        raise LogError(f"{log.path}: the period of the machine that it describes is {period:g} s")
     machine = json.loads(_core.load_machine(text.encode(), str(log.path), files=False))
     tables: dict[str, dict[str, Array]] = {}
     components = components_of(machine)

@@ -38,6 +38,7 @@ from takt.toolpath import (
 )
 
 LIFT = 5.0  # mm
+MOST_BYTES = 200_000_000
 _MM = 1 / PX  # of a pixel
 _CUT = 0.01  # mm by which a shape may lie beyond its clip and count as within
 
@@ -56,7 +57,10 @@ def read_svg(
         import svgelements  # type: ignore[import-untyped]
     except ImportError:
         raise ToolpathError(f"{path}: SVG needs svgelements (pip install svgelements)") from None
-    data = Path(path).read_bytes()
+    with Path(path).open("rb") as file:
+        data = file.read(MOST_BYTES + 1)
+    if len(data) > MOST_BYTES:
+        raise ToolpathError(f"{path}: is larger than {MOST_BYTES:,} bytes")
     try:
         tree = Rendered(ElementTree.fromstring(data))
         left_out = tree.left_out

@@ -8,6 +8,7 @@ left out; surfaces and bodies, and curves that do not lie in a plane parallel to
 from __future__ import annotations
 
 import math
+import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from os import PathLike
@@ -58,7 +59,9 @@ def read_dxf(file: str | PathLike[str], left_out: Counter[str]) -> list[Run]:
     except (ValueError, KeyError):
         raise TaktError(f"{file}: its unit ($INSUNITS) is {drawing.units}, which is not known") from None
     try:
-        return list(_Reader(drawing, scale, left_out).runs(space, 0))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # of numbers that become too large, and are refused here
+            return list(_Reader(drawing, scale, left_out).runs(space, 0))
     except _EntityError as error:
         raise TaktError(f"{file}: {shortened(str(error), 400)}") from None
     except Exception as error:  # damaged tables and blocks
@@ -167,6 +170,8 @@ class _Reader:
         x, y, z = (float(value) for value in extrusion)
         if math.hypot(x, y) > FLAT * abs(z):
             raise _EntityError(f"{_label(entity)} does not lie in a plane parallel to X and Y")
+        if not entity.dxf.radius >= 0:
+            raise _EntityError(f"{_label(entity)} has a radius of {entity.dxf.radius * self._scale:.6g} mm")
         sense = 1 if z > 0 else -1
         ocs = entity.ocs()
         centre = self._point(ocs.to_wcs(entity.dxf.center), entity)

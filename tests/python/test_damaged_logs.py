@@ -17,7 +17,7 @@ from every_kind import FULL, MINIMAL, text_of
 from machines import taktd
 from takt import msgs
 from takt.cli import main
-from takt.events import HEADER, SYNC, EventLog
+from takt.events import HEADER, SYNC, EventLog, LogError
 from takt.lcmlog import open_log
 from takt.missing import all_missing
 
@@ -237,6 +237,39 @@ def test_a_forged_state_costs_itself_alone(cycle: int, tmp_path: Path) -> None:
     assert recording["x"]["set_position"].tolist() == list(map(float, range(9)))
     assert recording.meta["trouble"] == "The log is not whole: 1 state of components in contradiction to others."
     assert main(["log", str(tmp_path / "log")]) == 1
+
+
+@pytest.mark.parametrize(("state", "ticket", "cycle", "taken"), [
+    (2, 5, 3, True), (2, 5, 10**7, False), (2, 5, -1, False), (4, 5, -1, False), (4, 0, -1, True), (0, 5, -1, True),
+])  # fmt: skip
+def test_reports_of_cycles_that_were_not(state: int, ticket: int, cycle: int, taken: bool, tmp_path: Path) -> None:
+    """EN-36: only that a command is waited for, or was refused at the door, belongs to no cycle."""
+    log = lcm.EventLog(str(tmp_path / "log"), "w", overwrite=True)
+    machine = msgs.machine_description()
+    machine.text, machine.period_s = text_of(MINIMAL["axis"]), 0.001
+    log.write_event(1, "takt/machine", machine.encode())
+    for i in range(5):
+        sample = msgs.axis_state()
+        sample.name, sample.cycle, sample.time_ns, sample.sequence = "x", i, i * 10**6, i
+        log.write_event(1, "takt/axis/x", sample.encode())
+    report = msgs.feedback()
+    report.state, report.ticket, report.cycle = state, ticket, cycle
+    log.write_event(1, "takt/feedback", report.encode())
+    log.close()
+    assert open_log(tmp_path / "log").trouble == ("" if taken else "The log is not whole: 1 message cannot be true.")
+
+
+def test_a_description_without_a_period(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = lcm.EventLog(str(tmp_path / "log"), "w", overwrite=True)
+    machine, state = msgs.machine_description(), msgs.axis_state()
+    machine.text, machine.period_s, state.name = text_of(MINIMAL["axis"]), float("nan"), "x"
+    log.write_event(1, "takt/machine", machine.encode())
+    log.write_event(1, "takt/axis/x", state.encode())
+    log.close()
+    assert main(["log", str(tmp_path / "log")]) == 1
+    assert "1 message cannot be true" in capsys.readouterr().out
+    with pytest.raises(LogError, match="the period of the machine that it describes is nan s"):
+        takt.read_log(tmp_path / "log")
 
 
 def test_a_description_with_changed_bytes(tmp_path: Path) -> None:

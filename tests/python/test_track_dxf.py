@@ -331,6 +331,8 @@ def test_what_is_left_out_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[
         (lambda m, d: m.add_circle((0, 0), 5, dxfattribs={"extrusion": (1, 0, 0)}), "does not lie in a plane parallel"),
         (lambda m, d: m.add_line((0, 0), (1e300, 0)), "expected numbers up to 1e+08 mm"),
         (lambda m, d: m.add_line((0, 0), (math.nan, 0)), "expected numbers up to 1e+08 mm"),
+        (lambda m, d: m.add_circle((0, 0), -100), "has a radius of -100 mm"),
+        (lambda m, d: m.add_lwpolyline([(0, 0, 1e300), (9, 0, 0)], format="xyb"), "mm"),
         (lambda m, d: m.add_circle((0, 0), math.inf), "expected numbers up to 1e+08 mm"),
         (lambda m, d: d.header.__setitem__("$INSUNITS", 77), "its unit ($INSUNITS) is 77"),
         (lambda m, d: nested(m, d, 60, 1), "blocks nest deeper than 50"),

@@ -16,6 +16,7 @@ constexpr Range kNotNegative = between(0, 1e9);
 }  // namespace
 
 void describe(Enumeration<TwinDirection>& e) {
+  e.about("Where an axis by itself moves, or what it turns about.");
   e.value(TwinDirection::kX, "x", "Along or about X.");
   e.value(TwinDirection::kY, "y", "Along or about Y.");
   e.value(TwinDirection::kZ, "z", "Along or about Z.");

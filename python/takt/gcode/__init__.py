@@ -25,7 +25,7 @@ from takt.gcode.machine import Machine
 from takt.gcode.offsets import SYSTEMS, Offsets
 from takt.gcode.parameters import Parameters
 from takt.gcode.runner import Runner
-from takt.gcode.source import Text, decode
+from takt.gcode.source import MOST_BYTES, Text, decode
 from takt.toolpath import TOLERANCE, Point, Toolpath, ToolpathError
 
 DIALECTS = dialects.NAMES
@@ -83,7 +83,8 @@ def read_gcode(
     and splines become, in mm. Raises ToolpathError."""
     given = options or Options()
     try:
-        text = decode(Path(path).read_bytes())
+        with Path(path).open("rb") as file:
+            text = decode(file.read(MOST_BYTES + 1))
     except LineError as error:
         raise ToolpathError(f"{path}: {error}") from None
     given = dataclasses.replace(given, subroutines=[Path(path).parent, *given.subroutines])
