@@ -95,6 +95,7 @@ class Run:
     )  # of the machine: text, period, version
     sequences: Sequences = field(default_factory=Sequences)
     impossible: int = 0  # messages that were decoded, but cannot be true
+    returned: bool = False  # it was described again after another one
     contradictions: int = 0  # states whose cycle does not fit in the order, or that another one says otherwise
 
 
@@ -133,6 +134,11 @@ class Log:
             said.append(f"{counted(count, 'message')} could not be decoded")
         if count := sum(run.impossible for run in self.runs) + self.wrong:
             said.append(f"{counted(count, 'message')} cannot be true")
+        if (count := sum(run.returned for run in self.runs)) > 1:  # one may be a description with changed bytes
+            said.append(
+                f"{count} engines spoke at once on its network: which of them a state is of is not known, and each run "
+                "has what was said behind its own descriptions"
+            )
         if count := sum(run.contradictions for run in self.runs):
             said.append(f"{counted(count, 'state')} of components in contradiction to others")
         return said
@@ -297,6 +303,7 @@ def _run_of(runs: list[Run], message: Any) -> Run:
         if not known:
             runs.append(Run())
         elif known[-1] is not runs[-1]:
+            known[-1].returned = True
             runs.remove(known[-1])
             runs.append(known[-1])
     return runs[-1]

@@ -287,6 +287,22 @@ def test_a_description_with_changed_bytes(tmp_path: Path) -> None:
     assert takt.read_log(tmp_path / "log").components == ("x",)
 
 
+@pytest.mark.parametrize(("order", "said"), [("abab", True), ("aabb", False), ("aba", False), ("a", False)])
+def test_two_engines_at_once(order: str, said: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """PY-20: states do not say whose they are; so it is said where two engines are described in turn. A single
+    description with a changed number of its run is none, nor is an engine that was started anew."""
+    log = lcm.EventLog(str(tmp_path / "log"), "w", overwrite=True)
+    for cycle, letter in enumerate(order):
+        machine, state = msgs.machine_description(), msgs.axis_state()
+        machine.run_id, machine.text, machine.period_s = ord(letter), text_of(MINIMAL["axis"]), 0.001
+        state.name, state.cycle, state.time_ns = "x", cycle, cycle * 1_000_000
+        log.write_event(1, "takt/machine", machine.encode())
+        log.write_event(1, "takt/axis/x", state.encode())
+    log.close()
+    assert main(["log", str(tmp_path / "log")]) == (1 if said else 0)
+    assert ("2 engines spoke at once" in capsys.readouterr().out) == said
+
+
 def test_all_kinds(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A machine of all kinds, with every tenth event damaged somewhere."""
     file, log = tmp_path / "machine.yaml", tmp_path / "log"
