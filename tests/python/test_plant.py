@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -53,6 +53,42 @@ def test_drives_in_process_are_the_built_in_servos() -> None:
         with takt.Engine(machine, plant=servos("y.2", "x")) as engine:
             assert same(work(engine), expected)
             assert engine.figures["samples_refused"] == 0
+
+
+STOPS: dict[str, Callable[[takt.Engine], object]] = {
+    "halt": lambda session: session.axis("x").halt(),
+    "stop held": lambda session: session.axis("x").stop(hold=True),
+    "power off": lambda session: session.axis("x").power(enable=False),
+    "emergency stop held": lambda session: session.emergency_stop(hold=True),
+    "stop all": lambda session: session.stop_all(),
+    "override 0": lambda session: session.axis("x").set_override(velocity_factor=0),
+}
+
+
+@pytest.mark.parametrize("stop", STOPS.values(), ids=list(STOPS))
+def test_stops_act_as_on_simulated_servos(stop: Callable[[takt.Engine], object]) -> None:
+    """AX-100: in motion; what is refused afterwards is refused, and what was recorded is the same, bit for bit."""
+
+    def run(session: takt.Engine) -> tuple[takt.Recording, list[int]]:
+        x = session.axis("x")
+        x.power().wait()
+        with session.record("x") as recorder:
+            x.move_absolute(position=80)
+            session.run(0.2)
+            stop(session)
+            session.run(0.8)
+            asked = [x.power(), x.move_absolute(position=5)]
+            session.run(0.5)
+        assert recorder.recording["x"]["set_velocity"][190] > 1
+        return recorder.recording, [one.error_id for one in asked]
+
+    with takt.Engine(MACHINE) as engine:
+        expected, refused = run(engine)
+    with takt.Engine(MACHINE, plant=servos("x")) as engine:
+        recording, answers = run(engine)
+    assert answers == refused
+    for field in ("set_position", "actual_position", "state", "error", "loop_closed"):
+        assert np.array_equal(recording["x"][field], expected["x"][field]), field
 
 
 def test_all_set_points_of_a_cycle_come_at_once() -> None:
