@@ -132,3 +132,37 @@ groups:
         assert moved.sentence == "no position of the axes leads there: axis 'x' would leave its range at the lower end"
         moved = group.move_linear_absolute(x=50, y=10, a4=70).wait_final()
         assert "axis 'belt'" in moved.sentence
+
+
+def test_modules_and_accepted_moves() -> None:
+    """A module says it of its profiles. What failed of a direct move that was accepted is no reason for what fails
+    later, and what failed once is told once."""
+    text = """
+name: cell
+axes:
+  - {name: x, limits: {velocity: 500, acceleration: 5000, jerk: 100000, lower: -100, upper: 100}}
+  - {name: y, limits: {velocity: 500, acceleration: 5000, jerk: 100000}}
+  - {name: z, limits: {velocity: 500, acceleration: 5000, jerk: 100000}}
+groups:
+  - name: g
+    axes: [x, y, z]
+    kinematics: {gantry: {axes: [x, y, z]}}
+    path: {velocity: 500, acceleration: 5000, jerk: 100000}
+pick_and_place:
+  - {name: p, group: g}
+"""
+    generic = "no position of the axes leads there: out of reach, not turned so, or beyond the range of an axis"
+    with takt.Engine(text) as session:
+        module = session.pick_place("p")
+        module.control(enable=True, regulator_on=True).wait()
+        session.run(0.5)
+        module.configure(x_target=150, y_target=10, z_target=0).wait()
+        failed = module.execute(0).wait_final()
+        assert failed.sentence == "no position of the axes leads there: axis 'x' would leave its range at the upper end"
+    session, group = ready(RANGES)
+    moved = group.move_direct_absolute(
+        coordinate_system="mcs", x=group.x + 20, y=group.y, z=group.z, a=group.a, b=group.b, c=group.c
+    )
+    assert moved.wait_final().error_id == 0
+    with session:
+        assert group.jog(x=200.0).wait_final(timeout=30).sentence == generic

@@ -131,8 +131,7 @@ void describe(Description<Compensation>& d) {
   d.about(
       "What lies between the encoder on the motor and the load, and is made up for: the motor is told to go so much "
       "further that the load is where the axis shall be.");
-  d.defaulted<&C::backlash>(unit::u, between(0, 1e9),
-                            "How far the motor goes after turning round before the load comes along.");
+  d.defaulted<&C::backlash>(unit::u, between(0, 1e9), "Motion of the motor after a reversal before the load follows.");
   d.defaulted<&C::screw>(
       "Errors of the lead screw, by rising positions, on the line between two of them; beyond the ends as at the ends. "
       "They count while the axis has its reference.");

@@ -89,7 +89,7 @@ inline constexpr double kCorrectionShare = 0.1;
 
 // What lies between motor and load and is made up for (AX-115).
 struct Compensation {
-  double backlash = 0;               // u, >= 0: the motor goes so much before the load comes along, after turning round
+  double backlash = 0;               // u, >= 0: motion of the motor after a reversal before the load follows
   std::vector<ScrewPoint> screw;     // rising positions
   std::optional<double> velocity{};  // u/s, > 0: with which the correction is made
 

@@ -133,13 +133,13 @@ constexpr std::array kErrors = {
     ErrorInfo{
         ErrorId::kSyncPassed, "SyncPassed",
         "the master has passed the begin of the clutch's curve to master_sync_in_position, master_sync_position of "
-        "cam_in, or the position of a change of cam, and goes on"},
+        "cam_in, or the position of a change of cam, and moves away from it"},
     ErrorInfo{ErrorId::kSlaveLimits, "SlaveLimits",
               "the slave's limits are too low for the clutch's curve at the speed of the master"},
     ErrorInfo{ErrorId::kEmptySlot, "EmptySlot", "a slot of the sequence has no cam"},
     ErrorInfo{ErrorId::kCamMaking, "CamMaking", "the cam cannot be made"},
     ErrorInfo{ErrorId::kCamOver, "CamOver",
-              "the cam has ended: nothing goes on that this ramp, or the next x zero, could go by"},
+              "the cam has ended: this ramp, or the next x zero, has no position of a cam to refer to"},
     ErrorInfo{ErrorId::kOpenCam, "OpenCam",
               "the end of the cam does not go over into its beginning (its slopes differ): it is run once"},
     ErrorInfo{ErrorId::kStreamKey, "StreamKey", "the set point is for another stream than the one in control"},

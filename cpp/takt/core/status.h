@@ -120,7 +120,7 @@ enum class ErrorId : std::uint16_t {
   kSlaveLimits = 3111,  // the slave cannot follow within its limits
   kEmptySlot = 3112,    // there is no cam in a slot that is needed
   kCamMaking = 3113,    // a cam cannot be made at run time; the value of the feedback says why
-  kCamOver = 3114,      // the cam has ended: nothing goes on that a ramp, or a next x zero, could go by
+  kCamOver = 3114,      // the cam has ended: a ramp, or the next x zero, has no position of it to refer to
   kOpenCam = 3115,      // the end of the cam does not go over into its beginning: it is run once
   kStreamKey = 3120,    // a set point for another stream than the one in control
   kStreamLate = 3121,   // a set point came after its time

@@ -27,7 +27,7 @@ struct DriveSample {
   std::int64_t cycle = -1;  // of the set point it answers
   std::uint32_t axis = 0;   // index in Machine::axes
   ServoInputs inputs;
-  // u: where the load really is, of a plant that knows it; published, but no part of what the engine goes by.
+  // u: where the load really is, of a plant that knows it; published, but not used by the engine.
   double true_position = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -234,8 +234,8 @@ ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element
     kinematics::Joints target = joints;
     Failures failures;
     s.reason = NearestJointsAt(c, s, to, move.configuration, ahead.end_joints, target, failures);
-    ahead.failures = failures.Detail(c.number);
     if (s.reason == kinematics::Reason::kNone) return AlongJoints(move, target, ahead, s);
+    ahead.failures = failures.Detail(c.number);
     return s.reason == kinematics::Reason::kSingular ? ErrorId::kSingular : ErrorId::kUnreachable;
   }
   const path::Circle circle = InBase(system, move.circle, ahead.end_tool.p, move.relative);

@@ -188,6 +188,7 @@ ErrorId BeginStream(const Context& c, Ticket ticket, const Stream& command, Stat
     AbortMoves(c, ErrorId::kNone, s);
     s.way_before += s.pace.now.position;
     ForgetPlan(c, s);
+    c.ahead.failures = 0;
     s.begun = s.ends = s.interrupted = s.lets_go = false;
     s.clutches = {};
     s.ridden = {};

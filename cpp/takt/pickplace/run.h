@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "takt/pickplace/module.h"
 
@@ -9,8 +10,9 @@ namespace takt::pickplace {
 
 inline void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error = ErrorId::kNone) noexcept {
   const bool unreachable = error == ErrorId::kUnreachable || error == ErrorId::kSingular;
-  const std::uint64_t detail = unreachable ? c.group.ahead.failures : 0;
-  if (ticket != 0) c.group.feedback.Report({ticket, c.group.cycle.count, feedback, false, error, 0, {}, detail});
+  if (ticket == 0) return;
+  const std::uint64_t detail = unreachable ? std::exchange(c.group.ahead.failures, 0) : 0;
+  c.group.feedback.Report({ticket, c.group.cycle.count, feedback, false, error, 0, {}, detail});
 }
 inline void Enter(PickPlaceState to, State& s) noexcept {
   if (!IsLegal(s.state, to)) ++s.illegal_transitions;

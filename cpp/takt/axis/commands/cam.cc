@@ -42,8 +42,8 @@ void describe(Description<CamIn>& d) {
   d.defaulted<&C::start_mode>("How this axis gets onto the cam.");
   d.defaulted<&C::master_sync_position>(
       "Where the master is, in its own unit, when both are in step; unset: at the next beginning of the cam if "
-      "master_start_distance is given, else at once. A master without a turn that goes away from there by more than a "
-      "cycle of the cam ends the command with error 3110.");
+      "master_start_distance is given, else at once. A linear master that moves away from there by more than a cycle "
+      "of the cam ends the command with error 3110.");
   d.defaulted<&C::master_start_distance>(
       not_negative,
       "How far before that, in the master's unit, getting into step begins. Unset or 0: it begins there, within the "
