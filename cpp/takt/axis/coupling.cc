@@ -355,8 +355,8 @@ void EndPhase(const Context& c, FeedbackState feedback, State& s) {
   s.coupling.phase_ticket = 0;
 }
 
-// A cam waits for the only position of its master at which it could get into step, and the master has moved away from it
-// by more than a cycle of the cam since the waiting began (CAM-82).
+// A cam waits for the only position of its master at which it could get into step, and the master has moved away from
+// it by more than a cycle of the cam since the waiting began (CAM-82).
 bool LeavesSyncPosition(const Context& c, const KinematicState& phase, const State& s) {
   const CouplingState& k = s.coupling;
   if (s.active.kind != RequestKind::kCamIn || k.joining != Joining::kWaiting || k.turn != 0) return false;
