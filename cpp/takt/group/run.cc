@@ -182,13 +182,17 @@ void LetGoOfMembers(const Context& c, State& s) noexcept {
   s.guides = false;
 }
 
+bool PlansAhead(const Context& c) noexcept {
+  return c.params.path.planned_ahead.value_or(!c.carriers.any());
+}
+
 bool IsTimed(const Context& c, const Request& move, const Stretch& stretch) noexcept {
   return move.cargo.carrier == 0 && move.master == 0 && !IsCarried(c.ahead, stretch);
 }
 
 void BeginTiming(const Context& c, State& s) noexcept {
   c.ahead.timing.Clear();
-  if (!c.params.path.planned_ahead || Jogs(s) || s.master.axis != 0 || s.track.ticket != 0) return;
+  if (!PlansAhead(c) || Jogs(s) || s.master.axis != 0 || s.track.ticket != 0) return;
   // A move onto what moves may follow.
   if (std::ranges::any_of(s.cargoes, [](const Cargo& cargo) { return cargo.carrier != 0; })) return;
   for (std::uint64_t i = c.ahead.first; i < c.ahead.end(); ++i) {

@@ -118,8 +118,8 @@ Limits PathCourse::Between(const Slow& from, const Slow& to) const noexcept {
     jerk += way * along.jerk;
   }
   velocity = std::max({velocity / length, from.speed, to.speed});
-  acceleration *= kReferenceShare / length;
-  return {velocity, acceleration, acceleration, kReferenceShare * jerk / length};
+  acceleration *= kReferenceShare * share_ / length;
+  return {velocity, acceleration, acceleration, kReferenceShare * share_ * jerk / length};
 }
 
 // The largest speed at each node, the steps of jerk there, and the slow nodes from `begin` to rest at `end`.
@@ -247,7 +247,8 @@ bool PathCourse::Take(const PathWindow& window, std::uint64_t node, const Kinema
   return true;
 }
 
-bool PathCourse::Make(Planner& planner) noexcept {
+bool PathCourse::Make(Planner& planner, double share) noexcept {
+  share_ = share;
   std::size_t end = nodes_.size() - 1;
   double of_build_up = kOfBuildUp;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {

@@ -38,7 +38,8 @@ class PathCourse {
             double factor) noexcept;
   // Computes the reference; in another thread than Take if that has returned. If the intervals do not suffice it ends
   // at rest at an earlier node. Returns false if there is none.
-  bool Make(Planner& planner) noexcept;
+  // `share`: of the limits, used by the reference; a plan from a motion is found the sooner the less it is.
+  bool Make(Planner& planner, double share = 1) noexcept;
 
   // Returns what to plan; refers to this course.
   PathPlanRequest Request() const noexcept;
@@ -79,6 +80,7 @@ class PathCourse {
   CoordinateLimits coordinates_;
   KinematicState begin_;
   double factor_ = 1;
+  double share_ = 1;
   double end_place_ = 0;
   std::vector<Step> steps_;
   std::vector<double> lengths_;

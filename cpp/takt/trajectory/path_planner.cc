@@ -16,11 +16,20 @@ constexpr double kTighter = 1.002;   // than what a check found
 constexpr int kStubborn = 2;         // rounds
 constexpr double kNearly = 1.5;      // a plan that uses less of a limit is good at a lower rate
 constexpr double kLowerRounding = 1e-9;
+constexpr double kBeginRounding = 1e-6;
 constexpr double kPrecision = 1e-3;
 constexpr double kToBoundary = 0.99;
 constexpr double kLeastLeft = 0.2;  // of an ordinate after a step
 constexpr int kStepsPerRound = 80;
-constexpr double kLost = 1e6;       // of the time: steps that lead nowhere
+constexpr int kPolishingSteps = 30;
+constexpr int kPolishingRounds = 4;
+constexpr std::size_t kRampSpace[] = {3, 12};  // intervals between what is held at a limit of speed and what is not
+constexpr double kNearlyAtSpeed = 0.97;        // of the square
+constexpr double kAtSpeed = 1 - 1e-9;          // the same, where it is held
+constexpr double kNearStart = 1e-5;            // of rows: slack at a start that is nearly the plan
+constexpr double kCruises = 1e-9;              // share of a limit that is rounding
+constexpr double kSameSpeed = 1e-6;            // of the square
+constexpr double kLost = 1e6;                  // of the time: steps that lead nowhere
 constexpr double kBetween = 0.2;    // of a second difference: more than a parabola through three samples rises (1/8)
 constexpr double kSmall = 1e-3;     // share of a limit that asks for no rows: the check looks at it all the same
 constexpr double kOfUniform = 0.7;  // of the fastest uniform rate: where steps begin
@@ -93,6 +102,10 @@ PathPlanner::PathPlanner(std::size_t intervals, std::size_t coordinates)
       ordinates_(intervals),
       tighten_(intervals),
       use_(intervals),
+      kept_(intervals),
+      kept_tighten_(intervals),
+      held_(intervals),
+      cruises_(intervals),
       signed_(9 * coordinates),
       rows_(intervals * (6 * coordinates + 3) + 2),
       diagonal_(intervals),
@@ -126,6 +139,13 @@ bool PathPlanner::Read() noexcept {
       }
       Merge(k, e);
     }
+    const auto cruises = [&](std::size_t end) {
+      const ReferenceRate& rate = ends_[end * count_];
+      return std::abs(std::abs(rate.first) - merged_[end].velocity) <= kCruises * merged_[end].velocity &&
+             std::abs(rate.second) <= kCruises * merged_[end].acceleration;
+    };
+    cruises_[k] = cruises(2 * k) && cruises(2 * k + 1) ? 1 : 0;
+    held_[k] = 0;
   }
   return true;
 }
@@ -239,9 +259,11 @@ void PathPlanner::Add(std::size_t k, double value, const std::array<double, 3>& 
 
 void PathPlanner::MakeRows() noexcept {
   row_count_ = 0;
+  const auto is_held = [&](std::size_t k) { return k < n_ && held_[k] != 0; };
   for (std::size_t k = 0; k < n_; ++k) {
+    if (k > 0 && is_held(k - 1) && is_held(k) && is_held(k + 1)) continue;  // nothing to say: the check sees it
     const Shape shape = ShapeOf(k);
-    const double f = tighten_[k];
+    const Shares& f = tighten_[k];
     for (std::size_t e = 0; e < 2; ++e) {
       const Linear& b = shape.square[e];
       const Linear& a = shape.slope[e];
@@ -254,10 +276,11 @@ void PathPlanner::MakeRows() noexcept {
         const ReferenceRate& rate = ends_[(2 * k + e) * count_ + q];
         if (q > 0 && (apart_[2 * k + e] >> q & 1) == 0) continue;
         const RateLimits& l = q == 0 ? merged_[2 * k + e] : LimitsOf(k, q);
-        const double d1 = f * rate.first, d2 = f * rate.second, d3 = f * rate.third;
-        if (d1 != 0) cap = std::min(cap, l.velocity * l.velocity / (d1 * d1));
-        if (d1 == 0 && d2 == 0 && d3 == 0) continue;
+        const double speed = f[0] * rate.first;
+        if (speed != 0) cap = std::min(cap, l.velocity * l.velocity / (speed * speed));
+        if (rate.first == 0 && rate.second == 0 && rate.third == 0) continue;
         if (std::isfinite(l.jerk)) {
+          const double d1 = f[2] * rate.first, d2 = f[2] * rate.second, d3 = f[2] * rate.third;
           const double value = d1 * shape.bend.value + 3 * d2 * a.value + d3 * b.value;
           std::array<double, 3> up{}, down{};
           for (std::size_t i = 0; i < 3; ++i) {
@@ -270,6 +293,7 @@ void PathPlanner::MakeRows() noexcept {
           Add(k, l.jerk * root + value, down);
         }
         if (!free_knot || !std::isfinite(l.acceleration + l.deceleration)) continue;
+        const double d1 = f[1] * rate.first, d2 = f[1] * rate.second;
         std::array<double, 3> up{}, down{};
         for (std::size_t i = 0; i < 3; ++i) {
           down[i] = d1 * a.of[i] + d2 * b.of[i];
@@ -279,7 +303,8 @@ void PathPlanner::MakeRows() noexcept {
         Add(k, l.acceleration - value, up);
         Add(k, l.deceleration + value, down);
       }
-      if (free_knot && std::isfinite(cap)) Add(k, cap - b.value, {-b.of[0], -b.of[1], -b.of[2]});
+      const bool both_held = is_held(k) && (e == 0 || is_held(k + 1));
+      if (free_knot && !both_held && std::isfinite(cap)) Add(k, cap - b.value, {-b.of[0], -b.of[1], -b.of[2]});
     }
     if (k > 0 && k + 1 < n_) Add(k, ordinates_[k], {0, 1, 0});
   }
@@ -367,7 +392,9 @@ bool PathPlanner::Step(double centring, double start_share, bool first) noexcept
   if (!request_->begin) step_[1] += step_[0];
   if (!request_->end) step_[n_ - 2] += step_[n_ - 1];
   residual_ = 0;
-  for (std::size_t i = 1; i + 1 < n_; ++i) residual_ += std::abs(step_[i] * ordinates_[i]);
+  for (std::size_t i = 1; i + 1 < n_; ++i) {
+    if (held_[i] == 0) residual_ += std::abs(step_[i] * ordinates_[i]);
+  }
   residual_ /= time;
   const double target = std::max(centring * gap_ / static_cast<double>(row_count_), 0.3 * residual_ * per_row);
   gap_ /= time;
@@ -391,6 +418,12 @@ bool PathPlanner::Step(double centring, double start_share, bool first) noexcept
     diagonal_[n_ - 2] += 2 * next_[n_ - 2] + diagonal_[n_ - 1];
     next_[n_ - 3] += second_next_[n_ - 3];
     right_[n_ - 2] += right_[n_ - 1];
+  }
+  for (std::size_t i = 1; i + 1 < n_; ++i) {
+    if (held_[i] == 0) continue;
+    diagonal_[i] = 1;
+    right_[i] = next_[i] = second_next_[i] = next_[i - 1] = 0;
+    if (i > 1) second_next_[i - 2] = 0;
   }
   if (!SolveLinear()) return false;
   step_[0] = request_->begin ? 0 : step_[1];
@@ -419,9 +452,9 @@ bool PathPlanner::Step(double centring, double start_share, bool first) noexcept
 }
 
 // Towards the least time from where the ordinates are, as far as steps lead.
-void PathPlanner::Solve(double start_share) noexcept {
+void PathPlanner::Solve(double start_share, int most) noexcept {
   double centring = 0.2;
-  for (int i = 0; i < kStepsPerRound && steps_ < kMostSteps; ++i) {
+  for (int i = 0; i < most && steps_ < kMostSteps; ++i) {
     ++steps_;
     if (!Step(centring, start_share, i == 0)) return;
     if (!(gap_ < kLost && residual_ < kLost)) return;
@@ -431,13 +464,13 @@ void PathPlanner::Solve(double start_share) noexcept {
   }
 }
 
-// The largest share of a limit that an interval uses; infinite where R is not above 0 or something is not finite.
-double PathPlanner::UseOf(std::size_t k) noexcept {
+// The largest shares of limits that an interval uses; infinite where R is not above 0 or something is not finite.
+PathPlanner::Shares PathPlanner::UseOf(std::size_t k) noexcept {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   const Shape shape = ShapeOf(k);
   const double b = shape.square[0].value, a = shape.slope[0].value, bend = shape.bend.value;
   const std::size_t width = 3 * count_;
-  double use = 0;
+  Shares use{};
   const auto shares = [&](int i) {
     const double share = static_cast<double>(i) / kSamples;
     const double way = share * request_->lengths[k];
@@ -457,7 +490,7 @@ double PathPlanner::UseOf(std::size_t k) noexcept {
     return true;
   };
   for (int i = 0; i <= kSamples; ++i) {
-    if (!shares(i)) return kInfinite;
+    if (!shares(i)) return {kInfinite, kInfinite, kInfinite};
     if (i < 2) continue;
     for (std::size_t q = 0; q < count_; ++q) {
       const RateLimits& l = LimitsOf(k, q);
@@ -473,11 +506,19 @@ double PathPlanner::UseOf(std::size_t k) noexcept {
           high += bent;
           low -= bent;
         }
+        if (order == 0 && q == 0 && cruises_[k] != 0) continue;
         const double up = order == 1 ? l.acceleration : order == 0 ? l.velocity : l.jerk;
         const double down = order == 1 ? l.deceleration : up;
-        use = std::max({use, high / up, -low / down});
+        use[order] = std::max({use[order], high / up, -low / down});
       }
     }
+  }
+  if (cruises_[k] != 0) {  // its speed goes as the root of R, a parabola with the ordinate as its control point
+    const double after = shape.square[1].value, control = b + a * request_->lengths[k];
+    double square = std::max(b, after);
+    if (control > square) square = (control * control - b * after) / (2 * control - b - after);
+    const std::size_t end = 2 * k * count_;
+    use[0] = std::max(use[0], std::sqrt(square) * std::abs(ends_[end].first) / LimitsOf(k, 0).velocity);
   }
   return use;
 }
@@ -487,17 +528,22 @@ bool PathPlanner::Verify(int round) noexcept {
   most_use_ = 0;
   for (std::size_t k = 0; k < n_; ++k) {
     use_[k] = UseOf(k);
-    most_use_ = std::max(most_use_, use_[k]);
+    // A given pace may use all of a limit.
+    const double rounding = k == 0 && request_->begin ? kBeginRounding : 0;
+    for (const double use : use_[k]) most_use_ = std::max(most_use_, use - rounding);
   }
   if (most_use_ <= 1) return true;
   for (std::size_t k = 0; k < n_; ++k) {
-    double use = use_[k];
-    if (k > 0) use = std::max(use, use_[k - 1] > 1 ? use_[k - 1] : 0);
-    if (k + 1 < n_) use = std::max(use, use_[k + 1] > 1 ? use_[k + 1] : 0);
-    // What is found again lies between the ends of an interval, where rows say less about it.
-    if (round >= kStubborn) use *= use;
-    if (round >= 2 * kStubborn) use *= use;
-    if (use > 1) tighten_[k] *= kTighter * std::min(use, 2.0);
+    for (std::size_t order = 0; order < 3; ++order) {
+      double use = use_[k][order];
+      for (const std::size_t near : {k > 0 ? k - 1 : k, k + 1 < n_ ? k + 1 : k}) {
+        if (use_[near][order] > 1) use = std::max(use, use_[near][order]);
+      }
+      // What is found again lies between the ends of an interval, where rows say less about it.
+      if (round >= kStubborn) use *= use;
+      if (round >= 2 * kStubborn) use *= use;
+      if (use > 1) tighten_[k][order] *= kTighter * std::min(use, 2.0);
+    }
   }
   return false;
 }
@@ -514,6 +560,92 @@ void PathPlanner::Publish(PathPlan& out) const noexcept {
   }
 }
 
+// Holds the ordinates of intervals that cruise, from the first to the last one of each run, but for `space` of them
+// where the speed comes from, or goes to, another one. Returns whether there are such.
+bool PathPlanner::Hold(std::size_t space) noexcept {
+  const auto goes_on = [](const std::optional<ReferencePace>& pace) {
+    return pace && std::abs(pace->square - 1) <= kSameSpeed && std::abs(pace->slope) <= kSameSpeed;
+  };
+  bool any = false;
+  for (std::size_t first = 0, behind = 0; first < n_; first = behind + 1) {
+    for (behind = first; behind < n_ && cruises_[behind] != 0;) ++behind;
+    const std::size_t before = first == 0 && goes_on(request_->begin) ? 1 : space;
+    const std::size_t after = behind == n_ && goes_on(request_->end) ? 1 : space;
+    if (behind - first <= before + after) continue;
+    any = true;
+    // What has come from the given pace about as the reference does goes on like it.
+    const auto like_reference = [](double c) { return c > kNearlyAtSpeed && c * kNearlyAtSpeed < 1; };
+    const auto head = std::span(ordinates_).first(first + 1);
+    const bool all = request_->begin && std::ranges::all_of(head, like_reference);
+    if (all) std::ranges::fill(head, kAtSpeed);
+    for (std::size_t k = first; k < behind; ++k) {
+      const double in = all ? 1 : static_cast<double>(k - first + 1) / static_cast<double>(before + 1);
+      const double out = static_cast<double>(behind - k) / static_cast<double>(after + 1);
+      const double x = std::min({in, out, 1.0});
+      held_[k] = k >= first + before && k + after < behind ? 1 : 0;
+      ordinates_[k] = std::lerp(ordinates_[k], kAtSpeed, x * x * (3 - 2 * x));
+    }
+  }
+  return any;
+}
+
+// Rows leave a share of the limits, and so of the speed, too. Of a plan that is good, what nearly goes at the largest
+// speed of the first coordinate is held there, and the rest planned again.
+void PathPlanner::HoldSpeed(PathPlan& out) noexcept {
+  for (std::size_t k = 0; k < n_; ++k) {
+    const Shape shape = ShapeOf(k);
+    if (!(std::min(shape.square[0].value, shape.square[1].value) > kNearlyAtSpeed)) cruises_[k] = 0;
+  }
+  const double use = most_use_;
+  std::copy_n(ordinates_.begin(), n_, kept_.begin());
+  for (const std::size_t space : kRampSpace) {
+    if (!Hold(space)) break;
+    SettleEnds();
+    std::copy_n(tighten_.begin(), n_, kept_tighten_.begin());
+    bool good = false;
+    for (int round = 0; round < kPolishingRounds && !good; ++round) {
+      Solve(kNearStart, kPolishingSteps);
+      good = Verify(round);
+      if (most_use_ > kNearly) break;
+    }
+    std::copy_n(kept_tighten_.begin(), n_, tighten_.begin());
+    if (good) Publish(out);
+    std::ranges::fill(held_, std::uint8_t{0});
+    if (good) return;
+    std::copy_n(kept_.begin(), n_, ordinates_.begin());
+  }
+  most_use_ = use;
+}
+
+// What rows leave of the limits, before any check. Behind a given pace that comes down to its share in as many
+// intervals, and in as much time, as it takes to lose so much speed.
+void PathPlanner::SetShares() noexcept {
+  const auto fade_s = [&](std::size_t end) {
+    const RateLimits& l = merged_[end];
+    const double seconds = 4 * std::sqrt((1 - kPlanShare) * l.velocity / l.jerk) + 2 * l.acceleration / l.jerk;
+    return std::isfinite(seconds) ? seconds : 0.0;
+  };
+  const auto fade = [&](std::size_t k, bool given, std::size_t intervals, double at_s, double most_s) {
+    if (!given) return;
+    const double by_count = static_cast<double>(intervals) / kFadeIntervals;
+    const double share = std::min({1.0, by_count, most_s > 0 ? at_s / most_s : 1.0});
+    const double factor = 1 + (1 / kPlanShare - 1) * share;
+    for (double& f : tighten_[k]) f = std::min(f, factor);
+  };
+  const double begin_s = fade_s(0), end_s = fade_s(2 * n_ - 1);
+  double at_s = 0;
+  for (std::size_t k = 0; k < n_; ++k) {
+    tighten_[k].fill(1 / kPlanShare);
+    fade(k, request_->begin.has_value(), k, at_s, begin_s);
+    at_s += request_->lengths[k];
+  }
+  at_s = 0;
+  for (std::size_t k = n_; k-- > 0;) {
+    fade(k, request_->end.has_value(), n_ - 1 - k, at_s, end_s);
+    at_s += request_->lengths[k];
+  }
+}
+
 PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) noexcept {
   request_ = &request;
   n_ = request.lengths.size();
@@ -527,11 +659,7 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
   if (!Read()) return PathPlanStatus::kInvalid;
   const double uniform = UniformSquare();
   if (!(uniform > 0)) return PathPlanStatus::kInvalid;
-  for (std::size_t k = 0; k < n_; ++k) {
-    const double from_begin = request.begin ? static_cast<double>(k) / kFadeIntervals : 1;
-    const double from_end = request.end ? static_cast<double>(n_ - 1 - k) / kFadeIntervals : 1;
-    tighten_[k] = 1 + (1 / kPlanShare - 1) * std::min({1.0, from_begin, from_end});
-  }
+  SetShares();
   double start = kOfUniform * uniform;
   // From a motion in progress: the reference continues it at this rate.
   if (request.begin) start = request.begin->square;
@@ -540,12 +668,19 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
   if (ordinates_[0] > 0 && ordinates_[n_ - 1] > 0) {
     double start_share = 0.1;
     for (int round = 0; round < kVerifyRounds && steps_ < kMostSteps; ++round) {
-      Solve(start_share);
+      Solve(start_share, kStepsPerRound);
       if (Verify(round)) {
         Publish(out);
+        HoldSpeed(out);
         return PathPlanStatus::kPlanned;
       }
       start_share = 0.02;
+      if (round == 0 && request.begin && !(gap_ < 1 && residual_ < 1)) {  // again, with the reference as a plan
+        std::fill_n(ordinates_.begin(), n_, start);
+        SettleEnds();
+        SetShares();
+        start_share = kNearStart;
+      }
     }
   }
   if (request.begin || request.end) return PathPlanStatus::kNoPlan;

@@ -154,6 +154,8 @@ class PathPlanner {
     Linear bend;
   };
 
+  using Shares = std::array<double, 3>;  // of velocity, acceleration and jerk
+
   const RateLimits& LimitsOf(std::size_t k, std::size_t q) const noexcept {
     return q == 0 && !request_->first_limits.empty() ? request_->first_limits[k] : request_->limits[q];
   }
@@ -164,12 +166,15 @@ class PathPlanner {
   void SettleEnds() noexcept;
   void Add(std::size_t k, double value, const std::array<double, 3>& gradient) noexcept;
   void MakeRows() noexcept;
-  void Solve(double start_share) noexcept;
+  void Solve(double start_share, int most) noexcept;
   bool Step(double centring, double start_share, bool first) noexcept;
   bool SolveLinear() noexcept;
-  double UseOf(std::size_t k) noexcept;
+  Shares UseOf(std::size_t k) noexcept;
   bool Verify(int round) noexcept;
   void Publish(PathPlan& out) const noexcept;
+  void SetShares() noexcept;
+  bool Hold(std::size_t space) noexcept;
+  void HoldSpeed(PathPlan& out) noexcept;
 
   const PathPlanRequest* request_ = nullptr;
   std::size_t n_ = 0, count_ = 0;  // intervals, coordinates
@@ -179,9 +184,13 @@ class PathPlanner {
   std::vector<std::uint64_t> apart_;  // coordinates that do not, a mask
   std::vector<ReferenceRate> at_;     // of all coordinates
   std::vector<double> ordinates_;     // c: R's control ordinate above the middle of each interval
-  std::vector<double> tighten_;       // factor of the rates of each interval
-  std::vector<double> use_;           // of the limits in each interval
-  std::vector<double> signed_;        // velocity, acceleration and jerk of all coordinates at three samples
+  std::vector<Shares> tighten_;       // factors of the rates of each interval
+  std::vector<Shares> use_;           // of the limits in each interval
+  std::vector<double> kept_;          // ordinates of a plan that is good ...
+  std::vector<Shares> kept_tighten_;  // ... and its factors
+  // Of each interval: its ordinate is held; its reference goes as fast as the first coordinate may.
+  std::vector<std::uint8_t> held_, cruises_;
+  std::vector<double> signed_;  // velocity, acceleration and jerk of all coordinates at three samples
   std::vector<Row> rows_;
   std::vector<double> diagonal_, next_, second_next_, right_, step_;
   std::size_t row_count_ = 0;

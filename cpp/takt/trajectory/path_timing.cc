@@ -11,12 +11,16 @@ constexpr double kLead_s = 0.012;         // from the order of a plan to its sta
 constexpr std::uint64_t kMostLead = 400;  // cycles
 constexpr std::uint64_t kOrderAgain = 8;  // cycles after one that failed
 constexpr double kRenew_s = 0.4;          // before a law ends, if the path does not
+constexpr double kUrgent_s = 0.15;        // before a law ends, a slower plan is better than none
 constexpr double kWithin = 1 + 1e-7;      // of a limit
 constexpr int kSamples = 12;              // of a piece of a profile that is verified, besides the nodes it passes
 constexpr double kShares[] = {1, 0.8, 0.6, 0.45, 0.3, 0.2, 0.1};  // of limits, tried for braking and for bridges
+constexpr double kReferenceShares[] = {1, 0.8, 0.5};              // of limits, tried for the reference of a plan
+constexpr double kRoomForPlans = 0.999;                           // share of limits
 constexpr double kSamePosition = 1e-9;                            // mm
-constexpr double kCoordinatesShare = 0.98;                        // of the coordinates' limits
-constexpr int kTails = 16;                                        // starts tried for a tail
+constexpr double kCoordinatesShare = 0.979;                       // of the coordinates' limits; plans use 0.98
+constexpr int kTails = 8;                                         // starts tried for a tail
+constexpr double kTailShares[] = {1, 0.8, 0.5};                   // of limits, tried for it
 constexpr double kStraight = 1e-12;                               // second slopes that are rounding
 constexpr double kGentle = 0.3;  // of the limits: a stop that kShares finds later may be so gentle
 
@@ -151,7 +155,10 @@ bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, co
       velocity = std::min({velocity, most, std::max(factor, 1e-3) * std::sqrt(window[i].own)});
     }
     if (!(velocity > 0)) continue;
-    for (const double share : kShares) {
+    const bool last = to == end && straight && StopBehind(window, to) == to;
+    for (double share : kShares) {
+      // A plan that is to begin from it needs room.
+      if (share == 1 && !last) share = kRoomForPlans;
       const Limits limits{velocity, share * least.acceleration, share * least.deceleration, share * least.jerk};
       Profile profile{};
       if (planner_.ToPosition(pace.now, window[to].at.s, 0, limits, profile).failed()) continue;
@@ -159,7 +166,7 @@ bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, co
       if (!Holds(window, pace.node, profile)) continue;
       DropPlan();
       Take(profile, factor);
-      final_ = to == end && share == 1 && straight && StopBehind(window, to) == to;
+      final_ = last && share == 1;
       braking_ = false;
       return true;
     }
@@ -230,6 +237,7 @@ bool PathTiming::Order(const PathWindow& window, double factor, const PathPace& 
   const std::uint64_t node = NodeAt(window, pace.node, begin.position);
   if (!next_.course.Take(window, node, begin, StopBehind(window, pace.node), factor)) return false;
   from_rest_ = IsAtRest(begin);
+  maker_->urgent = rest_s() < kUrgent_s;
   next_.begin = tick_ + lead;
   next_.planned = true;
   next_.factor = factor;
@@ -261,7 +269,11 @@ void PathTiming::Ask(const PathWindow& window, double factor, const PathPace& pa
 std::optional<std::uint64_t> PathTiming::MakePlan() noexcept {
   if (maker_->order.load(std::memory_order_acquire) != OrderState::kOrdered) return {};
   maker_->status = PathPlanStatus::kNoPlan;
-  if (next_.course.Make(maker_->profiles)) maker_->status = maker_->planner.Plan(next_.course.Request(), next_.plan);
+  for (const double share : kReferenceShares) {
+    if (maker_->status != PathPlanStatus::kNoPlan || (share < 1 && !maker_->urgent)) break;
+    if (!next_.course.Make(maker_->profiles, share)) break;
+    maker_->status = maker_->planner.Plan(next_.course.Request(), next_.plan);
+  }
   const std::uint64_t number = maker_->number;
   maker_->order.store(OrderState::kMade, std::memory_order_release);
   return number;
@@ -316,11 +328,13 @@ bool PathTiming::StopBefore(const PathWindow& window, double place, const PathPa
     for (std::uint64_t i = node; i < window.known() && window[i].at.s < place; ++i) {
       least = Least(least, LimitsAt(window[i].at, window.limits(), 1));
     }
-    const Limits limits{std::max(least.velocity, from.velocity), least.acceleration, least.deceleration, least.jerk};
-    Profile profile{};
-    const bool found = !planner_.ToPosition(from, place, 0, limits, profile).failed() &&
-                       profile.PositionRange().max <= place + kSamePosition && Holds(window, node, profile);
-    if (found) {
+    for (const double share : kTailShares) {
+      const Limits limits{std::max(least.velocity, from.velocity), share * least.acceleration,
+                          share * least.deceleration, share * least.jerk};
+      Profile profile{};
+      const bool found = !planner_.ToPosition(from, place, 0, limits, profile).failed() &&
+                         profile.PositionRange().max <= place + kSamePosition && Holds(window, node, profile);
+      if (!found) continue;
       current_.tail_s = static_cast<double>(tick - current_.begin) * period_s_;
       current_.tail = profile;
       DropPlan();

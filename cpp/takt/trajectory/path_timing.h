@@ -91,6 +91,7 @@ class PathTiming {
     PathPlanner planner{kIntervals, kPathCoordinates + 1};
     std::atomic<OrderState> order{OrderState::kNone};
     std::uint64_t number = 0;
+    bool urgent = false;
     PathPlanStatus status = PathPlanStatus::kNoPlan;
   };
   std::unique_ptr<Maker> maker_;
