@@ -19,6 +19,7 @@ COMMANDS = (
     "add_cam_segments",
     "build_cam",
     "drop_cam",
+    "read_cam",
     "position_profile",
     "velocity_profile",
     "acceleration_profile",

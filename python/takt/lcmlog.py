@@ -33,6 +33,7 @@ MESSAGES: dict[str, Any] = {
     "takt/engine": msgs.engine_state,
     "takt/command": msgs.command,
     "takt/feedback": msgs.feedback,
+    "takt/cams": msgs.cam_piece,
     "takt/journal/start": msgs.journal_start,
     "takt/journal/command": msgs.journal_command,
     "takt/journal/drive": msgs.journal_drive,

@@ -84,8 +84,8 @@ class MadeCams:
                 return self._session._cam(number)
         raise TaktError(f"there is no cam '{name}' (there are {', '.join(self.names)})")
 
-    def numbered(self, number: int) -> Table:
-        """The cam with this number, as far as this session knows."""
+    def known(self, number: int) -> Table | None:
+        """The cam with this number; None: it was made by another client."""
         from takt.cam import Table
 
         if 1 <= number <= len(self._session.machine["cams"]):
@@ -93,7 +93,7 @@ class MadeCams:
         for made in self.cams:
             if made.feedback._done and made.feedback.value == number:
                 return made.table
-        raise TaktError(f"cam number {number} was made by another client; its data is known there and in the engine")
+        return None
 
     def kept(self) -> dict[str, Any]:
         """What recordings keep of the cams made so far, by number; of the largest ones nothing."""
@@ -176,11 +176,11 @@ class SessionWithCams(MachineCommands):
     drop_cam.__doc__ = MachineCommands.drop_cam.__doc__
 
     def cam(self, name: str) -> Table:
-        """The cam that this name stands for now, of the machine file or made at run time: points, laws, extremes. Over
-        LCM, of cams made at run time those that this session has made."""
+        """The cam that this name stands for now, of the machine file or made at run time, whoever made it: points,
+        laws, extremes. Over LCM what this session does not know is read from the engine: some time for a large cam."""
         self._check_open()
         return self._made_cams.find(name)
 
     def _cam(self, number: int) -> Table:
         """The cam with this number."""
-        return self._made_cams.numbered(number)
+        raise NotImplementedError

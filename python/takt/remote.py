@@ -15,6 +15,7 @@ from typing import Any
 
 from takt import _core, msgs
 from takt.belt import Belt
+from takt.cam import Table
 from takt.component import Component
 from takt.errors import ConnectionError, TaktError
 from takt.feedback import Feedback
@@ -24,6 +25,7 @@ from takt.lying import objects_of
 from takt.mover import Mover
 from takt.network import open_network, usual_url
 from takt.recording import Recording
+from takt.remote_cams import RemoteCams
 from takt.remote_history import CommandLog
 from takt.remote_tracks import RemoteTracks
 from takt.session import Recorder, Session, release_of
@@ -93,6 +95,7 @@ class RemoteSession(Session):
         self._key = key
         self._key_trouble = ""  # why the engine's last description could not be believed
         self._belt_objects: dict[str, msgs.belt_objects] = {}
+        self._cams = RemoteCams(self)
         self._sent: dict[int, _Sent] = {}
         self._held: list[Feedback] = []  # level-sensitive commands that need heartbeats
         self._last_id = 0
@@ -110,6 +113,7 @@ class RemoteSession(Session):
             ("takt/feedback", self._on_feedback),
             ("takt/command", self._on_command),
             ("takt/belt_objects/.*", self._on_objects),
+            ("takt/cams", self._on_cam),
             *((f"{prefix}.*", self._on_state) for prefix in PREFIXES.values()),
         ):
             subscription = self._lcm.subscribe(channel, handler)
@@ -283,6 +287,14 @@ class RemoteSession(Session):
                         recorder.lying.look(message.name, message.cycle * self.period, objects_of(message))
                 self._hear(channel, message.sequence)
 
+    def _on_cam(self, channel: str, data: bytes) -> None:
+        message = _decoded(msgs.cam_piece, data)
+        if message is None:
+            return
+        with self._news:
+            self._cams.take(message)
+            self._hear(channel, message.sequence)
+
     def _on_feedback(self, channel: str, data: bytes) -> None:
         message = _decoded(msgs.feedback, data)
         if message is None:
@@ -431,6 +443,20 @@ class RemoteSession(Session):
 
     def _track_links(self, track: Track) -> tuple[list[int], list[int]]:
         return self._geometry.links(track)
+
+    def _cam(self, number: int) -> Table:
+        table = self._made_cams.known(number)
+        return self._cams.table(number) if table is None else table
+
+    def cam(self, name: str) -> Table:
+        self._check_open()
+        number = self._cams.number_of(name)
+        return self._cam(number) if number else super().cam(name)
+
+    def _await(self, condition: Callable[[], bool], timeout: float) -> None:
+        """Until something that is heard makes it true."""
+        with self._news:
+            self._news.wait_for(lambda: condition() or self._trouble, timeout)
 
     def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:
         end = self.now + timeout

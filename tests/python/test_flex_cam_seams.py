@@ -352,6 +352,25 @@ def test_cam_in_ends_where_a_linear_master_goes_away_from_its_place():  # CAM-82
         assert rig.knife.state == "Standstill"
 
 
+@pytest.mark.parametrize("sense", [1, -1])
+def test_gear_in_pos_ends_where_a_linear_master_goes_away_for_good(sense):  # CAM-82, AX-45
+    where = {"master_sync_position": -200.0 * sense, "slave_sync_position": 0.0, "master_start_distance": 50.0}
+    with Rig(hill("a", 100, 500), settings=AT_ONCE) as rig:
+        rig.module.control(enable=False).wait()
+        feedback = rig.knife.gear_in_pos(master="web", **where)
+        rig.run(1000 * sense)
+        rig.seconds(1.9)
+        assert not feedback._final  # it may come back: it does 2 m in 1 s
+        rig.seconds(0.5)
+        assert feedback.error_id == SYNC_PASSED, feedback.sentence
+        assert "moves away from it" in feedback.sentence
+        assert rig.knife.state == "Standstill"
+        again = rig.knife.gear_in_pos(master="web", **where)
+        rig.run(-1000 * sense)
+        again.wait(until="reached", timeout=4)
+        assert rig.knife.set_position == pytest.approx(rig.web.set_position + 200 * sense, abs=1e-6)
+
+
 @pytest.mark.parametrize("how", ["stop", "halt"])
 def test_a_stop_with_an_opening_opens(how):
     with Rig(hill("a", 100, 500), settings=AT_ONCE) as rig:

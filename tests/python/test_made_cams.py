@@ -205,7 +205,7 @@ def test_no_more_points_than_a_cam_may_have(session):  # CAM-88
         if first % 2000 == 0:
             told.wait()
     told = session.command("machine", "add_cam_points", {"cam": "long", "points": [{"x": 1e6, "y": 0.0}]}).wait_final()
-    assert (told.error_id, told.sentence) == (3113, "expected 2 to 100,000 points, found more")
+    assert (told.error_id, told.sentence) == (3113, "expected 2 to 100,000 points, found 100001")
 
 
 @pytest.mark.parametrize(
@@ -214,8 +214,18 @@ def test_no_more_points_than_a_cam_may_have(session):  # CAM-88
         ("add_cam_points", {"cam": "none", "points": [POINT]}, "expected a begin_cam of this name before"),
         ("build_cam", {"cam": "none"}, "expected a begin_cam of this name before"),
         ("drop_cam", {"cam": "flat"}, "expected the name of a cam made at run time"),
-        ("add_cam_points", {"cam": "begun", "first": 7, "points": [POINT]}, "first: expected the number of points"),
-        ("build_cam", {"cam": "begun", "count": 3}, "a piece of the cam was refused or is missing"),
+        (
+            "add_cam_points",
+            {"cam": "begun", "first": 7, "points": [POINT]},
+            "first: expected 2, the number of points or segments sent before, found 7: a piece of the cam is missing "
+            "or was sent twice",
+        ),
+        (
+            "build_cam",
+            {"cam": "begun", "count": 3},
+            "count: expected 2, the number of points or segments that have come, found 3: a "
+            "piece of the cam is missing",
+        ),
         (
             "add_cam_segments",
             {"cam": "begun", "segments": [{"to": {"x": 1, "y": 1}}]},
@@ -233,7 +243,7 @@ def test_pieces_out_of_order_are_refused(session, verb, arguments, sentence):  #
     assert sentence in told.sentence
     if verb.startswith("add") and arguments["cam"] == "begun" and len(arguments.get("points", "x")) < 21:
         built = session.command("machine", "build_cam", {"cam": "begun"}).wait_final()
-        assert built.sentence == "a piece of the cam was refused or is missing; send the cam again from begin_cam on"
+        assert built.sentence == "a piece of the cam was refused; send the cam again from begin_cam on"
 
 
 def test_cams_that_are_sent_do_not_disturb_one_that_is_built(session):  # CAM-88
@@ -297,6 +307,75 @@ def test_over_lcm_and_in_the_log_of_the_run(tmp_path):  # CAM-88, EN-07: real ti
         unknown = stamp.set_cam(slot=3, cam="odd").wait_final()
         assert unknown.sentence == "cam: the machine has no cam 'odd' (it has flat, hill)"
     assert replay(log).same
+
+
+FROM_FILE = MACHINE.replace("flex_cams:", "  - {name: drawn, file: drawn.csv}\nflex_cams:")
+
+
+def test_cams_of_others_are_read_back_over_lcm(tmp_path):  # CAM-88, CAM-92: made by another client, or in a file
+    url = new_url()
+    (tmp_path / "drawn.csv").write_text("x;y;v\n0;0;\n10,5;2,25;\n20;5;0,5\n")
+    with running(tmp_path, url, machine=FROM_FILE), takt.connect(url) as session:
+        stamp = run_stamp(session)
+        table = hill(33, count=451)
+        stamp.load_cam(1, table).wait()
+        session.make_cam(steps(7)).wait()
+        session.wait(lambda: stamp.cam_number == 3, 3.0)
+        with takt.connect(url) as other:
+            assert other.flex_cam("stamp").cam_in_force.source == table.source
+            assert other.cam("hill").extremes() == table.extremes()
+            assert other.cam("steps").source == steps(7).source
+            drawn = other.cam("drawn")
+            assert list(drawn.points.x) == [0, 10.5, 20]
+            assert np.array_equal(drawn.points.v, [math.nan, math.nan, 0.5], equal_nan=True)
+            session.make_cam(hill(2)).wait()  # the same name
+            assert other.cam("hill").extremes().y.greatest.value == pytest.approx(2, abs=1e-6)
+            with pytest.raises(takt.TaktError, match=r"there is no cam 'hil' \(there are flat, drawn\)"):
+                other.cam("hil")
+            with pytest.raises(takt.TaktError, match="the engine has no cam of number 99 any more"):
+                other._cam(99)
+
+
+def test_a_piece_that_is_lost_is_read_again(tmp_path, monkeypatch):  # CAM-88
+    url = new_url()
+    with running(tmp_path, url, machine=MACHINE), takt.connect(url) as session:
+        table = hill(33, count=301)
+        session.make_cam(table).wait()
+        with takt.connect(url) as other:
+            take, seen = other._cams.take, []
+
+            def lossy(message):
+                seen.append(message.first)
+                if seen.count(message.first) > 1:
+                    take(message)
+
+            monkeypatch.setattr(other._cams, "take", lossy)
+            monkeypatch.setattr("takt.remote_cams.WAIT_S", 0.05)
+            assert other._cam(2).source == table.source
+            assert set(seen) == {0, 100, 200, 300}
+            monkeypatch.setattr(other._cams, "take", lambda message: None)
+            with pytest.raises(takt.ConnectionError, match="5 pieces in a row were lost"):
+                other._cam(2)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        ({"number": 7}, "cam, number: expected the name or the number of a cam that the engine has"),
+        ({"cam": "none"}, "cam, number: expected the name or the number of a cam that the engine has"),
+        ({}, "cam, number: expected the name or the number of a cam that the engine has"),
+        (
+            {"cam": "flat", "first": 2},
+            "first: expected less than 2, the number of points or segments of the cam, found 2",
+        ),
+        ({"number": 1, "first": 4_000_000_000}, "first: expected less than 2, the number of points or segments"),
+    ],
+)
+def test_what_cannot_be_read_is_refused(session, arguments, sentence):  # CAM-88
+    for _ in range(100):  # nobody takes the pieces here: what does not fit is lost, the answer stays the same
+        assert session.command("machine", "read_cam", {"cam": "flat"}).wait().value == 2
+    told = session.command("machine", "read_cam", arguments).wait_final()
+    assert (told.error_id, told.sentence[: len(sentence)]) == (3113, sentence)
 
 
 def test_impossible_cams_are_refused_before_anything_is_made(session):  # CAM-88

@@ -283,6 +283,14 @@ def test_the_ledger_knows_what_became_of_commands() -> None:
         ('{"epoch": 1, "details": "x"}', "list of components"),
         ('{"epoch": 1, "command": "jog"}', "a command has"),
         ('{"epoch": 1, "command": ["x", "jog", {"velocity": "}, evil: {"}]}', "a command has"),
+        *(
+            (json.dumps({"epoch": 1, "command": ["machine", "add_cam_points", {"points": points}]}), "a command has")
+            for points in ([3], [{"x": "1"}], [{"x": True}], [{"z": 1}], [{"x": math.nan}], [{"x": 1}] * 21, {"x": 1})
+        ),
+        *(
+            (json.dumps({"epoch": 1, "command": ["machine", "begin_cam", {"name": name}]}), "a command has")
+            for name in ("", "a: b", "a, b", 'a"', "a\\", "a\n", "x" * 61)
+        ),
         (json.dumps({"epoch": 1, "signals": [[0, "set_position"]] * (MOST_SIGNALS + 1)}), "too many"),
     ],
 )

@@ -528,6 +528,7 @@ def test_cams_show_the_point_in_force(tmp_path: Path, browser: Browser) -> None:
             f"master {cutter.mp01_set_master_position:.3f} mm   slave {cutter.mp02_set_slave_position:.3f} mm, "
             f"measured {cutter.actual_slave_position:.3f} mm"
         )
+        expect(card.get_by_role("button")).to_have_count(0)  # the machine file does not let the page command
         shown = page.evaluate("() => window.takt.model.machine.cams[0]")
         table, x = session.cam("product_600"), np.array(shown["x"])
         inside = np.abs(x[:, None] - table.joints).min(axis=1) > 1e-3  # x has nine digits, and the jerk jumps at joints
@@ -553,6 +554,62 @@ def test_cams_show_the_point_in_force(tmp_path: Path, browser: Browser) -> None:
         web.halt().wait()
         expect(card.locator("header .soft")).to_have_text(re.compile("^other"))
         expect(card.locator("output")).to_contain_text(" mm   y ")
+
+
+def test_a_cam_is_edited_by_dragging_and_put_into_force(tmp_path: Path, browser: Browser) -> None:  # CAM-88
+    url = new_url()
+    with (
+        running(tmp_path, url, machine=f"{SAW}view: {{commands: true}}\n"),
+        served(url) as address,
+        opened(browser, address, "#tab=cams") as page,
+        takt.connect(url) as session,
+    ):
+        web, cutter = session.axis("web"), session.flex_cam("cutter")
+        web.power().wait()
+        cutter.control(regulator_on=True)
+        session.wait(lambda: cutter.axis_enabled)
+        web.move_velocity(velocity=300)
+        cutter.control(sync_cam=True).wait()
+        card = page.locator(".cam").first
+        edit = card.get_by_role("button", name="Edit")
+        edit.click()
+        knot = "() => { const [{ edit }] = window.takt.cams.cards; return edit?.knots[3]; }"  # the highest point
+        page.wait_for_function("() => window.takt.cams.cards[0].view")  # drawn
+        before = page.evaluate(knot)
+        x, y = page.evaluate(
+            "() => { const [{ view, edit, canvas }] = window.takt.cams.cards; const b = canvas.getBoundingClientRect();"
+            " return [b.x + view.across(edit.knots[3][0]), b.y + view.down(edit.knots[3][1])]; }"
+        )
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x + 4, y + 12, steps=3)
+        page.mouse.up()
+        after = page.evaluate(knot)
+        assert after[0] > before[0]
+        low, high = page.evaluate("() => window.takt.cams.cards[0].view.range")
+        assert 0 < before[1] - after[1] < 0.15 * (high - low)  # 12 pixels of some 190
+        assert after[2:] == before[2:]
+        put = card.get_by_role("button", name="Put into force")
+        put.click()
+        session.wait(lambda: cutter.cam_number == 3)
+        drawn = page.evaluate("() => window.takt.model.madeCams.get(3)")
+        assert drawn["name"] == "product_600 edited"
+        assert drawn["knots"][3] == pytest.approx(after)
+        expect(card.locator("header .soft")).to_contain_text("product_600 edited")
+        back = cutter.cam_in_force.points
+        assert [back.x[3], back.y[3]] == pytest.approx(after[:2])
+
+        # Again, from the edited one, under the same name; a linear cam has no slopes that could stay.
+        edit.click()
+        expect(put).to_be_enabled()
+        put.click()
+        session.wait(lambda: cutter.cam_number == 4)
+        assert cutter.cam_in_force.name == "product_600 edited"
+        cutter.load_cam(1, {"name": "saw teeth", "interpolation": "linear", "cyclic": True, "points": [
+            {"x": 0, "y": 0}, {"x": 300, "y": 200}, {"x": 600, "y": 0}]})  # fmt: skip
+        session.wait(lambda: cutter.cam_number == 5)
+        expect(edit).to_be_disabled()
+        expect(edit).to_have_attribute("title", "its slope has steps, or it has more than 60 joints")
 
 
 def test_engine_figures(tmp_path: Path, browser: Browser) -> None:

@@ -109,10 +109,15 @@ double SlaveSync(const AxisParams& p, double position, double expected, SyncMode
   }
 }
 
+// The greatest velocity of a master, in its unit.
+double Fastest(const Context& c, std::uint32_t master) {
+  const OutsideMaster* outside = Outside(c, master);
+  return outside ? outside->velocity : c.machine.params[master].limits.velocity;
+}
+
 // Speeds below this are standstill: there is no slope over the master's position then.
 double Standing(const Context& c, std::uint32_t master) {
-  const OutsideMaster* outside = Outside(c, master);
-  return 1e-6 * (outside ? outside->velocity : c.machine.params[master].limits.velocity);
+  return 1e-6 * Fastest(c, master);
 }
 
 // By place from the beginning, not from when they are in step.
@@ -355,13 +360,22 @@ void EndPhase(const Context& c, FeedbackState feedback, State& s) {
   s.coupling.phase_ticket = 0;
 }
 
-// A cam waits for the only position of its master at which it could get into step, and the master has moved away from
-// it by more than a cycle of the cam since the waiting began (CAM-82).
+// How far a master may move away from the only position at which getting into step begins. Of a gear, which has no
+// cycle: as far as a master that turns round goes.
+double Excursion(const Context& c, const State& s) {
+  const CouplingState& k = s.coupling;
+  if (s.active.kind == RequestKind::kCamIn) return std::abs(CamOf(c, s.active).way());
+  constexpr double kTurningRound = 1;  // s at the greatest velocity
+  return std::max(k.law.master_start_distance, kTurningRound * Fastest(c, k.law.terms[0].master));
+}
+
+// The axis waits for the only position of its master at which it could get into step, and the master has moved away
+// from it by more than it may since the waiting began (CAM-82).
 bool LeavesSyncPosition(const Context& c, const KinematicState& phase, const State& s) {
   const CouplingState& k = s.coupling;
-  if (s.active.kind != RequestKind::kCamIn || k.joining != Joining::kWaiting || k.turn != 0) return false;
+  if (!Joins(s.active.kind) || k.joining != Joining::kWaiting || k.turn != 0) return false;
   const double side = Seen(c, k, k.law.terms[0], phase).position - k.curve_begin;
-  return std::abs(side) - std::abs(k.begin_side) > std::abs(CamOf(c, s.active).way());
+  return std::abs(side) - std::abs(k.begin_side) > Excursion(c, s);
 }
 
 void BreakOff(const Context& c, ErrorId error, State& s) {

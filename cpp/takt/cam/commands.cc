@@ -1,11 +1,39 @@
 #include "takt/cam/commands.h"
 
+#include <algorithm>
+
 #include "takt/core/describe.h"
 
 namespace takt::cam {
 
-std::string_view Text(MakingProblem problem) noexcept {
-  switch (problem) {
+namespace {
+
+// Of a code, which a double holds exactly: the problem, a number up to 2^17 and one up to 2^32.
+constexpr std::uint64_t kOfProblem = 4, kOfExpected = 17, kOfFound = 32;
+
+std::uint64_t Bits(double code, std::uint64_t first, std::uint64_t count) {
+  return code >= 0 && code < 0x1p53 ? (static_cast<std::uint64_t>(code) >> first) & ((std::uint64_t{1} << count) - 1)
+                                    : 0;
+}
+
+}  // namespace
+
+double CodeOf(MakingProblem problem, std::size_t expected, std::size_t found) noexcept {
+  const auto least = [](std::uint64_t value, std::uint64_t bits) {
+    return std::min(value, (std::uint64_t{1} << bits) - 1);
+  };
+  return static_cast<double>(static_cast<std::uint64_t>(problem) | least(expected, kOfExpected) << kOfProblem |
+                             least(found, kOfFound) << (kOfProblem + kOfExpected));
+}
+
+MakingProblem ProblemOf(double code) noexcept {
+  return static_cast<MakingProblem>(Bits(code, 0, kOfProblem));
+}
+
+std::string SentenceOf(double code) {
+  const std::string expected = std::to_string(Bits(code, kOfProblem, kOfExpected));
+  const std::string found = std::to_string(Bits(code, kOfProblem + kOfExpected, kOfFound));
+  switch (ProblemOf(code)) {
     case MakingProblem::kNone:
       return {};
     case MakingProblem::kFaulty:
@@ -16,20 +44,27 @@ std::string_view Text(MakingProblem problem) noexcept {
     case MakingProblem::kBusy:
       return "two cams are being built; wait until one of them is done";
     case MakingProblem::kTooManyPoints:
-      return "expected 2 to 100,000 points, found more";
+      return "expected 2 to 100,000 points, found " + found;
     case MakingProblem::kTooManySegments:
-      return "expected 20,000 segments at most, found more";
+      return "expected 20,000 segments at most, found " + found;
     case MakingProblem::kMixed:
       return "expected points or segments, found both in one cam";
     case MakingProblem::kOutOfOrder:
-      return "first: expected the number of points or segments sent before, found another: a piece of the cam is "
-             "missing or was sent twice";
+      return "first: expected " + expected + ", the number of points or segments sent before, found " + found +
+             ": a piece of the cam is missing or was sent twice";
     case MakingProblem::kIncomplete:
-      return "a piece of the cam was refused or is missing; send the cam again from begin_cam on";
+      return "a piece of the cam was refused; send the cam again from begin_cam on";
+    case MakingProblem::kMissing:
+      return "count: expected " + expected + ", the number of points or segments that have come, found " + found +
+             ": a piece of the cam is missing; send the cam again from begin_cam on";
     case MakingProblem::kNoRoom:
       return "64 cams made at run time are in use; drop one with drop_cam first";
     case MakingProblem::kNotMade:
       return "expected the name of a cam made at run time";
+    case MakingProblem::kUnknown:
+      return "cam, number: expected the name or the number of a cam that the engine has";
+    case MakingProblem::kBehindEnd:
+      return "first: expected less than " + expected + ", the number of points or segments of the cam, found " + found;
   }
   return {};
 }
@@ -77,6 +112,17 @@ void describe(Description<DropCam>& d) {
       "Removes the name of a cam made at run time; its memory is free once nothing runs it. A cam of the machine file "
       "with this name can be used again.");
   d.required<&DropCam::cam>("Name of the cam.");
+}
+
+void describe(Description<ReadCam>& d) {
+  using C = ReadCam;
+  d.about(
+      "Publishes a piece of what a cam of the machine file or made at run time was made from, on channel takt/cams: up "
+      "to 100 points or 20 segments. Done: the value is the number of its points or segments in all. In Python, "
+      "cam(name) of a session and cam_in_force of a cam module gather the pieces.");
+  d.defaulted<&C::cam>("Name of the cam.");
+  d.defaulted<&C::number>("Number of the cam, instead.");
+  d.defaulted<&C::first>("Number of points or segments to leave out.");
 }
 
 void describe(Description<CamBuilt>& d) {

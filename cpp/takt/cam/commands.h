@@ -4,7 +4,7 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
+#include <string>
 
 #include "takt/cam/params.h"
 #include "takt/core/describe_fwd.h"
@@ -43,9 +43,29 @@ struct DropCam {  // made at run time
 };
 
 // The builder's result; given by the engine alone.
+struct ReadCam {                          // publishes a CamPiece; done with the number of points or segments in all
+  Name cam{};                             // empty: by number
+  std::optional<std::uint64_t> number{};  // of the cam
+  std::uint32_t first = 0;                // of its points or segments, from 0
+};
 struct CamBuilt {
   std::uint64_t number = 0;  // of the draft
   bool good = false;
+};
+
+// A piece of what a cam was made from.
+struct CamPiece {
+  static constexpr std::size_t kPoints = 100, kSegments = 20;
+
+  std::uint64_t cycle = 0;
+  std::uint64_t number = 0;  // of the cam
+  Name name, x_unit, y_unit;
+  bool cyclic = false;
+  Interpolation interpolation = Interpolation::kQuintic;
+  std::uint32_t total = 0;  // of points or segments
+  std::uint32_t first = 0;  // of these
+  Few<CamPoint, kPoints> points;
+  Few<CamSegment, kSegments> segments;
 };
 
 // Why a cam was not made: the value of a feedback with ErrorId::kCamMaking.
@@ -58,18 +78,25 @@ enum class MakingProblem : std::uint8_t {
   kTooManySegments,  //
   kMixed,            // points and segments in one draft
   kOutOfOrder,       // `first` is not the number of those in the draft
-  kIncomplete,       // a piece was refused, or `count` is not the number of those in the draft
+  kIncomplete,       // a piece was refused
+  kMissing,          // `count` is not the number of those in the draft
   kNoRoom,           // kMadeCams cams are in use
   kNotMade,          // no cam of this name was made at run time
+  kUnknown,          // no cam has this name or number
+  kBehindEnd,        // `first` is not below the number of points or segments
 };
-// A sentence without a full stop; empty for kNone.
-std::string_view Text(MakingProblem problem) noexcept;
+// What a refused command reports as its value: the problem, and what was expected and found where both are numbers.
+double CodeOf(MakingProblem problem, std::size_t expected = 0, std::size_t found = 0) noexcept;
+MakingProblem ProblemOf(double code) noexcept;
+// For people; empty: nothing is wrong. Not for the cycle.
+std::string SentenceOf(double code);
 
 void describe(Description<BeginCam>&);
 void describe(Description<AddCamPoints>&);
 void describe(Description<AddCamSegments>&);
 void describe(Description<BuildCam>&);
 void describe(Description<DropCam>&);
+void describe(Description<ReadCam>&);
 void describe(Description<CamBuilt>&);
 
 }  // namespace takt::cam

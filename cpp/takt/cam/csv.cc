@@ -16,7 +16,11 @@ constexpr std::size_t kMaxProblemsOfFile = 20;
 }  // namespace
 
 CsvPoints ReadCsv(std::string_view text, std::string_view file_name) {
-  const CsvFormat format{{"x", "y"}, {"v", "a"}, kMaxPoints, "100,000 points"};
+  const CsvFormat format{{"x", "y"},
+                         {"v", "a"},
+                         kMaxPoints,
+                         "100,000 points",
+                         "takt cam FILE --csv cam.csv converts files of other systems"};
   CsvPoints csv;
   ProblemList problems(file_name, kMaxProblemsOfFile);
   ReadCsvTable(text, format, problems, [&](std::span<const CsvCell> cells) {

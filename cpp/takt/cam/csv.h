@@ -18,7 +18,8 @@ struct CsvPoints {
 };
 
 // A table (core/csv.h) with columns x and y, perhaps v and a, and a line for each point. An empty v or a is free;
-// decimals have a point.
+// numbers may have a decimal
+// comma where none stands between the columns. Other files are for takt.cam.Table.from_file (CAM-92).
 CsvPoints ReadCsv(std::string_view text, std::string_view file_name);
 
 // Where a finding about "points[3].x" stands in the file.

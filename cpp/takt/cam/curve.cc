@@ -10,6 +10,10 @@ namespace {
 
 // The sum of two sines of the same frequency.
 void Add(double a, double phase_a, double b, double phase_b, double& amplitude, double& phase) noexcept {
+  if (a == 0 && b == 0) {
+    amplitude = phase = 0;
+    return;
+  }
   const double sine = a * maths::Sin(phase_a) + b * maths::Sin(phase_b);
   const double cosine = a * maths::Cos(phase_a) + b * maths::Cos(phase_b);
   amplitude = maths::Hypot(sine, cosine);

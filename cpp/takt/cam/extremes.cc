@@ -21,6 +21,11 @@ double ReachOf(const Curve& curve, double h) {
   return reach * h + std::abs(curve.amplitude) + std::abs(curve.amplitude2);
 }
 
+// Not less than the largest |curve|.
+double MostOf(const Curve& curve, double h) {
+  return std::abs(curve.c[0]) + ReachOf(curve, h);
+}
+
 void Include(const Curve& curve, double begin, double h, Bounds& bounds) {
   const double reach = ReachOf(curve, h);
   if (curve.c[0] - reach >= bounds.least.value && curve.c[0] + reach <= bounds.greatest.value) return;
@@ -33,7 +38,7 @@ void Include(const Curve& curve, double begin, double h, Bounds& bounds) {
 
 // The largest |curve|, times `factor`.
 void Include(const Curve& curve, double begin, double h, double factor, Extreme& largest) {
-  if (factor * (std::abs(curve.c[0]) + ReachOf(curve, h)) <= largest.value) return;
+  if (factor * MostOf(curve, h) <= largest.value) return;
   for (const double d : ExtremePlaces(curve, h)) {
     const double magnitude = factor * std::abs(curve.At(d));
     if (magnitude > largest.value) largest = {begin + d, magnitude};
@@ -74,8 +79,9 @@ void Include(const Table& table, std::size_t i, double master_velocity, double m
   const Curve y = table.CurveOf(i), dy = Derivative(y), ddy = Derivative(dy);
   Include(y, begin, h, peaks.position);
   Include(dy, begin, h, master_velocity, peaks.velocity);
-  // The sum of two magnitudes is the greater one of the magnitudes of sum and difference.
   const double v2 = master_velocity * master_velocity;
+  if (v2 * MostOf(ddy, h) + master_acceleration * MostOf(dy, h) <= peaks.acceleration.value) return;
+  // The sum of two magnitudes is the greater one of the magnitudes of sum and difference.
   for (const double a : {master_acceleration, -master_acceleration}) {
     Include(Combined(v2, ddy, a, dy), begin, h, 1, peaks.acceleration);
   }

@@ -17,8 +17,12 @@ void Report(const Context& c, Ticket ticket, FeedbackState state, double value =
   c.feedback.Report({ticket, c.cycle, state, false, ErrorId::kNone, value});
 }
 
+void Refuse(const Context& c, Ticket ticket, double code) {
+  c.feedback.Report({ticket, c.cycle, FeedbackState::kError, false, ErrorId::kCamMaking, code});
+}
+
 void Refuse(const Context& c, Ticket ticket, MakingProblem problem) {
-  c.feedback.Report({ticket, c.cycle, FeedbackState::kError, false, ErrorId::kCamMaking, static_cast<double>(problem)});
+  Refuse(c, ticket, CodeOf(problem));
 }
 
 void Finish(const Context& c, Ticket ticket) {
@@ -66,12 +70,15 @@ struct Kind<CamSegment> {
   static constexpr MakingProblem kTooMany = MakingProblem::kTooManySegments;
 };
 
+// The code of what is wrong; 0: nothing.
 template <typename T, typename Other>
-MakingProblem MayAdd(std::span<const T> more, std::optional<std::uint32_t> first, const std::vector<T>& list,
-                     const std::vector<Other>& others) {
-  if (!others.empty()) return MakingProblem::kMixed;
-  if (first && *first != list.size()) return MakingProblem::kOutOfOrder;
-  return list.size() + more.size() > Kind<T>::kMost ? Kind<T>::kTooMany : MakingProblem::kNone;
+double MayAdd(std::span<const T> more, std::optional<std::uint32_t> first, const std::vector<T>& list,
+              const std::vector<Other>& others) {
+  if (!others.empty()) return CodeOf(MakingProblem::kMixed);
+  if (first && *first != list.size()) return CodeOf(MakingProblem::kOutOfOrder, list.size(), *first);
+  const std::size_t count = list.size() + more.size();
+  return CodeOf(count > Kind<T>::kMost ? Kind<T>::kTooMany : MakingProblem::kNone, 0,
+                count > Kind<T>::kMost ? count : 0);
 }
 
 template <typename T, typename Other>
@@ -81,10 +88,10 @@ void Add(const Context& c, Ticket ticket, const Name& cam, std::span<const T> mo
   if (!i) return Refuse(c, ticket, MakingProblem::kNoDraft);
   CamParams& params = c.store.drafts[*i];
   Draft& draft = c.store.state.drafts[*i];
-  const MakingProblem problem = MayAdd(more, first, params.*list, params.*others);
-  if (problem != MakingProblem::kNone) {
+  const double wrong = MayAdd(more, first, params.*list, params.*others);
+  if (wrong != 0) {
     draft.broken = true;
-    return Refuse(c, ticket, problem);
+    return Refuse(c, ticket, wrong);
   }
   (params.*list).insert((params.*list).end(), more.begin(), more.end());  // within the capacity
   draft.count = static_cast<std::uint32_t>((params.*list).size());
@@ -183,9 +190,12 @@ void Apply(const Context& c, Ticket ticket, const BuildCam& command) noexcept {
   const std::optional<std::size_t> i = FindDraft(c.store, command.cam);
   if (!i) return Refuse(c, ticket, MakingProblem::kNoDraft);
   Draft& draft = c.store.state.drafts[*i];
-  if (draft.broken || command.count.value_or(draft.count) != draft.count) {
+  const std::uint32_t has = draft.count, given = command.count.value_or(has);
+  if (draft.broken || given != has) {
+    const bool broken = draft.broken;
     Clear(c.store, *i);
-    return Refuse(c, ticket, MakingProblem::kIncomplete);
+    return broken ? Refuse(c, ticket, MakingProblem::kIncomplete)
+                  : Refuse(c, ticket, CodeOf(MakingProblem::kMissing, has, given));
   }
   if (!HasRoom(c)) return Refuse(c, ticket, MakingProblem::kNoRoom);
   draft.ticket = ticket;
@@ -199,6 +209,35 @@ void Apply(const Context& c, Ticket ticket, const DropCam& command) noexcept {
   if (!index) return Refuse(c, ticket, MakingProblem::kNotMade);
   c.store.tables[*index].Supersede();
   Finish(c, ticket);
+}
+
+void Apply(const Context& c, Ticket ticket, const ReadCam& command) noexcept {
+  const std::vector<Table>& tables = c.store.tables;
+  const auto found = std::ranges::find_if(tables, [&](const Table& table) {
+    return table.size() > 0 && (command.number ? table.number() == *command.number
+                                               : !table.superseded() && table.name() == command.cam.view());
+  });
+  if (found == tables.end()) return Refuse(c, ticket, MakingProblem::kUnknown);
+  // A name may stand for a cam of the machine file and for one that hides it.
+  const Table& table = command.number ? *found : tables[*Find(tables, command.cam.view())];
+  const CamParams& source = table.source();
+  const std::size_t total = source.points.size() + source.segments.size();  // one of them is empty
+  if (command.first >= total) return Refuse(c, ticket, CodeOf(MakingProblem::kBehindEnd, total, command.first));
+  CamPiece piece;
+  piece.cycle = c.cycle;
+  piece.number = table.number();
+  piece.name = Name::Of(source.name);
+  piece.x_unit = Name::Of(source.x_unit);
+  piece.y_unit = Name::Of(source.y_unit);
+  piece.cyclic = source.cyclic;
+  piece.interpolation = source.interpolation;
+  piece.total = static_cast<std::uint32_t>(total);
+  piece.first = command.first;
+  for (std::size_t i = command.first; i < source.points.size() && piece.points.Add(source.points[i]);) ++i;
+  for (std::size_t i = command.first; i < source.segments.size() && piece.segments.Add(source.segments[i]);) ++i;
+  c.store.pieces.TryPush(piece);
+  Report(c, ticket, FeedbackState::kActive);
+  Report(c, ticket, FeedbackState::kDone, static_cast<double>(total));
 }
 
 void Apply(const Context& c, Ticket, const CamBuilt& result) noexcept {

@@ -18,6 +18,7 @@
 #include "takt/core/cycle.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
+#include "takt/core/spsc_queue.h"
 
 namespace takt::cam {
 
@@ -49,6 +50,7 @@ struct Store {
   StoreState state;
   std::array<CamParams, kDrafts> drafts;  // of the state, with capacity for all points and segments
   BuildQueues queues;
+  SpscQueue<CamPiece> pieces{64};  // that were read; what does not fit is lost, and read again
 };
 
 struct Context {
@@ -66,6 +68,7 @@ void Apply(const Context& c, Ticket ticket, const AddCamPoints& command) noexcep
 void Apply(const Context& c, Ticket ticket, const AddCamSegments& command) noexcept;
 void Apply(const Context& c, Ticket ticket, const BuildCam& command) noexcept;
 void Apply(const Context& c, Ticket ticket, const DropCam& command) noexcept;
+void Apply(const Context& c, Ticket ticket, const ReadCam& command) noexcept;
 void Apply(const Context& c, Ticket ticket, const CamBuilt& result) noexcept;
 
 void describe(Description<Draft>&);

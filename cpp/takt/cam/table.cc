@@ -31,9 +31,10 @@ Table::Table(CamParams source, std::span<const double> begins, std::span<const C
     Piece piece;
     piece.x = begins[i];
     std::copy_n(curve.c.begin(), 6, piece.c);
-    const More more{curve.c[6],      curve.c[7],  curve.c[8],       curve.amplitude,
-                    curve.frequency, curve.phase, curve.amplitude2, curve.phase2};
-    if (more.c6 != 0 || more.c7 != 0 || more.c8 != 0 || more.amplitude != 0 || more.amplitude2 != 0) {
+    const bool polynomial = curve.c[6] != 0 || curve.c[7] != 0 || curve.c[8] != 0;
+    if (polynomial || curve.amplitude != 0 || curve.amplitude2 != 0) {
+      const More more{polynomial,      curve.c[6],  curve.c[7],       curve.c[8],  curve.amplitude,
+                      curve.frequency, curve.phase, curve.amplitude2, curve.phase2};
       piece.more = static_cast<std::uint32_t>(more_.size());
       more_.push_back(more);
     }
@@ -75,6 +76,18 @@ std::size_t Table::PieceAt(double x) const noexcept {
   return low;
 }
 
+inline void Table::Add(const More& m, double d, Value& value) noexcept {
+  if (m.polynomial) {
+    const double d2 = d * d, d4 = d2 * d2;
+    value.y += d4 * d2 * (m.c6 + d * (m.c7 + d * m.c8));
+    value.dy += d4 * d * (6 * m.c6 + d * (7 * m.c7 + d * 8 * m.c8));
+    value.ddy += d4 * (30 * m.c6 + d * (42 * m.c7 + d * 56 * m.c8));
+    value.dddy += d2 * d * (120 * m.c6 + d * (210 * m.c7 + d * 336 * m.c8));
+  }
+  if (m.amplitude != 0) AddSine(m.amplitude, m.frequency, m.phase, d, value);
+  if (m.amplitude2 != 0) AddSine(m.amplitude2, 2 * m.frequency, m.phase2, d, value);
+}
+
 Value Table::At(double x) const noexcept {
   if (!(x > begin_)) return first_;
   if (x >= end_) return last_;
@@ -86,16 +99,6 @@ Value Table::At(double x) const noexcept {
               2 * c[2] + d * (6 * c[3] + d * (12 * c[4] + d * 20 * c[5])), 6 * c[3] + d * (24 * c[4] + d * 60 * c[5])};
   if (piece.more != kPlain) Add(more_[piece.more], d, value);
   return value;
-}
-
-void Table::Add(const More& m, double d, Value& value) noexcept {
-  const double d2 = d * d, d4 = d2 * d2;
-  value.y += d4 * d2 * (m.c6 + d * (m.c7 + d * m.c8));
-  value.dy += d4 * d * (6 * m.c6 + d * (7 * m.c7 + d * 8 * m.c8));
-  value.ddy += d4 * (30 * m.c6 + d * (42 * m.c7 + d * 56 * m.c8));
-  value.dddy += d2 * d * (120 * m.c6 + d * (210 * m.c7 + d * 336 * m.c8));
-  if (m.amplitude != 0) AddSine(m.amplitude, m.frequency, m.phase, d, value);
-  if (m.amplitude2 != 0) AddSine(m.amplitude2, 2 * m.frequency, m.phase2, d, value);
 }
 
 Curve Table::CurveOf(std::size_t i) const noexcept {

@@ -63,6 +63,7 @@ class Table {
   };
   // What few laws need.
   struct More {
+    bool polynomial = false;  // of a degree above 5
     double c6 = 0, c7 = 0, c8 = 0;
     double amplitude = 0, frequency = 0, phase = 0;
     double amplitude2 = 0, phase2 = 0;

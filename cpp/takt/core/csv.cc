@@ -65,6 +65,8 @@ class Reader {
     return "the columns " + Joined(format_.required) + perhaps;
   }
 
+  std::string Hint() const { return format_.hint.empty() ? "" : "; " + std::string(format_.hint); }
+
   // Calls `use(index, field, column in the line)`.
   template <typename Use>
   void Split(std::string_view line, Use use) const {
@@ -86,7 +88,7 @@ class Reader {
     Split(line, [&](std::size_t, std::string_view name, std::size_t at) {
       const auto found = static_cast<std::size_t>(std::ranges::find(names_, name) - names_.begin());
       if (found == names_.size()) {
-        Add(at, "expected " + Expected() + ", found " + Quoted(name));
+        Add(at, "expected " + Expected() + ", found " + Quoted(name) + Hint());
       } else if (std::ranges::find(columns_, found) != columns_.end()) {
         Add(at, "expected each column once, found " + Quoted(name) + " again");
       }
@@ -95,7 +97,8 @@ class Reader {
     const auto missing = [&](std::size_t k) { return std::ranges::find(columns_, k) == columns_.end(); };
     for (std::size_t k = 0; k < format_.required.size() && problems_.size() == before; ++k) {
       if (missing(k)) {
-        Add(0, "expected the columns " + Joined(format_.required, " and ") + ", found " + Quoted(Trimmed(line)));
+        Add(0,
+            "expected the columns " + Joined(format_.required, " and ") + ", found " + Quoted(Trimmed(line)) + Hint());
       }
     }
     return problems_.size() == before;
@@ -108,7 +111,7 @@ class Reader {
     }
     std::ranges::fill(cells_, CsvCell{{}, PlaceAt(0)});
     Split(line, [&](std::size_t index, std::string_view field, std::size_t at) {
-      cells_[columns_[index]] = {field, PlaceAt(at)};
+      cells_[columns_[index]] = {field, PlaceAt(at), separator_ != ','};
     });
     take_(cells_);
   }
@@ -134,6 +137,13 @@ void ReadCsvTable(std::string_view text, const CsvFormat& format, ProblemList& p
 
 bool ReadCsvNumber(const CsvCell& cell, std::string_view column, ProblemList& problems, double& value) {
   if (ParseReal(cell.text, value) == NumberError::kNone) return true;
+  // "1.234,5" is refused: which of both is the decimal one differs from country to country.
+  const std::size_t comma = cell.decimal_comma ? cell.text.find(',') : std::string_view::npos;
+  if (comma != std::string_view::npos && cell.text.find('.') == std::string_view::npos) {
+    std::string plain(cell.text);
+    plain[comma] = '.';
+    if (ParseReal(plain, value) == NumberError::kNone) return true;
+  }
   problems.Add(cell.place, {}, "expected a finite number for " + std::string(column) + ", found " + Quoted(cell.text));
   return false;
 }

@@ -167,6 +167,7 @@ const std::vector<Entry>& Entries() {
       Make<MachineCommand, cam::AddCamSegments>(kMachine, "add_cam_segments"),
       Make<MachineCommand, cam::BuildCam>(kMachine, "build_cam"),
       Make<MachineCommand, cam::DropCam>(kMachine, "drop_cam"),
+      Make<MachineCommand, cam::ReadCam>(kMachine, "read_cam"),
       Make<MachineCommand, cam::CamBuilt>(kMachine, "cam_built"),
       Make<axis::Command, axis::Power>(kAxis, "power"),
       Make<axis::Command, axis::Reset>(kAxis, "reset"),

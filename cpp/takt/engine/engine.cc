@@ -519,6 +519,9 @@ SpscQueue<ObjectsSnapshot>& Engine::belt_objects() noexcept {
 SpscQueue<TrackPlaces>& Engine::track_places() noexcept {
   return impl_->track_places;
 }
+SpscQueue<cam::CamPiece>& Engine::cam_pieces() noexcept {
+  return impl_->world.cams.pieces;
+}
 SpscQueue<EngineFigures>& Engine::figure_queue() noexcept {
   return impl_->figure_queue;
 }

@@ -143,6 +143,7 @@ class Engine {
   SpscQueue<SnapshotOf<Outputs>>& snapshots() noexcept;
   SpscQueue<ObjectsSnapshot>& belt_objects() noexcept;
   SpscQueue<TrackPlaces>& track_places() noexcept;
+  SpscQueue<cam::CamPiece>& cam_pieces() noexcept;
   SpscQueue<EngineFigures>& figure_queue() noexcept;
   SpscQueue<JournalEntry>& journal() noexcept;
   SpscQueue<DriveEntry>& drive_journal() noexcept;

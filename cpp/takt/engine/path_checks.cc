@@ -55,8 +55,8 @@ std::string StatorSentence(double value) {
 }
 
 std::string CamSentence(double value) {
-  const std::string_view text = cam::Text(static_cast<cam::MakingProblem>(value));
-  return std::string(text.empty() ? ErrorText(ErrorId::kCamMaking) : text);
+  const std::string sentence = cam::SentenceOf(value);
+  return sentence.empty() ? std::string(ErrorText(ErrorId::kCamMaking)) : sentence;
 }
 
 std::string_view NoWaySentence(double value) {

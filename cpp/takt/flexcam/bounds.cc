@@ -9,7 +9,7 @@ namespace takt::flexcam {
 
 namespace {
 
-// Some 0.1 µs each; ten times that where a piece goes further than those before it.
+// Some 0.05 µs each; ten times that where a piece goes further than those before it.
 constexpr int kPiecesPerCycle = 4;
 
 // Pieces are taken in leaps all over the cam: so the great ones come early, and most of those that follow are seen at

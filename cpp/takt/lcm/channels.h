@@ -17,6 +17,7 @@ inline constexpr char kJournalCommandChannel[] = "takt/journal/command";
 inline constexpr char kJournalHashesChannel[] = "takt/journal/hashes";
 inline constexpr char kJournalDriveChannel[] = "takt/journal/drive";
 
+inline constexpr char kCamChannel[] = "takt/cams";  // pieces of cams that are read back
 // Of the states of a component; `kind` as ComponentKind::name.
 inline std::string StateChannel(std::string_view kind, std::string_view name) {
   return "takt/" + std::string(kind) + "/" + std::string(name);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "takt/conveyor/objects.h"
 #include "takt/core/angle.h"
+#include "takt/core/schema.h"
 #include "takt/engine/path_checks.h"
 
 namespace takt::lcm {
@@ -334,6 +336,28 @@ msgs::belt_objects ToMessage(const engine::ObjectsSnapshot& snapshot, const engi
                          .quality = object.attributes.quality});
   }
   m.count = static_cast<std::int32_t>(m.objects.size());
+  return m;
+}
+
+msgs::cam_piece ToMessage(const cam::CamPiece& piece, const engine::Machine& machine) {
+  const auto text = [](const Name& name) { return std::string(name.view()); };
+  cam::CamParams part;
+  part.name = text(piece.name);
+  part.x_unit = text(piece.x_unit);
+  part.y_unit = text(piece.y_unit);
+  part.cyclic = piece.cyclic;
+  part.interpolation = piece.interpolation;
+  part.points.assign(piece.points.all().begin(), piece.points.all().end());
+  part.segments.assign(piece.segments.all().begin(), piece.segments.all().end());
+  msgs::cam_piece m{};
+  m.cycle = Signed(piece.cycle);
+  m.time_ns = TimeNs(piece.cycle, machine);
+  m.name = part.name;
+  m.number = Signed(piece.number);
+  m.total = static_cast<std::int32_t>(piece.total);
+  m.first = static_cast<std::int32_t>(piece.first);
+  m.count = static_cast<std::int32_t>(part.points.size() + part.segments.size());
+  m.text = ToJson(TypeOf<cam::CamParams>(), &part).dump();
   return m;
 }
 

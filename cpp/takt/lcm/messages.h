@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "takt/cam/commands.h"
 #include "takt/core/feedback.h"
 #include "takt/engine/drives.h"
 #include "takt/engine/machine.h"
@@ -17,6 +18,7 @@
 #include "takt/msgs/axis_state.hpp"
 #include "takt/msgs/belt_objects.hpp"
 #include "takt/msgs/belt_state.hpp"
+#include "takt/msgs/cam_piece.hpp"
 #include "takt/msgs/command.hpp"
 #include "takt/msgs/drive_feedback.hpp"
 #include "takt/msgs/drive_setpoint.hpp"
@@ -47,6 +49,7 @@ msgs::group_state ToMessage(const engine::GroupSnapshot& snapshot, const engine:
 msgs::belt_state ToMessage(const engine::BeltSnapshot& snapshot, const engine::Machine& machine);
 msgs::belt_objects ToMessage(const engine::ObjectsSnapshot& snapshot, const engine::Machine& machine);
 // To the places that came before.
+msgs::cam_piece ToMessage(const cam::CamPiece& piece, const engine::Machine& machine);
 void Add(const engine::TrackPlaces& places, const engine::Machine& machine, msgs::track_shape& shape);
 msgs::pick_place_state ToMessage(const engine::PickPlaceSnapshot& snapshot, const engine::Machine& machine);
 msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine::Machine& machine);

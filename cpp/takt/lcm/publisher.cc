@@ -41,6 +41,7 @@ Publisher::Publisher(engine::Engine& engine, Clients& clients, Outlet* network, 
   engine_channel_.name = kEngineChannel;
   machine_channel_.name = kMachineChannel;
   feedback_channel_.name = kFeedbackChannel;
+  cam_channel_.name = kCamChannel;
   for (const engine::ComponentKind& kind : engine::ComponentKinds()) {
     std::vector<Channel>& channels = state_channels_.emplace_back();
     for (std::size_t i = 0; i < kind.count(engine_.machine()); ++i) {
@@ -95,6 +96,10 @@ bool Publisher::Drain() {
   any |= Take(engine_.belt_objects(), [this](const engine::ObjectsSnapshot& snapshot) {
     auto message = ToMessage(snapshot, engine_.machine());
     ToBoth(object_channels_[snapshot.index], message);
+  });
+  any |= Take(engine_.cam_pieces(), [this](const cam::CamPiece& piece) {
+    auto message = ToMessage(piece, engine_.machine());
+    ToBoth(cam_channel_, message);
   });
   any |= Take(engine_.track_places(), [this](const engine::TrackPlaces& places) { AddPlaces(places); });
   return any | DrainStates(static_cast<engine::PublishedKinds*>(nullptr));

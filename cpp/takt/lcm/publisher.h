@@ -87,7 +87,7 @@ class Publisher {
   std::vector<Channel> shape_channels_;               // by track
   std::vector<msgs::track_shape> shapes_;             // whole ones, for who comes later
   std::vector<msgs::track_shape> coming_;             // of which some places are there
-  Channel engine_channel_, machine_channel_, feedback_channel_;
+  Channel engine_channel_, machine_channel_, feedback_channel_, cam_channel_;
   std::int64_t next_machine_ns_ = 0;
   std::int64_t next_flush_ns_ = 0;  // of the log
   msgs::journal_hashes hashes_{};

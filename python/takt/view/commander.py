@@ -19,7 +19,13 @@ from takt.view.machine import Machine
 
 # By kind of component: verbs with the arguments that a page may give.
 ALLOWED: dict[str, dict[str, frozenset[str]]] = {
-    "machine": {"emergency_stop": frozenset(), "stop_all": frozenset()},
+    "machine": {
+        "emergency_stop": frozenset(),
+        "stop_all": frozenset(),
+        "begin_cam": frozenset({"name", "cyclic", "interpolation", "x_unit", "y_unit"}),
+        "add_cam_points": frozenset({"cam", "first", "points"}),
+        "build_cam": frozenset({"cam", "count"}),
+    },
     "axis": {
         "power": frozenset({"enable"}),
         "reset": frozenset(),
@@ -31,7 +37,10 @@ ALLOWED: dict[str, dict[str, frozenset[str]]] = {
         "power": frozenset({"enable"}),
         "jog": frozenset({*"xyzabc", *(f"a{i}" for i in range(1, 9)), "coordinate_system"}),
     },
-    "flex_cam": {"control": frozenset({"regulator_on", "reset_error", "halt"})},
+    "flex_cam": {
+        "control": frozenset({"regulator_on", "reset_error", "halt"}),
+        "set_cam": frozenset({"slot", "cam"}),
+    },
     "pick_place": {"control": frozenset({"regulator_on", "reset_error", "path_halt"})},
     "mover": {verb: frozenset() for verb in ("enable", "disable", "reset", "halt")},
     "track": {verb: frozenset() for verb in ("enable", "disable", "reset")},

@@ -26,6 +26,8 @@ from takt.view.status import LIVE
 
 CAM_POINTS = 400
 MOST_JOINTS = 4000
+MOST_KNOTS = 60  # of a cam that can be edited
+SLOPE_STEP = 1e-6  # of the largest slope, what rounding leaves
 TRACK_STEP = 10.0  # mm
 
 
@@ -229,7 +231,23 @@ def drawn(table: Any) -> dict[str, Any]:
         "cyclic": table.cyclic,
         "x": _finite(x),
         "curves": [_finite(curve) for curve in table.at(x)],
+        "knots": _knots(table),
     }
+
+
+def _knots(table: Any) -> list[list[float]] | None:
+    """Where the page lets a cam be dragged: [x, y, y', y''] at each joint and at both ends; None: they are too many,
+    or the slope has steps, as that of straight lines between points has."""
+    x = np.unique([table.begin, *table.joints, table.end])
+    if len(x) > MOST_KNOTS:
+        return None
+    y, v, a, _ = (values.copy() for values in table.at(x))
+    if table.cyclic:  # one point of the turn
+        v[-1], a[-1] = v[0], a[0]
+    left = table.at(np.nextafter(x, -np.inf))[1]
+    if np.abs(left - v).max() > SLOPE_STEP * (1 + np.abs(v).max()):
+        return None
+    return [[float(one) for one in knot] for knot in zip(x, y, v, a, strict=True)]
 
 
 def _pose(pose: Mapping[str, float]) -> list[float]:

@@ -7,6 +7,7 @@ says what the numbers are. To the server: JSON texts, see `Request`."""
 from __future__ import annotations
 
 import json
+import math
 import struct
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -19,6 +20,9 @@ from takt.view.machine import Machine
 
 MOST_SIGNALS = 256
 MOST_DETAILS = 16
+MOST_LETTERS = 60  # of a name or a unit
+SIGNS = set("\"'\\{}[]:,#")  # that end or begin something in the text of arguments
+POINTS = 20  # of a cam in one command
 KEYS = dict.fromkeys(("ack", "epoch", "signals", "after", "details", "command", "hold")).keys()
 
 
@@ -91,14 +95,34 @@ def _details(said: Any, machine: Machine) -> tuple[int, ...]:
 def _command(said: Any) -> tuple[str, str, dict[str, Any]]:
     match said:
         case [str(target), str(verb), dict(arguments)]:
-            if all(_is_plain(value) for value in arguments.values()):
+            if all(_is_plain(value) or _are_points(value) for value in arguments.values()):
                 return target, verb, arguments
-    raise RequestError("a command has a target, a verb and arguments that are numbers, switches or words")
+    raise RequestError(
+        "a command has a target, a verb and arguments that are numbers, switches, words or points of a cam"
+    )
 
 
 def _is_plain(value: Any) -> bool:
     """Nothing in it that an argument's text could be ended with."""
-    return type(value) in (bool, int, float) or (isinstance(value, str) and value.isascii() and value.isidentifier())
+    return type(value) in (bool, int, float) or (isinstance(value, str) and _is_word(value))
+
+
+def _is_word(text: str) -> bool:
+    """A name or a unit."""
+    return 0 < len(text) <= MOST_LETTERS and text.isprintable() and not SIGNS & set(text)
+
+
+def _are_points(value: Any) -> bool:
+    return (
+        isinstance(value, list)
+        and len(value) <= POINTS
+        and all(
+            isinstance(point, dict)
+            and point.keys() <= set("xyva")
+            and all(type(number) in (int, float) and math.isfinite(number) for number in point.values())
+            for point in value
+        )
+    )
 
 
 def _pairs(said: Any) -> list[list[Any]]:

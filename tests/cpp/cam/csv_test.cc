@@ -27,6 +27,30 @@ TEST(Csv, ReadsColumnsInAnyOrder) {
   EXPECT_EQ(PlaceInCsv(csv, "points").line, 1);
 }
 
+// CAM-92: decimal commas, where none stands between the columns; other files with a word on what to do.
+TEST(Csv, ReadsDecimalCommas) {
+  for (const char* text : {"x;y;v\n0;-1,25;\n1,5e1;2.5;0,125\n", "x\ty\tv\n0\t-1,25\t\n15\t2,5\t,125\n"}) {
+    const CsvPoints csv = ReadCsv(text, "f.csv");
+    EXPECT_THAT(csv.problems, IsEmpty());
+    ASSERT_EQ(csv.points.size(), 2u);
+    EXPECT_EQ(csv.points[0].y, -1.25);
+    EXPECT_EQ(csv.points[1].x, 15);
+    EXPECT_EQ(csv.points[1].y, 2.5);
+    EXPECT_EQ(csv.points[1].v, 0.125);
+  }
+  for (const char* text : {"x;y\n0;1.234,5\n", "x;y\n0;1,234,5\n", "x;y\n0;,\n"}) {
+    const CsvPoints csv = ReadCsv(text, "f.csv");
+    ASSERT_EQ(csv.problems.size(), 1u) << text;
+    EXPECT_EQ(csv.problems[0].place.line, 2);
+    EXPECT_THAT(csv.problems[0].message, testing::HasSubstr("expected a finite number for y, found"));
+  }
+  EXPECT_EQ(ReadCsv("x,y\n0,1,25\n", "f.csv").problems[0].message, "expected 2 columns, found 3");
+  for (const char* text : {"Master;Slave\n0;1\n", "0;1\n1;2\n", "(dX := 0, dY := 0)"}) {
+    EXPECT_THAT(ReadCsv(text, "f.csv").problems[0].message,
+                testing::EndsWith("; takt cam FILE --csv cam.csv converts files of other systems"));
+  }
+}
+
 // What is written reads back as the very same numbers.
 TEST(Csv, ReadsWhatItWrote) {
   Dice dice(1);

@@ -82,7 +82,7 @@ TEST(Store, NamesStandForTheLastCamAndWhatIsInUseStays) {
         if (event.state == FeedbackState::kDone) {
           ends[name] = step + 1;
         } else {
-          EXPECT_EQ(static_cast<MakingProblem>(event.value), MakingProblem::kNoRoom);
+          EXPECT_EQ(ProblemOf(event.value), MakingProblem::kNoRoom);
         }
       }
     }
@@ -114,7 +114,7 @@ TEST(Store, TwoCamsAreBuiltAtATime) {
   EXPECT_EQ(bench.Tell(BeginCam{.name = Name::Of("a")}).error, ErrorId::kCamMaking);
   AddCamPoints late{.cam = Name::Of("a"), .points = {}};
   late.points.Add({3, 0, {}, {}});
-  EXPECT_EQ(static_cast<MakingProblem>(bench.Tell(late).value), MakingProblem::kNoDraft);
+  EXPECT_EQ(ProblemOf(bench.Tell(late).value), MakingProblem::kNoDraft);
   EXPECT_EQ(bench.Answer().value, 2);
   EXPECT_EQ(bench.Answer().value, 3);
   EXPECT_EQ(bench.store.tables[*Find(bench.store.tables, "a")].end(), 2);
@@ -135,8 +135,8 @@ TEST(Store, TakesTheLargestCams) {
     AddCamPoints more{.cam = Name::Of("long"), .points = {}};
     more.points.Add({1e6, 0, {}, {}});
     if (round == 1) {
-      EXPECT_EQ(static_cast<MakingProblem>(bench.Tell(more).value), MakingProblem::kTooManyPoints);
-      EXPECT_EQ(static_cast<MakingProblem>(bench.Tell(BuildCam{Name::Of("long")}).value), MakingProblem::kIncomplete);
+      EXPECT_EQ(ProblemOf(bench.Tell(more).value), MakingProblem::kTooManyPoints);
+      EXPECT_EQ(ProblemOf(bench.Tell(BuildCam{Name::Of("long")}).value), MakingProblem::kIncomplete);
       continue;
     }
     EXPECT_EQ(bench.Tell(BuildCam{Name::Of("long"), std::uint32_t{kMaxPoints}}).state, FeedbackState::kActive);

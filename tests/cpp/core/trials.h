@@ -20,6 +20,12 @@ inline int Trials(int usual, int longer = 100) {
   return kSanitized ? std::max(1, trials / 5) : trials;
 }
 
+// The first of them; TAKT_FIRST_TRIAL in the environment, so that a long run goes on where another one ended.
+inline int FirstTrial() {
+  const char* first = std::getenv("TAKT_FIRST_TRIAL");
+  return first ? std::atoi(first) : 0;
+}
+
 // How far apart the instants are that a test goes through: five times as far under a sanitizer.
 template <typename T>
 constexpr T Stride(T usual) {

@@ -1,6 +1,7 @@
 // Cams with the places of master and slave: of each cam module the one that runs and the one that is to run next, then
 // those that no module runs.
 
+import { Edit } from "./cam_edit.js";
 import { byId, css, el, fitCanvas, number, ticks, tone } from "./dom.js";
 import { put } from "./rows.js";
 
@@ -8,11 +9,14 @@ const SLOTS = ["ip08_cam_table1", "ip09_cam_table2", "ip10_cam_table3", "ip11_ca
 const CURVES = ["position", "velocity", "acceleration", "jerk"];
 const POWERS = ["", "", "²", "³"];
 const HEIGHTS = [0.43, 0.19, 0.19, 0.19];
-const DASHES = [6, 4]; // of the next cam
+const DASHES = [6, 4]; // of the next cam, and of one that is edited
+const NEAR = 14; // pixels: what is taken by the pointer
 
 export class Cams {
-  constructor(model) {
+  // commands: where cams can be edited; null: nowhere.
+  constructor(model, commands = null) {
     this.model = model;
+    this.commands = commands;
     this.cards = [];
   }
 
@@ -31,7 +35,74 @@ export class Cams {
     const title = el("b", { textContent: of.name });
     const picture = el("div", { className: "picture" }, canvas);
     const node = el("section", { className: "card cam" }, el("header", {}, title, words, place), places, picture);
-    return { of, canvas, words, place, places, title, picture, node, module: "start" in of };
+    const card = { of, canvas, words, place, places, title, picture, node, module: "start" in of, edit: null };
+    if (card.module && this.commands && this.model.machine.commands) this.editor(card);
+    return card;
+  }
+
+  editor(card) {
+    const button = (textContent, title, onclick) => el("button", { textContent, title, onclick });
+    const begin = button("Edit", "", () => {
+      const cam = this.cam(this.numbersOf(card.of).running);
+      if (cam?.knots) this.show(card, new Edit(cam));
+    });
+    const give = button("Put into force", "From the end of the cam that runs", () => this.give(card));
+    const cancel = button("Cancel", "", () => this.show(card, null));
+    card.buttons = { begin, give, cancel };
+    card.node.append(el("footer", {}, begin, give, cancel));
+    this.show(card, null);
+    const { canvas } = card;
+    canvas.onpointerdown = (event) => {
+      const { edit, view } = card;
+      if (!edit || edit.waits || !view) return;
+      const far = edit.knots.map(([x, y]) => Math.hypot(view.across(x) - event.offsetX, view.down(y) - event.offsetY));
+      const nearest = far.indexOf(Math.min(...far));
+      if (far[nearest] > NEAR) return;
+      edit.dragged = nearest;
+      edit.view = view; // the scale stays while it is dragged
+      canvas.setPointerCapture(event.pointerId);
+    };
+    canvas.onpointermove = (event) => {
+      const { edit } = card;
+      if (edit && edit.dragged >= 0) edit.drag(edit.dragged, edit.view.x(event.offsetX), edit.view.y(event.offsetY));
+    };
+    canvas.onpointerup = canvas.onpointercancel = () => {
+      if (card.edit) Object.assign(card.edit, { dragged: -1, view: null });
+    };
+  }
+
+  // Whether the cam that runs can be edited, and why not.
+  allow(card, cam) {
+    const why = !cam ? "no cam runs whose curve the page knows" : cam.knots ? "" : "its slope has steps, or it has more than 60 joints";
+    card.buttons.begin.disabled = why !== "";
+    card.buttons.begin.title = why || "Drag the joints of the cam that runs";
+    card.buttons.give.disabled = card.edit?.waits ?? false;
+  }
+
+  show(card, edit) {
+    card.edit = edit;
+    card.canvas.classList.toggle("edited", edit !== null);
+    card.buttons.begin.hidden = edit !== null;
+    card.buttons.give.hidden = card.buttons.cancel.hidden = edit === null;
+  }
+
+  // Sends the edited cam; once the engine has it, it goes into the slot that runs.
+  give(card) {
+    const { edit } = card;
+    if (edit.waits) return;
+    if (edit.commands().every(([verb, given]) => this.commands.give("machine", verb, given))) edit.sent(this.latest());
+  }
+
+  // The greatest number of a cam.
+  latest() {
+    return Math.max(this.model.machine.cams.length, ...this.model.madeCams.keys());
+  }
+
+  putIntoForce(card) {
+    const { edit } = card;
+    if (!edit.newer || ![...this.model.madeCams.values()].some((cam) => cam.name === edit.name && cam.number > edit.newer)) return;
+    const slot = this.model.liveOf(card.of, "cam_table");
+    if (this.commands.give(card.of.name, "set_cam", { slot, cam: edit.name })) this.show(card, null);
   }
 
   // The number of the cam in a slot: from 1 in the order of the machine file, beyond it made at run time; 0: none.
@@ -73,7 +144,9 @@ export class Cams {
         put(card.place, cam ? `x ${number(x)} ${cam.units[0]}   y ${number(y)} ${cam.units[1]}` : "");
         put(card.places, `master ${this.at(card.of, "mp01_set_master_position")}   slave ${this.at(card.of, "mp02_set_slave_position")}, measured ${this.at(card.of, "actual_slave_position")}`);
         const measured = y + (live("actual_slave_position") - live("mp02_set_slave_position")) / live("set_scaling_slave");
-        this.curves(card, cam, x, y, next, measured);
+        if (card.buttons) this.allow(card, cam);
+        if (card.edit) this.putIntoForce(card);
+        this.curves(card, cam, x, y, card.edit?.cam ?? next, measured);
       } else {
         card.node.hidden = busy.has(card.of);
         if (card.node.hidden) continue;
@@ -103,11 +176,13 @@ export class Cams {
     let top = 6;
     CURVES.forEach((name, i) => {
       const space = (height - bottom - 6) * HEIGHTS[i] - 8;
-      const [low, high] = this.scale(both, i);
-      const down = (v) => top + space * (1 - (v - low) / (high - low));
+      const [low, high] = i === 0 && card.edit?.view ? card.edit.view.range : this.scale(both, i);
+      const above = top;
+      const down = (v) => above + space * (1 - (v - low) / (high - low));
       this.frame(c, cam, i, name, { top, space, left, right, width, low, high, down });
       if (next) this.curve(c, next, i, across, down, css("--soft"), DASHES);
       this.curve(c, cam, i, across, down, tone(this.model.machine.palette[i]), []);
+      if (i === 0 && card.edit) this.handles(card, c, across, down, { left, right, width, from, to, top, space, low, high });
       if (Number.isFinite(x)) this.dots(c, cam, i, across(x), x, y, measured, { low, high, down });
       top += space + 8;
     });
@@ -143,6 +218,24 @@ export class Cams {
     const [low, high] = [Math.min(...all.map(([least]) => least)), Math.max(...all.map(([, most]) => most))];
     const room = 0.08 * (high - low || 1);
     return [low - room, high + room];
+  }
+
+  // The joints that can be dragged, and how pixels and values belong together.
+  handles(card, c, across, down, { left, right, width, from, to, top, space, low, high }) {
+    card.view = {
+      across, down, range: [low, high],
+      x: (px) => from + ((px - left) / (width - left - right)) * (to - from),
+      y: (py) => low + (1 - (py - top) / space) * (high - low),
+    };
+    c.lineWidth = 1.5;
+    c.strokeStyle = css("--accent");
+    c.fillStyle = css("--card");
+    for (const [x, y] of card.edit.knots) {
+      c.beginPath();
+      c.rect(across(x) - 4.5, down(y) - 4.5, 9, 9);
+      c.fill();
+      c.stroke();
+    }
   }
 
   frame(c, cam, i, name, { top, space, left, right, width, low, high, down: y }) {
