@@ -328,7 +328,7 @@ class Session(SessionWithCams):
 
     def move_on_surface(
         self,
-        targets: Mapping[str, tuple[float, float]] | Sequence[tuple[float, float]],
+        targets: Mapping[Any, Any] | Sequence[tuple[float, float]],
         *,
         movers: Iterable[str] | None = None,
         may_move: bool | Iterable[str] = False,
@@ -339,7 +339,8 @@ class Session(SessionWithCams):
         of those that were moved took, in s. RoutingError, before anything moves, if there is no plan
         (takt.plan_surface).
 
-        targets: by mover, X and Y in mm. Or a list of them, each for any of `movers` (all that can move).
+        targets: by mover, X and Y in mm; by several, as a tuple, a list of places for any of them. Or a list alone, each
+            for any of `movers` (all that can move).
         may_move: movers without a target that may be moved out of the way, or all of them (True).
         timeout: s of engine time for all of it.
         options: as those of takt.plan_surface: environment, pitch, origin, effort, seed, velocity, acceleration, jerk.

@@ -8,14 +8,14 @@ cannot be overtaken, and the guard beneath keeps both apart. Times do not matter
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from takt.errors import TimeoutError
 from takt.feedback import DEFAULT_TIMEOUT_S, QUEUE_FULL, Feedback
 from takt.routing.raster import NEAR, Point
 from takt.routing.streets import RoutingError
-from takt.routing.surface import STANDS, SurfacePlan, plan_surface
+from takt.routing.surface import STANDS, SurfacePlan, Targets, plan_surface
 
 if TYPE_CHECKING:
     from takt.mover import Mover
@@ -87,6 +87,11 @@ def _direction(a: Point, b: Point) -> tuple[int, int]:
     return (int(math.copysign(1, dx)), 0) if abs(dx) > abs(dy) else (0, int(math.copysign(1, dy)))
 
 
+def dynamics_of(plan: SurfacePlan) -> dict[str, Any]:
+    """What all commands of a plan have in common."""
+    return {**plan.dynamics, "deceleration": plan.dynamics["acceleration"], "reference": plan.raster.reference}
+
+
 class SurfaceJourney:
     """A plan that is carried out. `scan` in every cycle, or `wait`.
 
@@ -101,7 +106,7 @@ class SurfaceJourney:
         self._all = [_Traveller(i, session.mover(name), plan) for i, name in enumerate(plan.names)]
         self._left = [one for one in self._all if one.directions]
         self._interrupted = False
-        self._dynamics = {**plan.dynamics, "deceleration": plan.dynamics["acceleration"]}
+        self._dynamics = dynamics_of(plan)
         for one in self._left:
             one.check_on_way()
 
@@ -196,7 +201,7 @@ class SurfaceJourney:
 
 def move_on_surface(
     session: Session,
-    targets: Mapping[str, Point] | Sequence[Point],
+    targets: Targets,
     *,
     movers: Iterable[str] | None,
     may_move: bool | Iterable[str],
