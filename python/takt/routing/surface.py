@@ -14,13 +14,13 @@ from takt import _core
 from takt.counted import counted
 from takt.routing.raster import Point, Raster, make_raster
 from takt.routing.streets import RoutingError
+from takt.routing.traveller import STANDS
 
 if TYPE_CHECKING:
     from takt.mover import Mover
     from takt.session import Session
 
 EFFORT = 3_000  # states that improvements look at
-STANDS = 1e-3  # mm/s
 DYNAMICS = ("velocity", "acceleration", "jerk")
 
 
@@ -201,6 +201,10 @@ def free_of(session: Session, may_move: bool | Iterable[str]) -> list[str]:
     if may_move is True:
         return [name for name, mover in session.movers.items() if _cannot_move(session, mover) is None]
     return list(may_move or ())
+
+
+def can_move(mover: Mover) -> bool:
+    return _cannot_move(mover.session, mover) is None
 
 
 def check_can_move(mover: Mover) -> None:
