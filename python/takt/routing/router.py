@@ -40,7 +40,8 @@ if TYPE_CHECKING:
     from takt.mover import Mover
     from takt.session import Session
 
-CYCLES = 2  # until a command is carried out, in process
+CYCLES = 8  # until a command is carried out, in process, and until movers are looked at again
+MOVERS_A_CYCLE = 16  # that are looked at: with more, not in every cycle
 ANSWER_S = 0.1  # over LCM: until a mover does what it is told by what it was seen to do
 
 
@@ -213,7 +214,10 @@ class SurfaceRouter:
     def scan(self) -> None:
         """Lets movers go on whose turn it is."""
         now = self.session.now
-        passed, self._seen_s = now - self._seen_s, now
+        passed = now - self._seen_s
+        if passed < min(len(self._on_way) // MOVERS_A_CYCLE, CYCLES - 2) * self.session.period:
+            return
+        self._seen_s = now
         if not self._on_way and not self._back:
             return
         failed: dict[str, str] = {}

@@ -14,14 +14,13 @@ from takt import _core
 from takt.counted import counted
 from takt.routing.raster import Point, Raster, make_raster
 from takt.routing.streets import RoutingError
-from takt.routing.traveller import STANDS
+from takt.routing.traveller import DYNAMICS, STANDS
 
 if TYPE_CHECKING:
     from takt.mover import Mover
     from takt.session import Session
 
 EFFORT = 3_000  # states that improvements look at
-DYNAMICS = ("velocity", "acceleration", "jerk")
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from takt.feedback import QUEUE_FULL, Feedback
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from takt.mover import Mover
 
 STANDS = 1e-3  # mm/s
+DYNAMICS = ("velocity", "acceleration", "jerk")
 Before = tuple["Traveller", int]  # a visit of another mover
 
 
@@ -103,7 +105,7 @@ class Traveller:
         last = first
         while last < self.granted and self.directions[last] == self.directions[first]:
             last += 1
-        if last <= self.passed:
+        if last <= self.passed or (self.rests and self._would_run_up(first, dynamics)):
             return
         if self.points[last] == self.told and not self.rests:
             self.sent = last  # it goes there already
@@ -112,8 +114,21 @@ class Traveller:
         self.feedback = self.mover.move_to_position(x=x, y=y, use_orientation=False, **dynamics)
         self.sent, self.told = last, (x, y)
 
+    def _would_run_up(self, first: int, dynamics: Mapping[str, Any]) -> bool:
+        """It rests behind a mover that goes the same way, and would have to brake for it. The guard lets it go no
+        further than it could stop behind where that is now: so it starts later by the time that takes at full speed."""
+        before = self.before[first + 1]
+        if before is None or before[0] is self or before[0].passed > before[1]:
+            return False
+        leader, (dx, dy) = before[0].mover, self.directions[first]
+        ahead = (leader.x - self.mover.x) * dx + (leader.y - self.mover.y) * dy
+        needed = math.dist(self.points[first], self.points[first + 1]) + _lead(**{k: dynamics[k] for k in DYNAMICS})
+        return ahead < needed
+
     def fault(self) -> str | None:
         """Why it does not go its way any more."""
+        if self.is_told:
+            return None  # else that would have ended
         if self.mover.state.value != "Enabled":
             return f"mover {self.mover.name} is {self.mover.state.value} on its way"
         feedback = self.feedback
@@ -157,6 +172,16 @@ class Traveller:
         while visit < self.sent and math.dist(self.points[self.passed], self.points[visit]) < needed:
             visit += 1
         return visit
+
+
+@cache
+def _lead(velocity: float, acceleration: float, jerk: float) -> float:
+    """mm that a leader goes from rest in the time that it takes to brake from this velocity, on average."""
+    time = 1.05 * ((velocity / acceleration + acceleration / jerk) / 2 + acceleration / jerk)  # it may speed up yet
+    ramp = acceleration / jerk
+    if time < ramp:
+        return jerk * time**3 / 6
+    return min(acceleration * ((time - ramp / 2) ** 2 / 2 + ramp**2 / 24), velocity * time)
 
 
 def _direction(a: Point, b: Point) -> tuple[int, int]:
