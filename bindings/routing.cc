@@ -29,9 +29,8 @@ void Check(const routing::SurfaceProblem& problem) {
   require(problem.pitch > 0 && problem.dynamics.velocity > 0 && problem.dynamics.acceleration > 0 &&
               problem.dynamics.jerk > 0,
           "expected a pitch and dynamics above 0");
-  require(problem.interchangeable ? problem.targets.size() <= problem.starts.size()
-                                  : problem.targets.size() == problem.starts.size(),
-          "expected a target for each mover, or none; of interchangeable ones no more than movers");
+  require(problem.targets.size() == problem.starts.size(), "expected a target for each mover, or none");
+  require(problem.pools.empty() || problem.pools.size() == problem.starts.size(), "expected a pool for each mover");
   const auto check = [&](const std::vector<PlaceIndex>& places, bool may_be_none) {
     std::vector<bool> taken(blocked.size(), false);
     for (const PlaceIndex place : places) {
@@ -43,12 +42,12 @@ void Check(const routing::SurfaceProblem& problem) {
     }
   };
   check(problem.starts, false);
-  check(problem.targets, !problem.interchangeable);
+  check(problem.targets, true);
 }
 
 routing::SurfacePlan Plan(int width, int height, double pitch, double velocity, double acceleration, double jerk,
                           std::vector<bool> blocked, std::vector<PlaceIndex> starts, std::vector<PlaceIndex> targets,
-                          bool interchangeable, std::int64_t effort, std::uint64_t seed) {
+                          std::vector<routing::PoolIndex> pools, std::int64_t effort, std::uint64_t seed) {
   const routing::SurfaceProblem problem{.width = width,
                                         .height = height,
                                         .pitch = pitch,
@@ -56,7 +55,7 @@ routing::SurfacePlan Plan(int width, int height, double pitch, double velocity, 
                                         .blocked = std::move(blocked),
                                         .starts = std::move(starts),
                                         .targets = std::move(targets),
-                                        .interchangeable = interchangeable,
+                                        .pools = std::move(pools),
                                         .effort = effort,
                                         .seed = seed};
   Check(problem);
@@ -115,7 +114,7 @@ void BindRouting(py::module_& m) {
       .def_property_readonly("visits", &VisitsOf, "by mover: place, entry, who before, which of its visits");
   m.def("plan_surface", &Plan, py::kw_only(), py::arg("width"), py::arg("height"), py::arg("pitch"),
         py::arg("velocity"), py::arg("acceleration"), py::arg("jerk"), py::arg("blocked"), py::arg("starts"),
-        py::arg("targets"), py::arg("interchangeable"), py::arg("effort"), py::arg("seed"));
+        py::arg("targets"), py::arg("pools"), py::arg("effort"), py::arg("seed"));
   m.def(
       "run_duration",
       [](double length, double velocity, double acceleration, double jerk) {

@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
     from takt.forecast import Forecast
+    from takt.routing.router import SurfaceOrder, SurfaceRouter
 
 Program = Callable[[], object]
 P = TypeVar("P", bound=Program)
@@ -119,6 +120,7 @@ class Session(SessionWithCams):
         self._environments = {name: c for name, c in self._components.items() if isinstance(c, Environment)}
         self._parts = {name: c for name, c in self._components.items() if isinstance(c, Part)}
         self._programs: list[Program] = []
+        self._routers: dict[int, SurfaceRouter] = {}  # by coordinate system
         self._scanning = False
         self._recorders: list[Recorder] = []
         self._refused: deque[Feedback] = deque(maxlen=REFUSED)
@@ -328,7 +330,7 @@ class Session(SessionWithCams):
 
     def move_on_surface(
         self,
-        targets: Mapping[str, tuple[float, float]] | Sequence[tuple[float, float]],
+        targets: Mapping[Any, Any] | Sequence[tuple[float, float]],
         *,
         movers: Iterable[str] | None = None,
         may_move: bool | Iterable[str] = False,
@@ -339,7 +341,8 @@ class Session(SessionWithCams):
         of those that were moved took, in s. RoutingError, before anything moves, if there is no plan
         (takt.plan_surface).
 
-        targets: by mover, X and Y in mm. Or a list of them, each for any of `movers` (all that can move).
+        targets: by mover, X and Y in mm; by several, as a tuple, a list of places for any of them. Or a list alone,
+            each for any of `movers` (all that can move).
         may_move: movers without a target that may be moved out of the way, or all of them (True).
         timeout: s of engine time for all of it.
         options: as those of takt.plan_surface: environment, pitch, origin, effort, seed, velocity, acceleration, jerk.
@@ -348,6 +351,41 @@ class Session(SessionWithCams):
 
         self._check_open()
         return move_on_surface(self, targets, movers=movers, may_move=may_move, timeout=timeout, **options)
+
+    def route(
+        self,
+        targets: Mapping[Any, Any] | Sequence[tuple[float, float]],
+        *,
+        movers: Iterable[str] | None = None,
+        may_move: bool | Iterable[str] = False,
+        **options: Any,
+    ) -> SurfaceOrder:
+        """Sends movers over the free surface to their targets, and returns at once: `wait()` of the order lets engine
+        time pass until they are there. Given while others are on their way, routes are planned anew for all of them
+        from where they are; a mover that is on its way already goes to its new target instead.
+
+        targets, movers, may_move: as those of move_on_surface.
+        options: as those of takt.plan_surface, the same for all movers that are on their way at one time.
+
+        Raises RoutingError if there is no plan; then all goes on as before.
+        """
+        from takt.routing.router import router_for
+
+        self._check_open()
+        router = router_for(self, targets, movers, options)
+        return router.route(targets, movers=movers, may_move=may_move)
+
+    def route_any(
+        self,
+        points: Sequence[tuple[float, float]],
+        *,
+        movers: Iterable[str] | None = None,
+        may_move: bool | Iterable[str] = False,
+        **options: Any,
+    ) -> SurfaceOrder:
+        """Sends any of these movers to any of these places, X and Y in mm, as `route` does. Movers: those that can move
+        and are not on their way, unless they are given."""
+        return self.route(list(points), movers=movers, may_move=may_move, **options)
 
     # --- time ---
 

@@ -88,7 +88,7 @@ def demo(*arguments: str | Path) -> Iterator[Demo]:
 
 
 def test_the_ready_machines_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
-    assert {"one_axis", "six_axes", "flying_saw", "pick_cell", "planar_line"} <= set(NAMES)
+    assert {"one_axis", "six_axes", "flying_saw", "pick_cell", "planar_line", "planar_sorter"} <= set(NAMES)
     assert main(["demo"]) == 0
     rows = {line.split()[0]: line for line in capsys.readouterr().out.splitlines() if line.strip()}
     for one in ready_machines():

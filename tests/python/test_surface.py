@@ -64,7 +64,9 @@ class Watch:
 
     def look(self) -> None:
         x, y = (np.array([getattr(m, of) for m in self.movers]) for of in "xy")
+        level = np.array([m.coordinate_system for m in self.movers])
         near = np.maximum(np.abs(x[:, None] - x), np.abs(y[:, None] - y)) < SIDE - 1e-6
+        near &= level[:, None] == level
         for i, k in zip(*np.nonzero(np.triu(near, 1)), strict=True):
             self.overlaps.add((self.movers[i].name, self.movers[k].name))
 
@@ -202,6 +204,76 @@ def test_legs_are_as_the_engine_moves() -> None:
     journey = check(engine, plan)
     assert journey.duration_s == pytest.approx(plan.duration_s, abs=0.01)
     assert "a: to (660, 540) in 2 legs" in str(plan)
+
+
+SHUTTLE = f"""
+name: hall
+axes: []
+coordinate_systems: [{{name: upper}}, {{name: lower}}]
+parts:
+  - {{name: left, columns: 2, rows: 2, positions: [{{coordinate_system: upper}}]}}
+  - {{name: below, columns: 2, rows: 2, positions: [{{coordinate_system: lower}}]}}
+  - name: shuttle
+    columns: 1
+    rows: 2
+    positions: [{{coordinate_system: upper, x: 480}}, {{coordinate_system: lower, x: 480}}]
+    travel_time_s: 0.2
+movers:
+  - {{name: a, reference: left, initial: {{x: 60, y: 60}}, {XY}}}
+  - {{name: b, reference: shuttle, initial: {{x: 60, y: 60}}, {XY}}}
+  - {{name: c, reference: left, initial: {{x: 420, y: 60}}, {XY}}}
+  - {{name: d, reference: below, initial: {{x: 60, y: 60}}, {XY}}}
+"""
+
+
+def hall() -> Engine:
+    engine = Engine(SHUTTLE)
+    for feedback in [mover.enable() for mover in engine.movers.values()]:
+        feedback.wait()
+    return engine
+
+
+def test_parts_are_the_surface_as_they_are_now() -> None:
+    """PL-72: obstacles and parts. Places keep their numbers while parts come and go."""
+    engine = hall()
+    plan = takt.plan_surface(engine, {"a": (540.0, 60.0), "b": (60.0, 60.0)}, may_move=["c"])
+    assert (plan.raster.width, plan.raster.height, plan.raster.reference) == (6, 4, "upper")
+    check(engine, plan)
+    assert engine.part("shuttle").mover_count == 1
+    engine.part("shuttle").activate_position(index=2).wait()
+    again = takt.plan_surface(engine, {"b": (180.0, 180.0)})
+    assert (again.raster.width, again.raster.height) == (6, 4)
+    assert sum(again.raster.free) == 16
+    with pytest.raises(takt.RoutingError, match=r"the target of mover b at \(540, 60\) is not on the surface"):
+        takt.plan_surface(engine, {"b": (540.0, 60.0)})
+    with pytest.raises(takt.RoutingError, match="mover a is in lower and mover b is in upper: routes"):
+        takt.plan_surface(engine, {"a": (60.0, 60.0), "b": (180.0, 60.0)})
+    with pytest.raises(takt.RoutingError, match="environment floor: where there are parts, they are the surface"):
+        takt.plan_surface(engine, {"b": (180.0, 60.0)}, environment="floor")
+    engine.move_on_surface({"a": (180.0, 60.0)}, may_move=True)  # below
+    assert (engine.mover("a").coordinate_system, engine.mover("a").x) == (2, pytest.approx(180))
+
+
+def test_targets_of_several_kinds() -> None:
+    """PL-72: any of some movers to any of some places, and others to places of their own, in one plan."""
+    starts, _ = random_world(4, 14, 3)
+    engine = engine_of(starts, square(4))
+    names = list(starts)
+    kinds = {tuple(names[:5]): [at((0, y)) for y in range(5)], tuple(names[5:10]): [at((7, y)) for y in range(4)]}
+    plan = takt.plan_surface(engine, {**kinds, names[10]: at((3, 3))}, may_move=True)
+    for movers, places in kinds.items():
+        assert sorted(plan.targets[name] for name in movers if plan.targets.get(name) in places) == sorted(places)
+    assert plan.targets[names[10]] == at((3, 3))
+    check(engine, plan)
+    cases: list[tuple[object, str]] = [
+        ({(names[0],): [at((0, 0)), at((1, 0))]}, "2 targets for 1 mover: m0"),
+        ({(names[0], names[1]): [at((0, 0))], names[1]: at((1, 0))}, "mover m1 has more than one target"),
+        ({(names[0], names[1]): [at((9, 0))]}, "target 1 of movers m0, m1 at .* is not on the surface"),
+        ({(names[0], names[1]): 7}, "the targets of movers m0, m1 are a list of X and Y in mm, not 7"),
+    ]
+    for targets, sentence in cases:
+        with pytest.raises(takt.RoutingError, match=sentence):
+            takt.plan_surface(engine, targets)  # type: ignore[arg-type]
 
 
 def test_over_lcm(tmp_path: Path) -> None:

@@ -186,9 +186,10 @@ class Improver {
       old_targets.push_back(At(now_.targets, i));
       old_legs.push_back(At(now_.legs, i));
     }
-    if (how_.interchangeable && movers.size() > 1 && random_.Below(2) == 0) {
+    if (!how_.pools.empty() && movers.size() > 1 && random_.Below(2) == 0) {
       const MoverIndex a = movers[0], b = movers[1 + random_.Below(movers.size() - 1)];
-      if (At(task_.targets, a) != kNone && At(task_.targets, b) != kNone) {
+      const bool exchangeable = At(how_.pools, a) != kNone && At(how_.pools, a) == At(how_.pools, b);
+      if (exchangeable && At(task_.targets, a) != kNone && At(task_.targets, b) != kNone) {
         std::swap(At(now_.targets, a), At(now_.targets, b));
       }
     }

@@ -44,9 +44,9 @@ std::optional<Plan> PlanInTurn(const Grid& grid, const Task& task, Alone& alone,
 double SumOf(const Grid& grid, const Plan& plan);
 
 struct Improving {
-  std::int64_t effort = 0;       // states
-  std::uint64_t seed = 0;        //
-  bool interchangeable = false;  // targets may be exchanged
+  std::int64_t effort = 0;            // states
+  std::uint64_t seed = 0;             //
+  std::vector<std::int32_t> pools{};  // by mover: within one, targets may be exchanged; kNone: its own. Empty: all
 };
 // Requires: the plan is one of the task. Returns one that is not worse.
 Plan Improve(const Grid& grid, const Task& task, Alone& alone, Plan plan, const Improving& how);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -20,20 +21,28 @@ constexpr std::int64_t kMoversPerSeed = 400;  // ... of 8 seeds: with more mover
 constexpr int kTurns = 6;                     // tries of prioritised planning
 constexpr std::int64_t kTurnStates = 4'000;   // states that those may take
 
-// Which mover takes which target, by the times alone. Returns the sum of these; infinite: not all targets are in reach.
-double AssignTargets(const std::vector<PlaceIndex>& targets, Alone& alone, Task& task) {
+// Which mover of a pool takes which of its targets, by the times alone. Returns a mover that reaches none; kNone: all
+// do.
+MoverIndex AssignTargets(PoolIndex pool, const std::vector<PoolIndex>& pools, Alone& alone, Task& task) {
+  std::vector<MoverIndex> members;
+  std::vector<PlaceIndex> targets;
+  for (std::size_t i = 0; i < pools.size(); ++i) {
+    if (pools[i] != pool) continue;
+    members.push_back(static_cast<MoverIndex>(i));
+    if (task.targets[i] != kNone) targets.push_back(std::exchange(task.targets[i], kNone));
+  }
   std::vector<std::vector<double>> costs(targets.size());
   for (std::size_t k = 0; k < targets.size(); ++k) {
-    for (const PlaceIndex start : task.starts) costs[k].push_back(alone(start, targets[k]));
+    for (const MoverIndex mover : members) costs[k].push_back(alone(At(task.starts, mover), targets[k]));
   }
-  task.targets.assign(task.starts.size(), kNone);
-  const std::vector<std::size_t> movers = Assign(costs);
-  double sum = 0;
+  const std::vector<std::size_t> taken_by = Assign(costs);
+  MoverIndex unable = kNone;
   for (std::size_t k = 0; k < targets.size(); ++k) {
-    task.targets[movers[k]] = targets[k];
-    sum += costs[k][movers[k]];
+    const MoverIndex mover = members[taken_by[k]];
+    At(task.targets, mover) = targets[k];
+    if (costs[k][taken_by[k]] == kForever) unable = mover;
   }
-  return sum;
+  return unable;
 }
 
 void MakeVisits(const Grid& grid, const SurfaceProblem& problem, SurfacePlan& plan) {
@@ -75,16 +84,18 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
   Alone alone(grid);
   SurfacePlan result;
   Task task{.starts = problem.starts, .targets = problem.targets};
-  if (problem.interchangeable) {
-    result.lower_bound = AssignTargets(problem.targets, alone, task);
-    if (result.lower_bound == kForever) return {.outcome = Outcome::kUnreachable};
-  } else {
-    for (std::size_t i = 0; i < task.starts.size(); ++i) {
-      if (task.targets[i] == kNone) continue;
-      const double time = alone(task.starts[i], task.targets[i]);
-      if (time == kForever) return {.outcome = Outcome::kUnreachable, .unreachable = static_cast<MoverIndex>(i)};
-      result.lower_bound += time;
-    }
+  const std::vector<PoolIndex>& pools = problem.pools;
+  const std::set<PoolIndex> different(pools.begin(), pools.end());
+  for (const PoolIndex pool : different) {
+    if (pool == kNone) continue;
+    const MoverIndex unable = AssignTargets(pool, pools, alone, task);
+    if (unable != kNone) return {.outcome = Outcome::kUnreachable, .unreachable = unable};
+  }
+  for (std::size_t i = 0; i < task.starts.size(); ++i) {
+    if (task.targets[i] == kNone) continue;
+    const double time = alone(task.starts[i], task.targets[i]);
+    if (time == kForever) return {.outcome = Outcome::kUnreachable, .unreachable = static_cast<MoverIndex>(i)};
+    result.lower_bound += time;
   }
   std::optional<Plan> best;
   const auto offer = [&](std::optional<Plan> plan) {
@@ -96,7 +107,8 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
   };
   Task swapped = task;
   const bool all_have_targets = std::find(task.targets.begin(), task.targets.end(), kNone) == task.targets.end();
-  if (problem.interchangeable && all_have_targets) {
+  const bool one_pool = different.size() == 1 && *different.begin() != kNone;
+  if (one_pool && all_have_targets) {
     if (const auto steps = SwapTargets(grid, swapped, problem.seed)) offer_steps(*steps);
   }
   const auto movers = static_cast<std::int64_t>(std::max<std::size_t>(1, task.starts.size()));
@@ -108,7 +120,9 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
       const StepSearch found = FindSteps(grid, task, tables, problem.seed + k, best ? kLeastSteps : effort);
       if (found.steps) offer_steps(*found.steps);
       if (!best) {
-        const bool impossible = found.exhausted && !problem.interchangeable;  // another assignment might do
+        const bool impossible =
+            found.exhausted &&
+            (different.empty() || different == std::set<PoolIndex>{kNone});  // another assignment might do
         return {.outcome = impossible ? Outcome::kImpossible : Outcome::kGivenUp};
       }
     }
@@ -116,8 +130,8 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
   offer(PlanInTurn(grid, task, alone, kTurns, kTurnStates));
   result.first_sum = SumOf(grid, *best);
   // Whoever has none of its own ends where the first plan leaves it.
-  Plan plan = Improve(grid, task, alone, *std::move(best),
-                      {.effort = problem.effort, .seed = problem.seed, .interchangeable = problem.interchangeable});
+  Plan plan =
+      Improve(grid, task, alone, *std::move(best), {.effort = problem.effort, .seed = problem.seed, .pools = pools});
   result.outcome = Outcome::kPlanned;
   result.sum = SumOf(grid, plan);
   result.targets = std::move(plan.targets);

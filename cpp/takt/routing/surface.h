@@ -18,14 +18,17 @@
 
 namespace takt::routing {
 
+// Movers that may take each other's targets have the same one.
+using PoolIndex = std::int32_t;
+
 struct SurfaceProblem {
   int width = 0, height = 0;  // places
   double pitch = 0;           // mm
   Dynamics dynamics{};
   std::vector<bool> blocked{};        // by place, row by row: no mover can be there
   std::vector<PlaceIndex> starts{};   // by mover, all different, none of them blocked
-  std::vector<PlaceIndex> targets{};  // by mover; kNone: anywhere. Interchangeable: any order, no more than movers
-  bool interchangeable = false;       // any mover may take any target
+  std::vector<PlaceIndex> targets{};  // by mover; kNone: anywhere
+  std::vector<PoolIndex> pools{};     // by mover; those of one may exchange their targets. kNone: its own. Empty: all
   std::int64_t effort = 0;            // states that improvements may look at
   std::uint64_t seed = 1;
 };
@@ -54,7 +57,7 @@ struct SurfacePlan {
   std::vector<std::vector<Visit>> visits{};  // by mover, from its start on
   double sum = 0;                            // s, of all arrivals
   double first_sum = 0;                      // s, of the plan that improvements began with
-  double lower_bound = 0;                    // s, no sum is less: each alone; interchangeable: of the best assignment
+  double lower_bound = 0;                    // s, no sum is less: each alone, by the best assignment within pools
 };
 
 // Requires: as the members say; targets that are not blocked, and all different.

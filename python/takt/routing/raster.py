@@ -1,16 +1,21 @@
-"""The free surface as a raster of places: which are there, and which hold something that stands."""
+"""The free surface as a raster of places: which are there, and which hold something that stands.
+
+The surface is what the parts say where there are some, all in one coordinate system; else an environment. With parts
+the raster reaches over all that they may ever cover there, so that a place keeps its number while they come and go.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from takt.routing.streets import RoutingError
 
 if TYPE_CHECKING:
     from takt.mover import Mover
+    from takt.part import Part
     from takt.session import Session
 
 STATOR = 240.0  # mm, side
@@ -30,35 +35,42 @@ class Raster:
     width: int
     height: int
     free: tuple[bool, ...]  # by place: stators cover it
+    reference: str = ""  # name of the coordinate system, where there are parts
+    coordinate_system: int = 0  # its number
 
     def middle(self, place: int) -> Point:
         x, y = place % self.width, place // self.width
         return self.origin[0] + (x + 0.5) * self.pitch, self.origin[1] + (y + 0.5) * self.pitch
 
-    def place_at(self, point: Point, what: str) -> int:
+    def place_at(self, point: Point, what: str, mover: str = "") -> int:
         """The place with this middle. `what`: the subject of the sentence that says that there is none."""
         x, y = (math.floor((value - low) / self.pitch) for value, low in zip(point, self.origin, strict=True))
         inside = 0 <= x < self.width and 0 <= y < self.height
         place = y * self.width + x
         if not inside or not self.free[place]:
-            raise RoutingError(f"{what} at {_text(point)} is not on the surface: stators do not cover the place there")
+            raise RoutingError(
+                f"{what} at {_text(point)} is not on the surface: stators do not cover the place there", mover
+            )
         if math.dist(self.middle(place), point) > NEAR:
             raise RoutingError(
                 f"{what} at {_text(point)} is not in the middle of a place: "
-                f"the nearest is {_text(self.middle(place))}, places are {self.pitch:.6g} mm apart"
+                f"the nearest is {_text(self.middle(place))}, places are {self.pitch:.6g} mm apart",
+                mover,
             )
         return place
 
     def covered_by(self, mover: Mover) -> list[int]:
         """Places that a mover reaches into."""
-        half_x, half_y = (side / 2 for side in extent_of(mover))
-        found = []
-        for place in range(len(self.free)):
-            x, y = self.middle(place)
-            near_x = abs(mover.x - x) < half_x + self.pitch / 2 - NEAR
-            if near_x and abs(mover.y - y) < half_y + self.pitch / 2 - NEAR:
-                found.append(place)
-        return found
+        if self.coordinate_system and mover.coordinate_system != self.coordinate_system:
+            return []
+        ranges = []
+        for value, low, side, count in zip(
+            (mover.x, mover.y), self.origin, extent_of(mover), (self.width, self.height), strict=True
+        ):
+            first = math.floor((value - low - side / 2 + NEAR) / self.pitch)
+            last = math.ceil((value - low + side / 2 - NEAR) / self.pitch) - 1
+            ranges.append(range(max(first, 0), min(last, count - 1) + 1))
+        return [y * self.width + x for y in ranges[1] for x in ranges[0]]
 
 
 def extent_of(mover: Mover) -> Point:
@@ -72,8 +84,14 @@ def extent_of(mover: Mover) -> Point:
 def make_raster(
     session: Session, movers: Sequence[Mover], environment: str | None, pitch: float | None, origin: Point | None
 ) -> Raster:
-    """The raster on the stators of an environment, for movers as large as these."""
-    stators = _stators(session, environment)
+    """The raster on the stators of an environment, or of the parts where these movers are, for movers as large."""
+    number = _coordinate_system(session, movers)
+    if number:
+        if environment is not None:
+            raise RoutingError(f"environment {environment}: where there are parts, they are the surface")
+        stators, there = _stators_of_parts(session, number)
+    else:
+        stators = there = _stators(session, environment)
     side, largest = max(((max(extent_of(m)), m) for m in movers), key=lambda pair: pair[0], default=(0.0, None))
     if pitch is None:
         least = side + ROOM
@@ -96,13 +114,14 @@ def make_raster(
             f"the raster has {width} by {height} places of {pitch:.6g} mm: expected at most {MOST_PLACES} each way"
         )
     by_column: dict[int, list[Point]] = {}
-    for stator in stators:
+    for stator in there:
         by_column.setdefault(math.floor(stator[0] / STATOR), []).append(stator)
-    raster = Raster(origin, pitch, width, height, ())
+    reference = session.machine["coordinate_systems"][number - 1]["name"] if number else ""
+    raster = Raster(origin, pitch, width, height, (), reference, number)
     free = tuple(_is_covered(raster.middle(place), pitch, by_column) for place in range(width * height))
     if not any(free):
         raise RoutingError(f"no place of {pitch:.6g} mm is on the stators, counted from {_text(origin)}")
-    return Raster(origin, pitch, width, height, free)
+    return replace(raster, free=free)
 
 
 def _text(point: Point) -> str:
@@ -110,8 +129,6 @@ def _text(point: Point) -> str:
 
 
 def _stators(session: Session, environment: str | None) -> list[Point]:
-    if session.parts:
-        raise RoutingError("the machine has parts: routes on the free surface are planned on environments only")
     if environment is None:
         names = [name for name, one in session.environments.items() if one.parameters["stators"]]
         if len(names) != 1:
@@ -125,6 +142,44 @@ def _stators(session: Session, environment: str | None) -> list[Point]:
     if one.stator_count != len(one.parameters["stators"]):
         raise RoutingError(f"environment {environment} is not as the machine file has it: routes are planned on that")
     return sorted(stators)
+
+
+def _coordinate_system(session: Session, movers: Sequence[Mover]) -> int:
+    """Number of that of all these movers; 0: there are no parts."""
+    if not session.parts:
+        return 0
+    for mover in movers[1:]:
+        if mover.coordinate_system != movers[0].coordinate_system:
+            names = [one["name"] for one in session.machine["coordinate_systems"]]
+            said = [f"mover {m.name} is in {names[m.coordinate_system - 1]}" for m in (movers[0], mover)]
+            raise RoutingError(f"{' and '.join(said)}: routes are planned in one coordinate system")
+    return movers[0].coordinate_system if movers else 1
+
+
+def _stators_of_parts(session: Session, number: int) -> tuple[list[Point], list[Point]]:
+    """Lower left corners of all stators that may be in this coordinate system, and of those that are there now."""
+    name = session.machine["coordinate_systems"][number - 1]["name"]
+    ever: set[Point] = set()
+    now: set[Point] = set()
+    for part in session.parts.values():
+        own = [(float(s["x"]), float(s["y"])) for s in part.parameters["stators"]] or [
+            (STATOR * column, STATOR * row)
+            for column in range(part.parameters["columns"])
+            for row in range(part.parameters["rows"])
+        ]
+        places = part.parameters["positions"]
+        for place in places:
+            if place["coordinate_system"] == name:
+                ever.update((x + float(place["x"]), y + float(place["y"])) for x, y in own)
+        if is_there(part) and part.coordinate_system == number:
+            now.update((x + part.x, y + part.y) for x, y in own)
+    return sorted(ever), sorted(now)
+
+
+def is_there(part: Part) -> bool:
+    """Movers can be sent onto it."""
+    going = part.commanded_index != part.position_index
+    return part.position_index > 0 and not going and part.state.value in ("Enabled", "Enabling")
 
 
 def _is_covered(middle: Point, pitch: float, by_column: dict[int, list[Point]]) -> bool:

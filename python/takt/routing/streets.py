@@ -29,7 +29,11 @@ LONGEST = 32  # tracks in one way, as in the engine
 
 
 class RoutingError(TaktError):
-    """No plan of ways was found, or it could not be carried out."""
+    """No plan of ways was found, or it could not be carried out. `mover`: the one to which that is due, if any."""
+
+    def __init__(self, sentence: str, mover: str = "") -> None:
+        super().__init__(sentence)
+        self.mover = mover
 
 
 @dataclass(frozen=True)

@@ -7,21 +7,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 from takt import _core
 from takt.counted import counted
 from takt.routing.raster import Point, Raster, make_raster
 from takt.routing.streets import RoutingError
+from takt.routing.traveller import DYNAMICS, STANDS
 
 if TYPE_CHECKING:
     from takt.mover import Mover
     from takt.session import Session
 
 EFFORT = 3_000  # states that improvements look at
-STANDS = 1e-3  # mm/s
-DYNAMICS = ("velocity", "acceleration", "jerk")
 
 
 @dataclass(frozen=True)
@@ -77,9 +76,48 @@ class SurfacePlan:
         return "\n".join([*lines, f"sum {self.sum_s:.3f} s{ratio}"])
 
 
+# By mover a point, by several movers, as a tuple, some points; or points alone, for any mover.
+Targets = Mapping[Any, Any] | Sequence[Point]
+
+
+@dataclass(frozen=True)
+class Order:
+    """Movers, and places to which they are to go: any of the movers to any of them, one each."""
+
+    movers: tuple[str, ...]
+    points: tuple[Point, ...]
+    own: bool  # the one mover has this one target
+
+    def says(self, k: int) -> str:
+        if self.own:
+            return f"the target of mover {self.movers[0]}"
+        return f"target {k + 1} of movers {', '.join(self.movers)}" if self.movers else f"target {k + 1}"
+
+
+@dataclass(frozen=True)
+class Options:
+    """What a plan is like, beside its targets."""
+
+    environment: str | None = None
+    pitch: float | None = None
+    origin: Point | None = None
+    effort: int = EFFORT
+    seed: int = 1
+    dynamics: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for key, value in self.dynamics.items():
+            if key not in DYNAMICS:
+                raise TypeError(f"dynamics are {', '.join(DYNAMICS)}, not {key}")
+            if not 0 < value < math.inf:
+                raise RoutingError(f"{key} is above 0, not {value:.6g}")
+        if self.effort < 0 or self.seed < 0:
+            raise RoutingError(f"effort and seed are 0 or more, not {self.effort} and {self.seed}")
+
+
 def plan_surface(
     session: Session,
-    targets: Mapping[str, Point] | Sequence[Point],
+    targets: Targets,
     *,
     movers: Iterable[str] | None = None,
     may_move: bool | Iterable[str] = False,
@@ -92,10 +130,11 @@ def plan_surface(
 ) -> SurfacePlan:
     """Routes on the free surface on which all movers with a target get there; nothing is moved.
 
-    targets: by mover, X and Y in mm. Or a list of them: interchangeable, each for any of `movers`.
-    movers: with interchangeable targets, those that may take one; all that can move, unless given.
+    targets: by mover, X and Y in mm; by several movers, as a tuple, a list of places that any of them may take. Or a
+        list alone: interchangeable, each for any of `movers`.
+    movers: with a list of targets, those that may take one; all that can move, unless given.
     may_move: movers without a target that may be moved out of the way, or all of them (True). All others stand.
-    environment: whose stators are the surface; needed where several have some.
+    environment: whose stators are the surface; needed where several have some. Where there are parts, these are it.
     pitch: mm between places, no less than the largest mover; else the least that divides a stator (240 mm).
     origin: lower left corner of the raster; else that of the stators.
     effort: states that are looked at to make the first plan better. Counted, so that the plan is the same each time.
@@ -104,116 +143,186 @@ def plan_surface(
 
     Raises RoutingError, with the reason, if there is no plan.
     """
-    for key, value in dynamics.items():
-        if key not in DYNAMICS:
-            raise TypeError(f"dynamics are {', '.join(DYNAMICS)}, not {key}")
-        if not 0 < value < math.inf:
-            raise RoutingError(f"{key} is above 0, not {value:.6g}")
-    if effort < 0 or seed < 0:
-        raise RoutingError(f"effort and seed are 0 or more, not {effort} and {seed}")
-    labelled = isinstance(targets, Mapping)
-    aims: dict[str, Point] = {}
-    points: list[Point] = []
-    if isinstance(targets, Mapping):
-        aims = {name: _point(f"the target of mover {name}", target) for name, target in targets.items()}
-    else:
-        points = [_point(f"target {i}", target) for i, target in enumerate(targets, 1)]
-    if movers is not None and labelled:
-        raise TypeError("movers are for interchangeable targets, a list")
-    able = {name for name, mover in session.movers.items() if _cannot_move(session, mover) is None}
-    if labelled:
-        wanted = list(aims)
-    else:
-        wanted = [name for name in session.movers if name in able] if movers is None else list(dict.fromkeys(movers))
-    free = [name for name in session.movers if name in able] if may_move is True else list(may_move or ())
+    options = Options(environment, pitch, origin, effort, seed, dynamics)
+    orders = orders_of(session, targets, movers)
+    wanted = [name for order in orders for name in order.movers]
+    free = free_of(session, may_move)
     for name in [*wanted, *([] if may_move is True else free)]:
-        if (reason := _cannot_move(session, session.mover(name))) is not None:
-            raise RoutingError(f"mover {name} cannot be moved on the surface: {reason}")
+        check_can_move(session.mover(name))
     for name, mover in session.movers.items():
         if math.hypot(mover.velocity_x, mover.velocity_y) > STANDS:
             raise RoutingError(f"mover {name} is in motion: routes are planned for movers that stand")
-    if not labelled and len(points) > len(wanted):
-        raise RoutingError(f"{counted(len(points), 'target')} for {counted(len(wanted), 'mover')}")
-    names = tuple(name for name in session.movers if name in {*wanted, *free})
-    routed = [session.mover(name) for name in names]
-    raster = make_raster(session, routed or list(session.movers.values()), environment, pitch, origin)
-    starts = [raster.place_at((m.x, m.y), f"mover {m.name}") for m in routed]
-    _check_apart("mover", names, starts, raster)
-    standing = {
-        place: mover.name
-        for name, mover in session.movers.items()
-        if name not in names
-        for place in raster.covered_by(mover)
-    }
-    for name, place in zip(names, starts, strict=True):
-        if place in standing:
-            raise RoutingError(f"mover {standing[place]} reaches into the place of mover {name}, and may not be moved")
-    if labelled:
-        goals = [raster.place_at(p, f"the target of mover {name}") for name, p in aims.items()]
-        _check_apart("the target of mover", tuple(aims), goals, raster)
-    else:
-        goals = [raster.place_at(p, f"target {i}") for i, p in enumerate(points, 1)]
-        _check_apart("target", tuple(str(i) for i in range(1, len(points) + 1)), goals, raster)
-    for place in goals:
+    routed = {name: session.mover(name) for name in session.movers if name in {*wanted, *free}}
+    if may_move is True and session.parts and wanted:  # those elsewhere are in nobody's way
+        here = session.mover(wanted[0]).coordinate_system
+        routed = {name: m for name, m in routed.items() if name in wanted or m.coordinate_system == here}
+    raster = make_raster(
+        session, list(routed.values()) or list(session.movers.values()), environment, pitch, options.origin
+    )
+    starts = {name: (m.x, m.y) for name, m in routed.items()}
+    return make_plan(session, raster, starts, orders, options)
+
+
+def orders_of(session: Session, targets: Targets, movers: Iterable[str] | None) -> list[Order]:
+    """Targets as they are given, in one form. RoutingError: no such target, or one mover has two."""
+    if not isinstance(targets, Mapping):
+        points = tuple(_point(f"target {i}", target) for i, target in enumerate(targets, 1))
+        able = [name for name, mover in session.movers.items() if _cannot_move(session, mover) is None]
+        wanted = able if movers is None else list(dict.fromkeys(movers))
+        if len(points) > len(wanted):
+            raise RoutingError(f"{counted(len(points), 'target')} for {counted(len(wanted), 'mover')}")
+        return [Order(tuple(wanted), points, False)]
+    if movers is not None:
+        raise TypeError("movers are for interchangeable targets, a list")
+    orders: list[Order] = []
+    for key, target in targets.items():
+        if isinstance(key, str):
+            orders.append(Order((key,), (_point(f"the target of mover {key}", target),), True))
+            continue
+        names = tuple(dict.fromkeys(key))
+        said = ", ".join(names)
+        if not isinstance(target, Iterable):
+            raise RoutingError(f"the targets of movers {said} are a list of X and Y in mm, not {target!r}")
+        points = tuple(_point(f"target {i} of movers {said}", one) for i, one in enumerate(target, 1))
+        if len(points) > len(names):
+            raise RoutingError(f"{counted(len(points), 'target')} for {counted(len(names), 'mover')}: {said}")
+        orders.append(Order(names, points, False))
+    known: set[str] = set()
+    for name in (name for order in orders for name in order.movers):
+        if name in known:
+            raise RoutingError(f"mover {name} has more than one target")
+        known.add(name)
+    return orders
+
+
+def free_of(session: Session, may_move: bool | Iterable[str]) -> list[str]:
+    """Movers that may be moved aside."""
+    if may_move is True:
+        return [name for name, mover in session.movers.items() if _cannot_move(session, mover) is None]
+    return list(may_move or ())
+
+
+def can_move(mover: Mover) -> bool:
+    return _cannot_move(mover.session, mover) is None
+
+
+def check_can_move(mover: Mover) -> None:
+    if (reason := _cannot_move(mover.session, mover)) is not None:
+        raise RoutingError(f"mover {mover.name} cannot be moved on the surface: {reason}", mover.name)
+
+
+def make_plan(
+    session: Session,
+    raster: Raster,
+    starts: Mapping[str, Point],
+    orders: Sequence[Order],
+    options: Options,
+    standing: Mapping[int, str] | None = None,
+) -> SurfacePlan:
+    """The plan for movers that start there; those that are not in `starts` stand (where, by place: `standing`)."""
+    names = tuple(starts)
+    start_places = [raster.place_at(point, f"mover {name}") for name, point in starts.items()]
+    _check_apart("mover", names, start_places, raster)
+    if standing is None:
+        standing = {
+            place: mover.name
+            for name, mover in session.movers.items()
+            if name not in starts
+            for place in raster.covered_by(mover)
+        }
+    for name, place in zip(names, start_places, strict=True):
         if place in standing:
             raise RoutingError(
-                f"mover {standing[place]} stands at the target {_at(raster, place)}, and may not be moved"
+                f"mover {standing[place]} reaches into the place of mover {name}, and may not be moved", name
             )
-    limits = {key: min((_limit(m, key, dynamics.get(key)) for m in routed), default=1.0) for key in DYNAMICS}
-    by_name = dict(zip(aims, goals, strict=True)) if labelled else {}
+    targets, pools = [-1] * len(names), [-1] * len(names)
+    number = {name: i for i, name in enumerate(names)}
+    goals: dict[int, str] = {}
+    for pool, order in enumerate(orders):
+        for k, point in enumerate(order.points):
+            said, mover = order.says(k), order.movers[k]
+            place = raster.place_at(point, said, mover if order.own else "")
+            if place in goals:
+                both = f"{goals[place]} and {said}".replace(f" of movers {', '.join(order.movers)}", "")
+                raise RoutingError(f"{both} are in one place, {_at(raster, place)}")
+            if place in standing:
+                raise RoutingError(
+                    f"mover {standing[place]} stands at the target {_at(raster, place)}, and may not be moved",
+                    mover if order.own else "",
+                )
+            goals[place] = said
+            targets[number[mover]] = place
+        for name in () if order.own else order.movers:
+            pools[number[name]] = pool
+    routed = [session.mover(name) for name in names]
+    limits = {key: min((_limit(m, key, options.dynamics.get(key)) for m in routed), default=1.0) for key in DYNAMICS}
     routes = _core.plan_surface(
         width=raster.width,
         height=raster.height,
         pitch=raster.pitch,
         **limits,
         blocked=[not on or place in standing for place, on in enumerate(raster.free)],
-        starts=starts,
-        targets=[by_name.get(name, -1) for name in names] if labelled else goals,
-        interchangeable=not labelled,
-        effort=effort,
-        seed=seed,
+        starts=start_places,
+        targets=targets,
+        pools=pools,
+        effort=options.effort,
+        seed=options.seed,
     )
-    if routes.outcome == "unreachable":
-        if not labelled:
-            raise RoutingError("the targets cannot all be reached: holes and movers that stand shut the ways to them")
-        name = names[routes.unreachable]
-        raise RoutingError(
-            f"mover {name}: no way leads to its target {_at(raster, by_name[name])}{_round(standing.values())}"
-        )
-    if routes.outcome == "impossible":
-        raise RoutingError(
-            f"the targets cannot all be reached: every order of passing was tried{_round(standing.values())}"
-        )
-    if routes.outcome != "planned":
-        raise RoutingError("no plan was found, and there may be one: another seed, or fewer movers at a time, may help")
-    times = dict(limits)
+    _check_outcome(routes, names, targets, pools, raster, standing)
     legs = {}
     for name, rows in zip(names, routes.legs, strict=True):
         made = []
         for departure, from_, to in rows:
             start, end = raster.middle(from_), raster.middle(to)
-            duration = _core.run_duration(math.dist(start, end), **times)
+            duration = _core.run_duration(math.dist(start, end), **limits)
             made.append(SurfaceLeg(departure, departure + duration, start, end))
         legs[name] = tuple(made)
     visits = tuple(
         tuple(Visit(place, entry, None if who < 0 else (who, k)) for place, entry, who, k in rows)
         for rows in routes.visits
     )
-    with_target = {name for name, place in zip(names, routes.targets, strict=True) if place in set(goals)}
-    moving = [name for name in names if legs[name]]
+    own = {order.movers[0] for order in orders if order.own}
+    pooled = {
+        name for name, place, pool in zip(names, routes.targets, pools, strict=True) if pool >= 0 and place in goals
+    }
     ends = {name: raster.middle(place) for name, place in zip(names, routes.targets, strict=True)}
     return SurfacePlan(
         names,
-        {name: ends[name] for name in names if legs[name] or name in with_target},
+        {name: ends[name] for name in names if legs[name] or name in own or name in pooled},
         legs,
         visits,
-        tuple(name for name in moving if (name not in aims if labelled else name not in with_target)),
+        tuple(name for name in names if legs[name] and name not in own and name not in pooled),
         raster,
         limits,
         routes.sum,
         routes.lower_bound,
         routes.first_sum,
     )
+
+
+def _check_outcome(
+    routes: _core.SurfaceRoutes,
+    names: Sequence[str],
+    targets: Sequence[int],
+    pools: Sequence[int],
+    raster: Raster,
+    standing: Mapping[int, str],
+) -> None:
+    if routes.outcome == "unreachable":
+        name = names[routes.unreachable]
+        if pools[routes.unreachable] >= 0:
+            raise RoutingError(
+                "the targets cannot all be reached: holes and movers that stand shut the ways to them"
+                f"{_round(standing.values())}"
+            )
+        target = _at(raster, targets[routes.unreachable])
+        raise RoutingError(f"mover {name}: no way leads to its target {target}{_round(standing.values())}", name)
+    if routes.outcome == "impossible":
+        raise RoutingError(
+            f"the targets cannot all be reached: every order of passing was tried{_round(standing.values())}"
+        )
+    if routes.outcome != "planned":
+        raise RoutingError("no plan was found, and there may be one: another seed, or fewer movers at a time, may help")
 
 
 def _point(what: str, point: object) -> Point:

@@ -150,13 +150,15 @@ class Checker {
         since = leg.departure + Total(PiecesOf(leg));
       }
       EXPECT_EQ(at, plan_.targets[i]);
-      if (!problem_.interchangeable && problem_.targets[i] != kNone) {
+      if (PoolOf(i) == kNone && problem_.targets[i] != kNone) {
         EXPECT_EQ(at, problem_.targets[i]);
       }
     }
-    if (!problem_.interchangeable) return;
-    for (const PlaceIndex target : problem_.targets) {
-      EXPECT_EQ(std::count(plan_.targets.begin(), plan_.targets.end(), target), 1);
+    for (std::size_t i = 0; i < plan_.targets.size(); ++i) {  // each is where one of its pool ends
+      if (problem_.targets[i] == kNone) continue;
+      const auto there = std::find(plan_.targets.begin(), plan_.targets.end(), problem_.targets[i]);
+      ASSERT_NE(there, plan_.targets.end());
+      EXPECT_EQ(PoolOf(static_cast<std::size_t>(there - plan_.targets.begin())), PoolOf(i));
     }
   }
   double Sum() const {
@@ -169,6 +171,7 @@ class Checker {
 
  private:
   using Point = std::array<double, 2>;
+  PoolIndex PoolOf(std::size_t i) const { return problem_.pools.empty() ? kNone : problem_.pools[i]; }
   static double Total(const Pieces& pieces) {
     return std::accumulate(pieces.begin(), pieces.end(), 0.0, [](double sum, const auto& p) { return sum + p.second; });
   }
@@ -302,7 +305,10 @@ TEST(Surface, RandomWorldsAreSafeAndCanBeCarriedOut) {
     if (trial % 4 == 1) {
       for (std::size_t i = 0; i < count; i += 3) problem.targets[i] = kNone;  // may be moved aside
     }
-    problem.interchangeable = trial % 4 == 2;
+    if (trial % 4 == 2) problem.pools.assign(count, 0);
+    if (trial % 4 == 3) {  // two pools, and movers with targets of their own
+      for (std::size_t i = 0; i < count; ++i) problem.pools.push_back(static_cast<PoolIndex>(i % 3) - 1);
+    }
     EXPECT_TRUE(CanBeCarriedOut(PlanAndCheck(problem))) << trial;
   }
 }
@@ -318,13 +324,13 @@ TEST(Surface, ThreeQuartersFilled) {
 TEST(Surface, InterchangeableTargetsComeNearTheBestAssignment) {
   Random random(5);
   SurfaceProblem problem = Empty(6, 6);
-  problem.interchangeable = true;
+  problem.pools.assign(12, 0);
   problem.starts = RandomPlaces(problem, 12, random);
   problem.targets = RandomPlaces(problem, 12, random);
   const SurfacePlan plan = PlanAndCheck(problem);
   EXPECT_LT(plan.sum, 1.3 * plan.lower_bound);
   // Fewer targets than movers: the others stay, or make room.
-  problem.targets.resize(5);
+  std::fill(problem.targets.begin() + 5, problem.targets.end(), kNone);
   PlanAndCheck(problem);
 }
 
@@ -376,7 +382,7 @@ TEST(Surface, NamesAMoverThatCannotGetThere) {
   const SurfacePlan plan = PlanSurface(problem);
   EXPECT_EQ(plan.outcome, Outcome::kUnreachable);
   EXPECT_EQ(plan.unreachable, 0);
-  problem.interchangeable = true;
+  problem.pools = {0};
   EXPECT_EQ(PlanSurface(problem).outcome, Outcome::kUnreachable);
   EXPECT_EQ(PlanSurface(Empty(2, 2)).outcome, Outcome::kPlanned);  // nobody is there already
 }

@@ -1,0 +1,617 @@
+"""Many movers on the free surface under a stream of orders: routes are planned anew from where movers are on their way.
+
+A new plan begins where each mover can come to rest: the visits up to there, which are granted already, come before all
+others at their places. They end by themselves, and what follows is a plan for movers that stand: so the order of visits
+is still one in which nobody waits for ever.
+
+A mover that fails, or is halted, stands in the way. All others go as far as they can come to rest out of its way; those
+behind it that cannot, because it covers a place that they are bound for, go back to the place that they have passed.
+No place that they go back to is granted to others: whoever was bound for it behind them goes back, too. Then routes
+are planned round what stands. The same when a part leaves with places of routes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from takt.errors import TimeoutError
+from takt.feedback import DEFAULT_TIMEOUT_S
+from takt.routing.raster import NEAR, Point, Raster, is_there, make_raster
+from takt.routing.streets import RoutingError
+from takt.routing.surface import (
+    Options,
+    Order,
+    SurfacePlan,
+    Targets,
+    can_move,
+    check_can_move,
+    free_of,
+    make_plan,
+    orders_of,
+)
+from takt.routing.surface_journey import dynamics_of
+from takt.routing.traveller import Before, Traveller
+
+if TYPE_CHECKING:
+    from takt.mover import Mover
+    from takt.session import Session
+
+CYCLES = 8  # until a command is carried out, in process, and until movers are looked at again
+MOVERS_A_CYCLE = 16  # that are looked at: with more, not in every cycle
+ANSWER_S = 0.1  # over LCM: until a mover does what it is told by what it was seen to do
+
+
+@dataclass
+class _Goal:
+    """Where a mover is to go. Movers of one pool may exchange their targets."""
+
+    order: SurfaceOrder
+    pool: object
+    target: Point | None  # none yet: any of those of its pool that are left
+
+
+class SurfaceOrder:
+    """Targets that were given at once: `wait()` until movers are there."""
+
+    def __init__(self, router: SurfaceRouter, movers: Iterable[str], started_s: float, may_move: Iterable[str]) -> None:
+        self._router = router
+        self.movers = tuple(movers)
+        self.may_move = tuple(may_move)  # movers without a target that may be moved out of the way
+        self.started_s = started_s
+        self.targets: dict[str, Point] = {}  # by mover, mm; while it is on its way it may exchange its own
+        self.arrived_s: dict[str, float] = {}  # by mover: s from the order on
+        self.failed: dict[str, str] = {}  # by mover: why it does not get there
+
+    @property
+    def done(self) -> bool:
+        """All are there, or do not get there."""
+        return all(name in self.arrived_s or name in self.failed for name in self.movers)
+
+    @property
+    def waits(self) -> dict[str, str]:
+        """By mover: what it waits for, if it stands on its way."""
+        reasons = self._router.waits
+        return {name: reasons[name] for name in self.movers if name in reasons}
+
+    def wait(self, timeout: float = DEFAULT_TIMEOUT_S) -> SurfaceOrder:
+        """Lets engine time pass until all are there. RoutingError: some do not get there."""
+        session = self._router.session
+        try:
+            session.wait(lambda: self.done, timeout)
+        except TimeoutError:
+            late = [name for name in self.movers if name not in self.arrived_s and name not in self.failed]
+            waits = self.waits
+            said = ", ".join(name + (f" ({waits[name]})" if name in waits else "") for name in late)
+            raise TimeoutError(f"not there within {timeout:g} s: {said}") from None
+        if self.failed:
+            raise RoutingError("; ".join(self.failed.values()), next(iter(self.failed)))
+        return self
+
+    def __repr__(self) -> str:
+        there, failed = len(self.arrived_s), len(self.failed)
+        return f"<SurfaceOrder: {there} of {len(self.movers)} there{f', {failed} failed' if failed else ''}>"
+
+
+class SurfaceRouter:
+    """Plans routes for orders as they come, and carries them out while engine time passes.
+
+    options: environment, pitch, origin, effort, seed, velocity, acceleration, jerk, as those of takt.plan_surface.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        *,
+        environment: str | None = None,
+        pitch: float | None = None,
+        origin: Point | None = None,
+        effort: int | None = None,
+        seed: int = 1,
+        **dynamics: float,
+    ) -> None:
+        given = Options(environment, pitch, origin, seed=seed, dynamics=dynamics)
+        self.session = session
+        self.given = {"environment": environment, "pitch": pitch, "origin": origin, "effort": effort, **dynamics}
+        self.given = {key: value for key, value in self.given.items() if value is not None}
+        if seed != 1:
+            self.given["seed"] = seed
+        self.options = given if effort is None else Options(environment, pitch, origin, effort, seed, dynamics)
+        self.plans = 0  # that were made
+        self.waited_s: dict[str, dict[str, float]] = defaultdict(lambda: defaultdict(float))  # mover, for whom
+        self._on_way: dict[str, Traveller] = {}
+        self._goals: dict[str, _Goal] = {}
+        self._back: dict[str, Traveller] = {}  # those that come to rest out of the way; none is granted more meanwhile
+        self._failed: set[str] = set()  # of these, those that stay where they come to rest
+        self._raster: Raster | None = None
+        self._dynamics: dict[str, Any] = {}
+        self._surface: tuple[object, ...] = ()
+        self._seen_s = session.now
+        self._later_s = _answers_within(session)
+        session.program(self.scan)
+
+    # --- orders ---
+
+    def route(
+        self, targets: Targets, *, movers: Iterable[str] | None = None, may_move: bool | Iterable[str] = False
+    ) -> SurfaceOrder:
+        """Sends movers to their targets, those that are on their way from where they are; all others that are on their
+        way still get to theirs. Engine time has to pass for it, as in `wait()` of the order.
+
+        targets, movers, may_move: as those of takt.plan_surface.
+
+        Raises RoutingError, with the reason, if there is no plan; then all goes on as before.
+        """
+        if movers is None and not isinstance(targets, Mapping):
+            movers = [name for name in free_of(self.session, True) if name not in self._goals]
+        orders = orders_of(self.session, targets, movers)
+        names = [name for order in orders for name in order.movers]
+        aside = free_of(self.session, may_move)
+        for name in [*names, *([] if may_move is True else aside)]:
+            check_can_move(self.session.mover(name))
+        made = SurfaceOrder(self, names, self.session.now, aside)
+        goals = {name: goal for name, goal in self._goals.items() if name not in names}
+        for order in orders:
+            pool = object()
+            for k, name in enumerate(order.movers):
+                goals[name] = _Goal(made, pool, order.points[k] if k < len(order.points) else None)
+        if not names:
+            return made
+        number = self.session.mover(names[0]).coordinate_system
+        aside = [name for name in aside if self.session.mover(name).coordinate_system == number]
+        made.may_move = tuple(aside)
+        sizes = dict.fromkeys([*names, *self._on_way, *aside])
+        raster = self._make_raster([self.session.mover(name) for name in sizes])
+        if not self._back:
+            astray = self._astray(names, raster)
+            if not astray:
+                self._install(*self._plan(goals, raster))
+            else:
+                self._check_targets(goals, raster)
+                self._go_to_rest(astray, raster)
+        for name in names:
+            if name in self._goals:
+                self._fail(name, f"mover {name}: another order came")
+        self._goals = goals
+        self._take_targets()
+        self._look_whether_there()
+        return made
+
+    def route_any(
+        self, points: Sequence[Point], *, movers: Iterable[str] | None = None, may_move: bool | Iterable[str] = False
+    ) -> SurfaceOrder:
+        """Sends any of these movers to any of these places."""
+        return self.route(list(points), movers=movers, may_move=may_move)
+
+    @property
+    def busy(self) -> bool:
+        """Movers are on their way."""
+        return bool(self._on_way or self._back or self._goals)
+
+    @property
+    def waits(self) -> dict[str, str]:
+        """By mover: what it waits for, if it stands on its way."""
+        reasons = {}
+        for name, one in self._on_way.items():
+            mover = one.mover
+            if mover.waits_for:
+                reasons[name] = f"waits for {list(self.session.movers)[mover.waits_for - 1]}, in its way"
+            elif name in self._back:
+                reasons[name] = "goes out of the way of what stands"
+            elif not one.in_motion and not one.there:
+                if self._back:
+                    reasons[name] = f"waits until {', '.join(self._back)} {_are(self._back)} out of the way"
+                elif (holder := one.held_by) is not None:
+                    x, y = one.points[one.granted + 1]
+                    reasons[name] = f"waits for the place ({x:.6g}, {y:.6g}), which {holder.name} has before"
+        return reasons
+
+    # --- every cycle ---
+
+    def scan(self) -> None:
+        """Lets movers go on whose turn it is."""
+        now = self.session.now
+        passed = now - self._seen_s
+        if passed < min(len(self._on_way) // MOVERS_A_CYCLE, CYCLES - 2) * self.session.period:
+            return
+        self._seen_s = now
+        if not self._on_way and not self._back:
+            return
+        failed: dict[str, str] = {}
+        for name, one in self._on_way.items():
+            if name in self._back:
+                continue
+            one.look()
+            if (sentence := one.fault()) is not None:
+                failed[name] = sentence
+        surface = self._surface_now()
+        if failed or surface != self._surface:
+            for name, sentence in failed.items():
+                self._fail(name, sentence)
+                self._failed.add(name)
+            self._plan_round()
+        if self._back:
+            self._see_to_those_that_go_back()
+        if not self._back:
+            for one in self._on_way.values():
+                one.grant()
+        for name, one in self._on_way.items():
+            if name not in self._back:
+                one.go_on(self._dynamics)
+                if one.rests and not one.there and (holder := one.held_by) is not None:
+                    self.waited_s[name][holder.name] += passed
+        self._look_whether_there()
+
+    def _look_whether_there(self) -> None:
+        if self._back:
+            return
+        for name in [name for name, one in self._on_way.items() if one.there]:
+            del self._on_way[name]
+        for name in [name for name, goal in self._goals.items() if name not in self._on_way]:
+            goal = self._goals.pop(name)
+            goal.order.arrived_s.setdefault(name, self.session.now - goal.order.started_s)
+
+    def _fail(self, name: str, sentence: str) -> None:
+        goal = self._goals.pop(name, None)
+        if goal is not None:
+            goal.order.failed[name] = sentence
+
+    # --- planning ---
+
+    def _make_raster(self, movers: Sequence[Mover]) -> Raster:
+        options = self.options
+        if self._on_way and self._raster is not None:  # those on their way stay on theirs
+            raster = make_raster(self.session, movers, options.environment, self._raster.pitch, self._raster.origin)
+        else:
+            raster = make_raster(self.session, movers, options.environment, options.pitch, options.origin)
+        return raster
+
+    def _surface_now(self) -> tuple[object, ...]:
+        return tuple((is_there(part), part.position_index) for part in self.session.parts.values())
+
+    def _commitments(self) -> dict[str, int]:
+        """By mover on its way, the visit that it goes to in any case: where it can come to rest, or further, so that
+        those behind it get to theirs."""
+        found = {name: one.stops_at(self._dynamics, self._later_s) for name, one in self._on_way.items()}
+        names = {one: name for name, one in self._on_way.items()}
+        again = True
+        while again:
+            again = False
+            for name, one in self._on_way.items():
+                for visit in range(one.passed + 1, found[name] + 1):
+                    before = one.before[visit]
+                    if before is None or before[0] is one or before[0] not in names:
+                        continue
+                    other, its = before
+                    if other.passed <= its and found[names[other]] <= its:
+                        found[names[other]] = its + 1
+                        again = True
+        return found
+
+    def _standing(self, raster: Raster, starts: Iterable[str]) -> dict[int, str]:
+        """By place: the mover that stands there."""
+        moved = set(starts)
+        return {
+            place: mover.name
+            for name, mover in self.session.movers.items()
+            if name not in moved
+            for place in raster.covered_by(mover)
+        }
+
+    def _plan(self, goals: Mapping[str, _Goal], raster: Raster) -> tuple[SurfacePlan, dict[str, int]]:
+        commitments = self._commitments()
+        wanted = {*goals, *self._on_way}
+        here = raster.coordinate_system
+        for name in {name for goal in goals.values() for name in goal.order.may_move} - wanted:
+            mover = self.session.mover(name)
+            in_reach = not here or mover.coordinate_system == here
+            if in_reach and can_move(mover) and self._is_in_place(mover, raster):
+                wanted.add(name)
+        if self._later_s > CYCLES * self.session.period:  # while a plan is made they go on
+            for name, one in self._on_way.items():
+                one.granted = commitments[name]
+                one.sent = min(one.sent, one.granted)
+                one.go_on(self._dynamics)
+        starts: dict[str, Point] = {}
+        for name, mover in self.session.movers.items():
+            if name not in wanted:
+                continue
+            going = self._on_way.get(name)
+            starts[name] = (mover.x, mover.y) if going is None else going.points[commitments[name]]
+        pools: dict[object, list[str]] = defaultdict(list)
+        for name, goal in goals.items():
+            pools[goal.pool].append(name)
+        orders = []
+        for movers in pools.values():
+            movers.sort(key=lambda name: goals[name].target is None)
+            points = tuple(point for name in movers if (point := goals[name].target) is not None)
+            orders.append(Order(tuple(movers), points, len(movers) == 1 and len(points) == 1))
+        plan = make_plan(self.session, raster, starts, orders, self.options, self._standing(raster, starts))
+        self.plans += 1
+        return plan, commitments
+
+    def _install(self, plan: SurfacePlan, commitments: Mapping[str, int]) -> None:
+        raster = plan.raster
+        before_all: dict[int, list[tuple[Traveller, int]]] = defaultdict(list)  # by place, visits that are granted
+        made: list[Traveller] = []
+        shifts: list[int] = []
+        old_to_new: dict[Traveller, tuple[Traveller, int]] = {}
+        for name, visits in zip(plan.names, plan.visits, strict=True):
+            points = [raster.middle(visit.place) for visit in visits]
+            old = self._on_way.get(name)
+            if old is None:
+                one, shift = Traveller(self.session.mover(name), points), 0
+            else:
+                first, shift = old.passed, commitments[name] - old.passed
+                one = Traveller(old.mover, [*old.points[first : commitments[name]], *points])
+                one.granted = shift
+                one.sent = min(old.sent - first, shift)
+                one.feedback, one.told = old.feedback, old.told
+                old_to_new[old] = one, first
+            made.append(one)
+            shifts.append(shift)
+        for old, (one, first) in old_to_new.items():
+            for k in range(1, one.granted + 1):
+                one.before[k] = _renamed(old.before[first + k], old_to_new)
+            for k in range(one.granted):
+                before_all[_place(raster, one.points[k])].append((one, k))
+        for one, shift, visits in zip(made, shifts, plan.visits, strict=True):
+            for k, visit in enumerate(visits[1:], 1):
+                if visit.before is not None:
+                    other, its = visit.before
+                    one.before[shift + k] = made[other], shifts[other] + its
+                else:
+                    one.before[shift + k] = _last(before_all[visit.place])
+        self._on_way = {one.mover.name: one for one in made if not one.there}
+        self._raster = raster
+        self._dynamics = dynamics_of(plan)
+        self._surface = self._surface_now()
+        self._planned = plan
+
+    def _take_targets(self) -> None:
+        """Who goes where, where movers may exchange their targets."""
+        taken = self._planned.targets
+        for name in list(self._goals):
+            goal = self._goals[name]
+            alone = sum(other.pool is goal.pool for other in self._goals.values()) == 1
+            if goal.target is None or not alone:
+                points = [g.target for g in self._goals.values() if g.pool is goal.pool and g.target is not None]
+                if not self._back:
+                    goal.order.targets.pop(name, None)
+                    if (point := taken.get(name)) is not None and any(math.dist(point, p) < NEAR for p in points):
+                        goal.order.targets[name] = point
+            else:
+                goal.order.targets[name] = goal.target
+        if self._back:
+            return
+        for name in list(self._goals):
+            goal = self._goals[name]
+            if name in goal.order.targets:
+                goal.target = goal.order.targets[name]
+            else:  # there were fewer targets than movers
+                del self._goals[name]
+                goal.order.movers = tuple(other for other in goal.order.movers if other != name)
+
+    def _plan_round(self) -> None:
+        """Plans anew, since movers failed or the surface has changed; first movers get out of the way if they must."""
+        movers = [one.mover for one in self._on_way.values()]
+        try:
+            raster = self._make_raster(movers)
+        except RoutingError as error:
+            for name in list(self._goals):
+                self._fail(name, f"mover {name}: {error}")
+            self._go_to_rest(list(self._on_way), self._raster)
+            return
+        self._surface = self._surface_now()
+        for name, one in list(self._on_way.items()):
+            if one.rests and not one.in_motion and not raster.free[_place(raster, one.points[one.passed])]:
+                self._fail(name, f"mover {name}: the surface on which it waited is there no more")
+                del self._on_way[name]
+        self._bring_into_places(raster)
+        shut = self._standing(raster, self._on_way)
+        commitments = self._commitments()
+        caught = self._failed | {name for name, one in self._on_way.items() if one.off_way() > NEAR}
+        for name, one in self._on_way.items():
+            places = [_place(raster, point) for point in one.points[one.passed + 1 : commitments[name] + 1]]
+            if any(place in shut or not raster.free[place] for place in places):
+                caught.add(name)
+        if caught:
+            self._go_to_rest(caught, raster)
+        else:
+            self._plan_what_can_be(raster)
+
+    def _bring_into_places(self, raster: Raster) -> None:
+        """Movers with an order that do not stand in places, or cannot be moved by now."""
+        for name in [name for name in self._goals if name not in self._on_way]:
+            try:
+                check_can_move(self.session.mover(name))
+                self._astray([name], raster)
+            except RoutingError as error:
+                self._fail(name, str(error))
+
+    def _plan_what_can_be(self, raster: Raster) -> None:
+        """Orders for which there is no plan any more fail, with the reason."""
+        while True:
+            try:
+                self._install(*self._plan(self._goals, raster))
+                break
+            except RoutingError as error:
+                names = [error.mover] if error.mover in self._goals else list(self._goals)
+                for name in names:
+                    self._fail(name, str(error) if name in str(error) else f"mover {name}: {error}")
+                if not names:
+                    self._end_routes()
+                    return
+        self._take_targets()
+
+    @staticmethod
+    def _is_in_place(mover: Mover, raster: Raster) -> bool:
+        here = (mover.x, mover.y)
+        places = raster.covered_by(mover)
+        return any(raster.free[place] and math.dist(raster.middle(place), here) <= NEAR for place in places)
+
+    def _end_routes(self) -> None:
+        """All come to rest as soon as they can in places."""
+        for name, visit in self._commitments().items():
+            one = self._on_way[name]
+            del one.points[visit + 1 :], one.before[visit + 1 :], one.directions[visit:]
+            one.granted, one.sent = visit, min(one.sent, visit)
+
+    def _check_targets(self, goals: Mapping[str, _Goal], raster: Raster) -> None:
+        """RoutingError: these cannot be."""
+        known: dict[int, str] = {}
+        for name, goal in goals.items():
+            if goal.target is not None:
+                place = raster.place_at(goal.target, f"the target of mover {name}", name)
+                if place in known:
+                    raise RoutingError(f"mover {known[place]} and mover {name} have one target", name)
+                known[place] = name
+
+    # --- out of the way ---
+
+    def _astray(self, names: Iterable[str], raster: Raster) -> list[str]:
+        """Those that stand between places: they go to one first."""
+        shut = self._standing(raster, [*names, *self._on_way])
+        bound = {_place(raster, p) for one in self._on_way.values() for p in one.points[one.passed :]}
+        found = {}
+        for name in names:
+            mover = self.session.mover(name)
+            if name in self._on_way:
+                continue
+            if self._is_in_place(mover, raster):
+                continue
+            here = (mover.x, mover.y)
+            near = sorted(raster.covered_by(mover), key=lambda place: math.dist(raster.middle(place), here))
+            for place in near:
+                x, y = raster.middle(place)
+                straight = min(abs(mover.x - x), abs(mover.y - y)) < NEAR
+                if straight and raster.free[place] and place not in shut and place not in bound:
+                    found[name] = Traveller(mover, [(x, y)])
+                    bound.add(place)
+                    break
+            else:
+                raster.place_at(here, f"mover {name}", name)  # says what is wrong
+                raise RoutingError(f"mover {name} at ({mover.x:.6g}, {mover.y:.6g}) has no way to a place", name)
+        if found:
+            if not self._on_way:
+                self._dynamics = {**self.options.dynamics, "reference": raster.reference}
+            self._on_way |= found
+        return list(found)
+
+    def _go_to_rest(self, caught: Iterable[str], raster: Raster | None) -> None:
+        """These, and whoever is bound for places behind them, come to rest and go back to the place they have passed;
+        all others go as far as they have to."""
+        commitments = self._commitments()
+        names = {one: name for name, one in self._on_way.items()}
+        back = set(caught)
+        again = True
+        while again:
+            again = False
+            for name, one in self._on_way.items():
+                if name in back:
+                    continue
+                for visit in range(one.passed + 1, commitments[name] + 1):
+                    before = one.before[visit]
+                    if before is not None and names.get(before[0]) in back and before[0].passed <= before[1]:
+                        back.add(name)
+                        again = True
+                        break
+        for name, one in self._on_way.items():
+            if name in back and name not in self._back:
+                able = one.mover.state.value == "Enabled" and name not in self._failed
+                one.feedback = one.mover.halt() if able and (one.in_motion or not one.rests) else None
+                one.halts = one.feedback is not None
+                one.told = None
+                self._back[name] = one
+            elif name not in self._back:
+                one.granted = commitments[name]
+                one.sent = min(one.sent, one.granted)
+        if raster is not None:
+            self._raster = raster
+
+    def _see_to_those_that_go_back(self) -> None:
+        left = False
+        for name, one in list(self._back.items()):
+            one.look(one.granted)
+            mover, feedback = one.mover, one.feedback
+            if one.in_motion or mover.state.value in ("Disabling", "ErrorPending") or (one.halts and one.is_told):
+                left = True
+                continue
+            if one.halts:
+                one.halts, feedback, one.feedback = False, None, None
+            if mover.state.value != "Enabled" or mover.command_mode.value != "FreeMovement":
+                self._fail(name, f"mover {name} is {mover.state.value} on its way")
+                self._failed.add(name)
+            x, y = one.points[one.passed]
+            if name in self._failed:
+                del self._back[name], self._on_way[name]
+                self._failed.discard(name)
+            elif feedback is None and math.dist((mover.x, mover.y), (x, y)) > NEAR:
+                one.feedback = mover.move_to_position(x=x, y=y, use_orientation=False, **self._dynamics)
+                left = True
+            elif one.is_told:
+                left = True
+            elif feedback is not None and not feedback.done:
+                self._fail(name, f"mover {name} does not get out of the way: {feedback.sentence or 'it was halted'}")
+                self._failed.add(name)
+                left = True
+        if left:
+            return
+        for name, one in self._back.items():
+            rested = Traveller(one.mover, [one.points[one.passed]])
+            for other in self._on_way.values():
+                other.before = [None if b is not None and b[0] is one else b for b in other.before]
+            self._on_way[name] = rested
+        self._back = {}
+        self._plan_round()
+
+
+def router_for(
+    session: Session, targets: Targets, movers: Iterable[str] | None, options: Mapping[str, Any]
+) -> SurfaceRouter:
+    """The router of the session where these movers are: with these options, if any are given."""
+    names = list(movers or ())
+    if isinstance(targets, Mapping):
+        names = [name for key in targets for name in ([key] if isinstance(key, str) else key)]
+    number = session.mover(names[0]).coordinate_system if names and session.parts else 0
+    known = session._routers.get(number)
+    if known is not None and (not options or known.given == options):
+        return known
+    if known is not None and known.busy:
+        raise RoutingError("movers are on their way: other options can be given when they are there")
+    made = SurfaceRouter(session, **options)
+    if known is not None:
+        session._programs.remove(known.scan)
+    session._routers[number] = made
+    return made
+
+
+def _renamed(before: Before | None, renamed: Mapping[Traveller, tuple[Traveller, int]]) -> Before | None:
+    if before is None or before[0] not in renamed:
+        return None
+    one, first = renamed[before[0]]
+    return (one, before[1] - first) if before[1] >= first else None
+
+
+def _last(visits: Sequence[Before]) -> Before | None:
+    """The last of the visits of one place, each of which has the one before."""
+    earlier = {one.before[visit] for one, visit in visits}
+    return next((visit for visit in visits if visit not in earlier), None)
+
+
+def _place(raster: Raster, point: Point) -> int:
+    x, y = (math.floor((value - low) / raster.pitch) for value, low in zip(point, raster.origin, strict=True))
+    return y * raster.width + x
+
+
+def _are(names: Iterable[str]) -> str:
+    return "is" if len(list(names)) == 1 else "are"
+
+
+def _answers_within(session: Session) -> float:
+    from takt.remote import RemoteSession
+
+    return ANSWER_S if isinstance(session, RemoteSession) else CYCLES * session.period
