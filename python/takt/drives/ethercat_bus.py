@@ -401,6 +401,8 @@ class EthercatBus(drive.Bus):
                 self._look.set()
         else:
             self._lost_in_a_row = 0
+            if self._told_silent:
+                self._look.set()
         return self._counter
 
     def _expected(self) -> tuple[int, int]:
@@ -501,6 +503,9 @@ class EthercatBus(drive.Bus):
     def _judge(self, one: _Slave, state: int) -> None:
         if state == OPERATIONAL:
             one.state = state
+            if one.told_lost:
+                one.told_lost = False
+                self._say(f"{one.named} is heard again")
             return
         fell = one.state == OPERATIONAL
         one.state = state
