@@ -334,7 +334,7 @@ class EthercatBus(drive.Bus):
         raise TaktError(f"{self.bus_name}: {one.named}: register 0x{register:04X} cannot be read: no answer")
 
     def _synchronise(self) -> None:
-        """Clocks run together, and SYNC0 comes half a period after the frame."""
+        """Clocks run together, and SYNC0 comes every period."""
         if not self._wire.master.config_dc():
             raise TaktError(f"{self.bus_name}: dc: true, but no slave has a distributed clock")
         period_ns = round(1e9 * self.period_s)
