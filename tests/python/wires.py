@@ -21,9 +21,11 @@ BUS = f"ethercat:{MASTER}"
 PERIOD_S = 0.004
 _NEW_NETWORK = 0x4000_0000
 
-_SET_UP = f"""
+_LOOPBACK = """
 ip link set lo up multicast on
 ip route add 224.0.0.0/4 dev lo
+"""
+_WIRE = f"""
 ip link add {MASTER} type veth peer name {DRIVES}
 ip link set {MASTER} up
 ip link set {DRIVES} up
@@ -31,15 +33,15 @@ ip link set {DRIVES} up
 
 
 @contextlib.contextmanager
-def own_network() -> Iterator[None]:
-    """Skips where the rights, or what else it takes, are missing."""
+def own_network(*, wire: bool = True) -> Iterator[None]:
+    """Skips where the rights, or what else it takes, are missing. wire: with the pair of interfaces."""
     libc = ctypes.CDLL(None, use_errno=True)
     before = os.open("/proc/thread-self/ns/net", os.O_RDONLY)
     try:
         if libc.unshare(_NEW_NETWORK):
             pytest.skip(f"no right to make a network namespace ({os.strerror(ctypes.get_errno())})")
         try:
-            made = subprocess.run(["sh", "-ec", _SET_UP], capture_output=True, text=True, check=False)
+            made = subprocess.run(["sh", "-ec", _LOOPBACK + _WIRE * wire], capture_output=True, text=True, check=False)
             if made.returncode:
                 pytest.skip(f"no veth pair can be made here: {' '.join(made.stderr.split())}")
             yield
