@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 from rich.progress import BarColumn, Progress, ProgressColumn, SpinnerColumn, Task, TextColumn, TimeElapsedColumn
 from rich.table import Table
 from rich.text import Text
@@ -262,14 +263,38 @@ def demo(
 ) -> int:
     """Run a ready machine by its NAME, or a scenario FILE, on a taktd of its own, in real time over LCM; verify what
     the network's log holds; report. Without NAME: list the ready machines."""
-    from takt.ready import EXAMPLES, listing, scenario_of
+    from takt.ready import EXAMPLES, listing
 
     if what is None:
         out.print(listing())
         _say(f"\nOne to begin with: takt demo one_axis --view\nThe files of all: {EXAMPLES}")
+        _say("With drives on a field bus, emulated ones: takt demo real_drives")
         return 0
+    if what == "real_drives":
+        from takt.drives import demonstration
 
+        if click.get_current_context().get_parameter_source("pace") is not ParameterSource.COMMANDLINE:
+            pace = "paced"  # in real time three processes in Python want priority over all else
+        with demonstration.machine_file(EXAMPLES / demonstration.OF, _say) as file:
+            return _demo(demonstration.OF, machine or file, report, pace, view, port, browser, stay, drives=True)
+    return _demo(what, machine, report, pace, view, port, browser, stay)
+
+
+def _demo(
+    what: str,
+    machine: Path | None,
+    report: Path,
+    pace: str,
+    view: bool,
+    port: int,
+    browser: bool,
+    stay: bool | None,
+    *,
+    drives: bool = False,
+) -> int:
+    """drives: emulated ones, and the process between them and the engine, run beside."""
     from takt.demo import nothing, run_demo
+    from takt.ready import scenario_of
     from takt.report.command import write_outcome
     from takt.view.command import Beside
 
@@ -287,7 +312,14 @@ def demo(
         else:
             _say("its journal runs again ...")
 
-    result = run_demo(scenario, of, report, _say, pace, page or nothing, judged, stays)
+    @contextlib.contextmanager
+    def beside(url: str) -> Iterator[None]:
+        from takt.drives.demonstration import processes
+
+        with processes(of, url, report, _say) if drives else contextlib.nullcontext(), (page or nothing)(url):
+            yield
+
+    result = run_demo(scenario, of, report, _say, pace, beside, judged, stays)
     if result.replayed is not None:
         _show_figures({"journal": result.replayed.sentence})
     return 0 if result.passed else FAILED

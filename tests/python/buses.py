@@ -6,6 +6,9 @@ import contextlib
 import itertools
 import json
 import os
+import signal
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Iterator, Sequence
@@ -88,3 +91,46 @@ def eventually(condition: Any, within_s: float = LONG_S) -> bool:
     while not condition() and time.monotonic() < end_s:
         time.sleep(0.002)
     return bool(condition())
+
+
+class Said:
+    """A process of `takt drives`, and its lines."""
+
+    def __init__(self, *arguments: object) -> None:
+        command = [sys.executable, "-m", "takt", "drives", *map(str, arguments)]
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.lines: list[str] = []
+        self._reader = threading.Thread(target=self._read)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self.process.stderr is not None
+        for line in self.process.stderr:
+            self.lines.append(line.rstrip())
+
+    def wait_for(self, text: str) -> None:
+        eventually(lambda: any(text in line for line in self.lines) or self.process.poll() is not None)
+        assert any(text in line for line in self.lines), self.lines
+
+    def tell(self, line: str) -> None:
+        assert self.process.stdin is not None
+        self.process.stdin.write(line + "\n")
+        self.process.stdin.flush()
+
+    def end(self) -> int:
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+        code = self.process.wait(60)
+        self._reader.join(60)
+        assert self.process.stdin is not None
+        self.process.stdin.close()
+        return code
+
+
+@contextlib.contextmanager
+def drives(*arguments: object) -> Iterator[Said]:
+    process = Said(*arguments)
+    try:
+        yield process
+    finally:
+        process.end()

@@ -123,6 +123,41 @@ def test_what_is_wrong_is_said_with_line_and_key(old: str, new: str, sentence: s
     assert any(sentence in line for line in found), found
 
 
+ETHERCAT = machine(URL, "ethercat:eth1", 2, bus_keys="dc: true").replace("node: ", "position: ")
+
+
+def test_drives_on_ethercat() -> None:
+    """AX-87: by position or alias."""
+    found = described(ETHERCAT.replace("position: 2", "alias: 4001"))["external"]["buses"][0]
+    assert found["dc"] is True
+    assert [(one.get("position"), one.get("alias")) for one in found["drives"]] == [(1, None), (None, 4001)]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("ethercat:eth1", "ethercat:", "m.yaml:14:12: external.buses[0].bus: expected canopen:CHANNEL or"),
+        (
+            "position: 2",
+            "node: 2",
+            "drives[1].node: expected position or alias on a bus ethercat:INTERFACE, found node",
+        ),
+        ("position: 2", "position: 1", "drives[1].position: expected each position once on a bus, found 1 again"),
+        ("position: 2", "position: 0", "drives[1].position: expected a whole number from 1 to 65535, found 0"),
+        ("position: 2", "position: 2, alias: 3", "drives[1].alias: expected either position or alias, found both"),
+        (", position: 2", "", "drives[1].position: expected this key, or alias, with a whole number from 1 to 65535"),
+        ("ethercat:eth1", "canopen:can0", "external.buses[0].dc: expected this key on a bus ethercat:INTERFACE only"),
+        ("ethercat:eth1", "canopen:can0", "drives[1].position: expected this key on a bus ethercat:INTERFACE only"),
+        ("ethercat:eth1", "canopen:can0", "drives[1].node: expected this key with a whole number from 1 to 127, found"),
+    ],
+)
+def test_what_is_wrong_on_ethercat_is_said_with_line_and_key(old: str, new: str, sentence: str) -> None:
+    """AX-87, EN-10."""
+    assert old in ETHERCAT
+    found = problems(ETHERCAT.replace(old, new))
+    assert any(sentence in line for line in found), found
+
+
 def test_the_schema_knows_buses(capsys: pytest.CaptureFixture[str]) -> None:
     """EN-11: editors complete them."""
     import jsonschema

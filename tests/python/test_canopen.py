@@ -14,9 +14,10 @@ from buses import PERIOD_S, described, emulated, eventually, machine, new_bus, r
 from machines import new_url, running
 from takt import drive
 from takt.drives import objects as od
-from takt.drives.can_link import CanLink, Sdo, SdoError, frame_bits, parse
+from takt.drives.can_link import CanLink, Sdo, frame_bits, parse
 from takt.drives.canopen_bus import CanopenBus, nodes_on
 from takt.drives.cia402 import State
+from takt.drives.sdo import SdoError
 from takt.errors import TaktError
 
 

@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
 import itertools
 import os
-import signal
-import subprocess
-import sys
-import threading
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 import takt
-from buses import described, emulated, eventually, machine, new_bus
+from buses import described, drives, emulated, machine, new_bus
 from machines import new_url
 from takt.cli import main
 
@@ -24,49 +18,6 @@ _ports = itertools.count(20_000 + os.getpid() % 400 * 10)
 def new_wire() -> str:
     """A bus for several processes."""
     return f"canopen:udp_multicast:239.74.163.42?port={next(_ports)}"
-
-
-class Said:
-    """A process of `takt drives`, and its lines."""
-
-    def __init__(self, *arguments: object) -> None:
-        command = [sys.executable, "-m", "takt", "drives", *map(str, arguments)]
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.lines: list[str] = []
-        self._reader = threading.Thread(target=self._read)
-        self._reader.start()
-
-    def _read(self) -> None:
-        assert self.process.stderr is not None
-        for line in self.process.stderr:
-            self.lines.append(line.rstrip())
-
-    def wait_for(self, text: str) -> None:
-        eventually(lambda: any(text in line for line in self.lines) or self.process.poll() is not None)
-        assert any(text in line for line in self.lines), self.lines
-
-    def tell(self, line: str) -> None:
-        assert self.process.stdin is not None
-        self.process.stdin.write(line + "\n")
-        self.process.stdin.flush()
-
-    def end(self) -> int:
-        if self.process.poll() is None:
-            self.process.send_signal(signal.SIGTERM)
-        code = self.process.wait(60)
-        self._reader.join(60)
-        assert self.process.stdin is not None
-        self.process.stdin.close()
-        return code
-
-
-@contextlib.contextmanager
-def drives(*arguments: object) -> Iterator[Said]:
-    process = Said(*arguments)
-    try:
-        yield process
-    finally:
-        process.end()
 
 
 def test_processes_of_their_own(tmp_path: Path) -> None:

@@ -34,7 +34,10 @@ void describe(Description<BusDrive>& d) {
   using B = BusDrive;
   d.about("A drive on a field bus that speaks CiA 402 and moves an axis.");
   d.required<&B::axis>("Name of the axis. Its drive: mode (cyclic_position, cyclic_velocity) is that of the drive.");
-  d.required<&B::node>(between(1, 127), "Address of the drive on the bus.");
+  d.defaulted<&B::node>(between(1, 127), "CANopen: address of the drive on the bus.");
+  d.defaulted<&B::position>(between(1, 65535), "EtherCAT: place of the drive on the wire, 1 next to this end.");
+  d.defaulted<&B::alias>(between(1, 65535),
+                         "EtherCAT: configured station alias of the drive, instead of its position.");
   d.defaulted<&B::vendor>("Vendor of the drive (0x1018:1), \"0x2E1\": another one is refused.");
   d.defaulted<&B::product>("Product code of the drive (0x1018:2): another one is refused.");
   d.defaulted<&B::scaling>("Unset: an increment of the drive is a count of the axis' encoder.");
@@ -49,11 +52,14 @@ void describe(Description<BusDrive>& d) {
 void describe(Description<Bus>& d) {
   using B = Bus;
   d.about("A field bus with drives, which takt drives run connects with the engine.");
-  d.required<&B::bus>("Kind and channel: canopen:can0, canopen:INTERFACE:CHANNEL (interfaces of python-can).");
-  d.defaulted<&B::bitrate>("Bits per second; 0: as the interface is set.");
-  d.defaulted<&B::node>(between(1, 127), "Address of this end.");
+  d.required<&B::bus>(
+      "Kind and channel: canopen:can0, canopen:INTERFACE:CHANNEL (interfaces of python-can), ethercat:eth1.");
+  d.defaulted<&B::bitrate>("CANopen: bits per second; 0: as the interface is set.");
+  d.defaulted<&B::node>(between(1, 127), "CANopen: address of this end.");
+  d.defaulted<&B::dc>("EtherCAT: the drives work in step with their distributed clocks (SYNC0), else with the frames.");
   d.defaulted<&B::heartbeat_s>(unit::s, between(0.01, 10),
-                               "Between two signs of life of this end and of each drive; three missing are a fault.");
+                               "Between two signs of life of this end and of each drive; three missing are a fault. "
+                               "EtherCAT: a third of the watchdog of the drives.");
   d.defaulted<&B::missing_cycles>(unit::cycles, between(3, 100000),
                                   "So many answers of a drive missing in a row are a drive error (ErrorStop 3002).");
   d.required<&B::drives>("The drives. Their axes are external drives without being named under drives.");

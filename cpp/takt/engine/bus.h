@@ -35,22 +35,25 @@ struct BusObject {
 };
 
 struct BusDrive {
-  std::string axis;                      // name of the axis
-  std::uint8_t node = 1;                 // address on the bus
-  std::optional<std::string> vendor{};   // "0x2E1": that of the drive, else it is the wrong one
-  std::optional<std::string> product{};  // the same of its product code
-  std::optional<BusScaling> scaling{};   // unset: an increment of the drive is a count of the axis' encoder
-  double velocity_factor = 1;            // units of velocity objects in 1 increment/s
-  std::optional<double> rated_torque{};  // Nm or N; unset: the drive says it
+  std::string axis;                         // name of the axis
+  std::optional<std::uint8_t> node{};       // CANopen: address on the bus
+  std::optional<std::uint16_t> position{};  // EtherCAT: place on the wire, from 1
+  std::optional<std::uint16_t> alias{};     // EtherCAT: instead of the position
+  std::optional<std::string> vendor{};      // "0x2E1": that of the drive, else it is the wrong one
+  std::optional<std::string> product{};     // the same of its product code
+  std::optional<BusScaling> scaling{};      // unset: an increment of the drive is a count of the axis' encoder
+  double velocity_factor = 1;               // units of velocity objects in 1 increment/s
+  std::optional<double> rated_torque{};     // Nm or N; unset: the drive says it
   BusInputs inputs;
   std::vector<BusObject> start_up;
   double ready_within_s = 10;  // s from the start of the process to a drive that has answered
 };
 
 struct Bus {
-  std::string bus;                   // "canopen:can0"
+  std::string bus;                   // "canopen:can0", "ethercat:eth1"
   std::uint32_t bitrate = 1000000;   // bit/s; 0: as the interface is set
   std::uint8_t node = 127;           // address of this end
+  bool dc = false;                   // EtherCAT: distributed clocks
   double heartbeat_s = 0.1;          // s between two signs of life, of this end and of each drive
   std::uint32_t missing_cycles = 5;  // so many answers missing in a row are a drive error
   std::vector<BusDrive> drives;

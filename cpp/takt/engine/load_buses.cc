@@ -17,6 +17,12 @@ namespace takt::engine {
 namespace {
 
 constexpr std::string_view kCanopen = "canopen:";
+constexpr std::string_view kEthercat = "ethercat:";
+
+// With a channel behind the colon.
+bool IsOf(std::string_view bus, std::string_view kind) {
+  return bus.starts_with(kind) && bus.size() > kind.size();
+}
 
 // "0x6098", up to `largest`.
 bool IsHex(std::string_view text, std::uint64_t largest) {
@@ -78,15 +84,18 @@ class BusChecker {
   }
 
   void CheckBus(const std::string& path, const Bus& bus) {
-    if (!bus.bus.empty() && (!bus.bus.starts_with(kCanopen) || bus.bus.size() == kCanopen.size())) {
-      Add(path + ".bus", "expected canopen:CHANNEL or canopen:INTERFACE:CHANNEL, found " + Quoted(bus.bus));
+    const bool ethercat = IsOf(bus.bus, kEthercat);
+    if (!bus.bus.empty() && !ethercat && !IsOf(bus.bus, kCanopen)) {
+      Add(path + ".bus",
+          "expected canopen:CHANNEL or canopen:INTERFACE:CHANNEL or ethercat:INTERFACE, found " + Quoted(bus.bus));
     }
+    if (bus.dc && !ethercat) Add(path + ".dc", "expected this key on a bus ethercat:INTERFACE only");
     if (!bus.bus.empty() && bus.drives.empty()) Add(path + ".drives", "expected at least one drive");
     for (std::size_t i = 0; i < bus.drives.size(); ++i) {
       const BusDrive& drive = bus.drives[i];
       const std::string at = path + ".drives[" + std::to_string(i) + "]";
       CheckAxis(at, drive);
-      CheckNode(at, bus, i);
+      ethercat ? CheckPlace(at, bus, i) : CheckNode(at, bus, i);
       for (const auto& [key, given] : {std::pair{".vendor", &drive.vendor}, std::pair{".product", &drive.product}}) {
         if (*given && !IsHex(**given, 0xFFFFFFFF)) {
           Add(at + key, "expected a number of 32 bits like \"0x2E1\", found " + Quoted(**given));
@@ -125,13 +134,36 @@ class BusChecker {
   }
 
   void CheckNode(const std::string& at, const Bus& bus, std::size_t i) {
-    const std::uint8_t node = bus.drives[i].node;
-    if (node == bus.node) {
-      Add(at + ".node", "expected another address than that of this end of the bus, found " + std::to_string(node));
+    const BusDrive& drive = bus.drives[i];
+    if (drive.position) Add(at + ".position", "expected this key on a bus ethercat:INTERFACE only; here it is node");
+    if (drive.alias) Add(at + ".alias", "expected this key on a bus ethercat:INTERFACE only; here it is node");
+    if (!drive.node) return Add(at + ".node", "expected this key with a whole number from 1 to 127, found nothing");
+    if (*drive.node == bus.node) {
+      Add(at + ".node",
+          "expected another address than that of this end of the bus, found " + std::to_string(*drive.node));
     }
-    for (std::size_t k = 0; k < i; ++k) {
-      if (bus.drives[k].node != node) continue;
-      return Add(at + ".node", "expected each address once on a bus, found " + std::to_string(node) + " again");
+    CheckOnce(at + ".node", "each address", bus, i, &BusDrive::node);
+  }
+
+  void CheckPlace(const std::string& at, const Bus& bus, std::size_t i) {
+    const BusDrive& drive = bus.drives[i];
+    if (drive.node) Add(at + ".node", "expected position or alias on a bus ethercat:INTERFACE, found node");
+    if (drive.position && drive.alias) {
+      Add(at + ".alias", "expected either position or alias, found both");
+    } else if (!drive.position && !drive.alias && !drive.node) {
+      Add(at + ".position", "expected this key, or alias, with a whole number from 1 to 65535, found nothing");
+    }
+    CheckOnce(at + ".position", "each position", bus, i, &BusDrive::position);
+    CheckOnce(at + ".alias", "each alias", bus, i, &BusDrive::alias);
+  }
+
+  template <typename Address>
+  void CheckOnce(const std::string& at, const std::string& what, const Bus& bus, std::size_t i,
+                 std::optional<Address> BusDrive::*key) {
+    const std::optional<Address>& mine = bus.drives[i].*key;
+    for (std::size_t k = 0; mine && k < i; ++k) {
+      if (bus.drives[k].*key != mine) continue;
+      return Add(at, "expected " + what + " once on a bus, found " + std::to_string(*mine) + " again");
     }
   }
 

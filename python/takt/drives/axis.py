@@ -18,8 +18,14 @@ MODES = {
     drive.CYCLIC_VELOCITY: Mode.CYCLIC_VELOCITY,
     drive.CYCLIC_TORQUE: Mode.CYCLIC_TORQUE,
 }
+AXIS_MODES = {"cyclic_position": Mode.CYCLIC_POSITION, "cyclic_velocity": Mode.CYCLIC_VELOCITY}  # of a machine file
 CODE_WITHIN_S = 0.2  # after the fault itself the error code is expected to have come
 MANY_RESETS = 3
+
+
+def set_point_mode(mode: Mode) -> int:
+    """Of a set point for a drive in this mode."""
+    return drive.CYCLIC_VELOCITY if mode is Mode.CYCLIC_VELOCITY else drive.CYCLIC_POSITION
 
 
 @dataclass

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+from takt.drives.sdo import Objects, SdoError, abort_text
 from takt.errors import TaktError
 
 KIND: Final = "canopen"
@@ -171,16 +172,8 @@ class CanLink:
 QUESTIONS: Final = 3  # without an answer
 
 
-class SdoError(Exception):
-    """An object could not be read or written. code: of the abort; None: there was no answer."""
-
-    def __init__(self, what: str, code: int | None = None) -> None:
-        super().__init__(what)
-        self.code = code
-
-
-class Sdo:
-    """Objects of one node, as integers. Someone else has to take in messages meanwhile (`CanLink.background`)."""
+class Sdo(Objects):
+    """Objects of one node. Someone else has to take in messages meanwhile (`CanLink.background`)."""
 
     def __init__(self, link: CanLink, node: int, timeout_s: float = 0.3) -> None:
         _, canopen = packages()
@@ -189,42 +182,18 @@ class Sdo:
         link.network.add_node(self._remote)  # instead of one that there was
         self._remote.sdo.RESPONSE_TIMEOUT = timeout_s
         self.node = node
+        self.called = f"node {node}"
 
     def patience(self, timeout_s: float) -> Sdo:
         """Answers may take so long."""
         self._remote.sdo.RESPONSE_TIMEOUT = timeout_s
         return self
 
-    def read_bytes(self, index: int, subindex: int = 0) -> bytes:
-        what = f"0x{index:04X}:{subindex} cannot be read"
+    def upload(self, what: str, index: int, subindex: int) -> bytes:
         return bytes(self._asked(what, lambda: self._remote.sdo.upload(index, subindex)))
 
-    def read(self, index: int, subindex: int = 0, *, signed: bool = False) -> int:
-        return int.from_bytes(self.read_bytes(index, subindex), "little", signed=signed)
-
-    def find(self, index: int, subindex: int = 0, *, signed: bool = False) -> int | None:
-        """None: the node does not have it. Raises SdoError where there is no answer."""
-        try:
-            return self.read(index, subindex, signed=signed)
-        except SdoError as error:
-            if error.code is None:
-                raise
-            return None
-
-    def write(self, index: int, subindex: int, value: int, bits: int) -> None:
-        data = (value & ((1 << bits) - 1)).to_bytes(bits // 8, "little")
-        what = f"0x{index:04X}:{subindex} cannot be written with {value}"
+    def download(self, what: str, index: int, subindex: int, data: bytes) -> None:
         self._asked(what, lambda: self._remote.sdo.download(index, subindex, data))
-
-    def try_to_write(self, index: int, subindex: int, value: int, bits: int) -> bool:
-        """False: the node does not take it."""
-        try:
-            self.write(index, subindex, value, bits)
-        except SdoError as error:
-            if error.code is None:
-                raise
-            return False
-        return True
 
     def _asked(self, what: str, question: Callable[[], Any]) -> Any:
         """The answer; without one the question is put again, as a frame may get lost."""
@@ -236,37 +205,6 @@ class Sdo:
             except self._canopen.SdoCommunicationError:
                 pass
         raise SdoError(f"{what}: no answer")
-
-
-def abort_text(code: int) -> str:
-    """ "SDO abort 0x06020000, the object does not exist"."""
-    text = ABORTS.get(code)
-    return f"SDO abort 0x{code:08X}" + (f", {text}" if text else "")
-
-
-ABORTS: Final = {
-    0x05040000: "the transfer timed out",
-    0x06010000: "such an access is not supported",
-    0x06010001: "the object can only be written",
-    0x06010002: "the object can only be read",
-    0x06020000: "the object does not exist",
-    0x06040041: "the object cannot be mapped",
-    0x06040042: "the mapping would be longer than a message",
-    0x06040043: "the parameters do not fit together",
-    0x06060000: "the hardware refuses it",
-    0x06070010: "the length is wrong",
-    0x06070012: "the data are too long",
-    0x06070013: "the data are too short",
-    0x06090011: "the subindex does not exist",
-    0x06090030: "the value is out of range",
-    0x06090031: "the value is too large",
-    0x06090032: "the value is too small",
-    0x060A0023: "the resource is not there",
-    0x08000000: "general error",
-    0x08000020: "the data cannot be stored",
-    0x08000021: "the drive is controlled locally",
-    0x08000022: "not in the present state of the drive",
-}
 
 
 # --- what CANopen fixes ---

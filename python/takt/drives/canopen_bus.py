@@ -17,7 +17,7 @@ from typing import Any, Final
 from takt import drive
 from takt.counted import counted
 from takt.drives import objects as od
-from takt.drives.axis import DriveAxis, Words
+from takt.drives.axis import AXIS_MODES, DriveAxis, Words, set_point_mode
 from takt.drives.can_link import (
     EMERGENCY,
     HEARTBEAT,
@@ -32,14 +32,14 @@ from takt.drives.can_link import (
     TPDO2,
     CanLink,
     Sdo,
-    SdoError,
     frame_bits,
     parse,
 )
 from takt.drives.cia402 import MODE_NAMES, Mode
-from takt.drives.emulation import CLOCK, CLOCK_IS_SYNC
+from takt.drives.emulation_commands import CLOCK, CLOCK_IS_SYNC
 from takt.drives.error_texts import error_text
 from takt.drives.scaling import scaling_of
+from takt.drives.sdo import SdoError
 from takt.errors import TaktError
 
 OPERATIONAL: Final = 5
@@ -55,8 +55,6 @@ _TAKEN: Final = struct.Struct("<HiH")  # RPDO1: control word, target, max torque
 _TORQUE: Final = struct.Struct("<bh")  # RPDO2: mode, target torque
 _MEASURED: Final = struct.Struct("<Hih")  # TPDO1: status word, position, torque
 _MORE: Final = struct.Struct("<IH")  # TPDO2: digital inputs, error code
-
-AXIS_MODES: Final = {"cyclic_position": Mode.CYCLIC_POSITION, "cyclic_velocity": Mode.CYCLIC_VELOCITY}
 
 
 class _Node:
@@ -397,7 +395,7 @@ class CanopenBus(drive.Bus):
         off = drive.SetPoint()
         for node in self._nodes:
             if node.operational and node.drive is not None:
-                off_in_its_mode = drive.SetPoint(mode=_set_point_mode(node.mode))
+                off_in_its_mode = drive.SetPoint(mode=set_point_mode(node.mode))
                 self._send(node, node.drive.words(off_in_its_mode, now_s, stop=node.axis in stop))
         asked = [node for node in self._nodes if node.operational]
         self._sync(asked)
@@ -464,10 +462,6 @@ class CanopenBus(drive.Bus):
                 f"{trip:.3f} ms, 1 % above {worst:.3f}"
             )
         return said
-
-
-def _set_point_mode(mode: Mode) -> int:
-    return drive.CYCLIC_VELOCITY if mode is Mode.CYCLIC_VELOCITY else drive.CYCLIC_POSITION
 
 
 def _map_one(sdo: Sdo, index: int, cob_id: int, transmission: int, entries: Sequence[od.Object]) -> None:

@@ -14,17 +14,27 @@ import click
 from takt.counted import counted
 from takt.drive import WATCHDOG, Plant
 from takt.drives import objects as od
-from takt.drives.can_link import CanLink, Sdo, SdoError, parse
+from takt.drives.can_link import CanLink, Sdo, parse
 from takt.drives.canopen_bus import CanopenBus, nodes_on
 from takt.drives.cia402 import MODE_NAMES, Mode, state_of, supported_modes
-from takt.drives.emulation import Emulation, bus_of, emulated_link, emulated_nodes, read_commands
+from takt.drives.emulation import Emulation, bus_of, emulated_link, emulated_nodes
+from takt.drives.emulation_commands import read_commands
 from takt.drives.error_texts import error_text
+from takt.drives.ethercat_bus import EthercatBus
+from takt.drives.ethercat_emulation import EthercatEmulation, emulated_slaves
+from takt.drives.ethercat_link import Wire, is_ethercat, other_end
+from takt.drives.ethercat_link import parse as parse_ethercat
+from takt.drives.sdo import Objects, SdoError
 from takt.errors import TaktError
 from takt.network import network_of
 
 FILE = click.Path(path_type=Path)
-BUS = click.option("--bus", required=True, metavar="BUS", help="canopen:CHANNEL or canopen:INTERFACE:CHANNEL.")
-BITRATE = click.option("--bitrate", default=1_000_000, show_default=True, type=click.IntRange(1), help="bit/s.")
+BUS = click.option(
+    "--bus", required=True, metavar="BUS", help="canopen:CHANNEL, canopen:INTERFACE:CHANNEL or ethercat:INTERFACE."
+)
+BITRATE = click.option(
+    "--bitrate", default=1_000_000, show_default=True, type=click.IntRange(1), help="bit/s, on CANopen."
+)
 NONE_THERE = 1
 
 
@@ -41,7 +51,9 @@ def drives() -> None:
 @BUS
 @BITRATE
 def scan(bus: str, bitrate: int) -> int:
-    """List the nodes of a bus: type, maker, state."""
+    """List the nodes of a bus, or the slaves: type, maker, state."""
+    if is_ethercat(bus):
+        return _scan_ethercat(bus)
     with CanLink(parse(bus), bitrate) as link, link.background():
         found = nodes_on(link)
         for node in found:
@@ -50,16 +62,39 @@ def scan(bus: str, bitrate: int) -> int:
     return 0 if found else NONE_THERE
 
 
-def _line_on(sdo: Sdo) -> str:
+def _scan_ethercat(bus: str) -> int:
+    with Wire(bus) as wire:
+        found = wire.find()
+        for position, slave in enumerate(found, start=1):
+            print(_line_of_slave(wire, slave, position))
+        print(f"{bus}: {counted(len(found), 'slave')}", file=sys.stderr)
+    return 0 if found else NONE_THERE
+
+
+def _line_of_slave(wire: Wire, slave: Any, position: int) -> str:
+    """Also for those without objects, such as couplers."""
+    alias = wire.alias(slave)
+    sdo = wire.sdo(slave, position)
+    sdo.called += f" (alias {alias})" if alias else ""
+    try:
+        return _line_on(sdo)
+    except SdoError:
+        return (
+            f"{sdo.called}: {slave.name or 'no name'}, vendor 0x{slave.man:X}, product 0x{slave.id:X}, revision "
+            f"0x{slave.rev:X}: no objects"
+        )
+
+
+def _line_on(sdo: Objects) -> str:
     device = sdo.read(0x1000)
-    said = f"node {sdo.node}: {_text(sdo, 0x1008) or 'no name'}, {_identity(sdo)}"
+    said = f"{sdo.called}: {_text(sdo, 0x1008) or 'no name'}, {_identity(sdo)}"
     if device & 0xFFFF != 402:
         return f"{said}, device type 0x{device:08X}: no drive of CiA 402"
     state = state_of(sdo.find(od.STATUS_WORD.index) or 0)
     return f"{said}, {state.value if state else 'no state'}, {_error(sdo)}"
 
 
-def _identity(sdo: Sdo) -> str:
+def _identity(sdo: Objects) -> str:
     vendor, product, revision = (sdo.find(0x1018, subindex) for subindex in (1, 2, 3))
     return ", ".join(
         f"{name} 0x{value:X}"
@@ -68,14 +103,14 @@ def _identity(sdo: Sdo) -> str:
     )
 
 
-def _text(sdo: Sdo, index: int) -> str:
+def _text(sdo: Objects, index: int) -> str:
     try:
         return sdo.read_bytes(index).decode("ascii", "replace").strip("\0 ")
     except SdoError:
         return ""
 
 
-def _error(sdo: Sdo) -> str:
+def _error(sdo: Objects) -> str:
     code = sdo.find(od.ERROR_CODE.index)
     return error_text(code) if code else "no error"
 
@@ -83,9 +118,14 @@ def _error(sdo: Sdo) -> str:
 @drives.command()
 @BUS
 @BITRATE
-@click.option("--node", "number", required=True, type=click.IntRange(1, 127), help="Address of the drive.")
-def info(bus: str, bitrate: int, number: int) -> int:
+@click.option("--node", "number", type=click.IntRange(1, 127), help="CANopen: address of the drive.")
+@click.option("--position", type=click.IntRange(1, 65535), help="EtherCAT: place of the drive, from 1.")
+def info(bus: str, bitrate: int, number: int | None, position: int | None) -> int:
     """Say all that a drive tells of itself: maker, modes, state, scaling, process data."""
+    if is_ethercat(bus):
+        return _info_ethercat(bus, position)
+    if number is None or position is not None:
+        raise click.UsageError("give the --node of the drive on CANopen, its --position on EtherCAT")
     with CanLink(parse(bus), bitrate) as link, link.background():
         sdo = Sdo(link, number)
         try:
@@ -97,7 +137,21 @@ def info(bus: str, bitrate: int, number: int) -> int:
     return 0
 
 
-def _facts(sdo: Sdo) -> Iterator[tuple[str, str]]:
+def _info_ethercat(bus: str, position: int | None) -> int:
+    if position is None:
+        raise click.UsageError("give the --node of the drive on CANopen, its --position on EtherCAT")
+    with Wire(bus) as wire:
+        found = wire.find()
+        if position > len(found):
+            raise TaktError(f"{bus}: no slave at position {position}; there are {len(found)}")
+        slave = found[position - 1]
+        print(_line_of_slave(wire, slave, position))
+        for name, value in _facts(wire.sdo(slave, position)):
+            print(f"  {name}: {value}")
+    return 0
+
+
+def _facts(sdo: Objects) -> Iterator[tuple[str, str]]:
     modes = sdo.find(od.SUPPORTED_MODES.index)
     if modes is not None:
         yield "modes", ", ".join(supported_modes(modes))
@@ -122,6 +176,11 @@ def _facts(sdo: Sdo) -> Iterator[tuple[str, str]]:
             kind = f"{'RPDO' if index < 0x1800 else 'TPDO'}{(index & 0xF) + 1}"
             objects = " ".join(f"0x{word >> 16:04X}:{word & 0xFF}" for word in mapped)
             yield kind, f"0x{cob_id & 0x7FF:03X}, transmission {sdo.find(index, 2)}: {objects}"
+    for assigned, kind in ((0x1C12, "outputs"), (0x1C13, "inputs")):
+        for k in range(1, (sdo.find(assigned, 0) or 0) + 1):
+            index = sdo.find(assigned, k) or 0
+            mapped = [sdo.find(index, n) or 0 for n in range(1, (sdo.find(index, 0) or 0) + 1)]
+            yield kind, f"0x{index:04X}: {' '.join(f'0x{word >> 16:04X}:{word >> 8 & 0xFF}' for word in mapped)}"
 
 
 @contextmanager
@@ -156,10 +215,11 @@ def _described(machine: Path) -> tuple[bytes, str, Mapping[str, Any]]:
 def run(machine: Path, bus: str | None, url: str | None, key: Path | None, watchdog: int) -> int:
     """Be the process of the drives of a machine file: its field buses for the engine (taktd MACHINE)."""
     _, file_name, described = _described(machine)
-    buses: list[CanopenBus] = []
+    buses: list[CanopenBus | EthercatBus] = []
     try:
         for one in bus_of(described, file_name, bus):
-            buses.append(CanopenBus(one, described, _say))
+            kind = EthercatBus if is_ethercat(one["bus"]) else CanopenBus
+            buses.append(kind(one, described, _say))
         plant = Plant({}, url or network_of(described), buses=buses, watchdog=watchdog, key=key, say=_say)
         _say(f"ready: {', '.join(axis for one in buses for axis in one.axes)}")
         with until_signal(plant.stop):
@@ -180,16 +240,18 @@ def emulate(machine: Path | None, bus: str | None, nodes: int) -> int:
     """Be the drives themselves, without metal: those of a machine file, or as many as one likes.
 
     Commands are read from standard input: fault NODE CODE [lasting], clear NODE, cut NODE|all, join NODE|all,
-    power NODE off|on, stall NODE, show, quit."""
+    power NODE off|on, stall NODE, show, quit; on EtherCAT lose PERCENT, too, and a NODE is a position."""
     if machine is None:
         if bus is None:
             raise click.UsageError("give a machine file, or --bus with --nodes")
-        text, file_name, described = _standing_alone(bus, nodes)
+        text, file_name, described = standing_alone(bus, nodes)
     else:
         text, file_name, described = _described(machine)
     chosen = bus_of(described, file_name, bus)
     if len(chosen) > 1:
         raise TaktError(f"{file_name} has {len(chosen)} buses: choose one with --bus")
+    if is_ethercat(chosen[0]["bus"]):
+        return _emulate_ethercat(chosen[0], described, text, file_name, own=machine is None)
     with emulated_link(chosen[0]["bus"]) as link:
         emulation = Emulation(link, emulated_nodes(chosen[0], described, text, file_name), _say)
         _say(f"{chosen[0]['bus']}: {counted(len(emulation.nodes), 'emulated drive')}")
@@ -199,7 +261,21 @@ def emulate(machine: Path | None, bus: str | None, nodes: int) -> int:
     return 0
 
 
-def _standing_alone(bus: str, nodes: int) -> tuple[bytes, str, Mapping[str, Any]]:
+def _emulate_ethercat(
+    bus: Mapping[str, Any], described: Mapping[str, Any], text: bytes, file_name: str, *, own: bool
+) -> int:
+    """own: the bus names this end of the wire, else that of the master, as in a machine file."""
+    name = parse_ethercat(bus["bus"])
+    name = name if own else other_end(name)
+    with EthercatEmulation(name, emulated_slaves(bus, described, text, file_name), _say) as emulation:
+        _say(f"ethercat:{name}: {counted(len(emulation.nodes), 'emulated drive')}")
+        read_commands(emulation)
+        with until_signal(emulation.stop):
+            emulation.run()
+    return 0
+
+
+def standing_alone(bus: str, nodes: int) -> tuple[bytes, str, Mapping[str, Any]]:
     """A machine with so many drives on this bus."""
     import json
 
@@ -211,6 +287,7 @@ def _standing_alone(bus: str, nodes: int) -> tuple[bytes, str, Mapping[str, Any]
         f"  - {{name: x{k}, limits: {limits}, encoder: {{increments_per_unit: 1000}}}}" for k in range(1, nodes + 1)
     ]
     lines += ["external:", f"  buses:\n    - bus: {json.dumps(bus)}", "      drives:"]
-    lines += [f"        - {{axis: x{k}, node: {k}}}" for k in range(1, nodes + 1)]
+    key = "position" if is_ethercat(bus) else "node"
+    lines += [f"        - {{axis: x{k}, {key}: {k}}}" for k in range(1, nodes + 1)]
     text = "\n".join(lines).encode()
     return text, "emulated", json.loads(_core.load_machine(text, "emulated"))

@@ -90,6 +90,13 @@ class EmulatedDrive:
         except ValueError:
             return Mode.NONE
 
+    @property
+    def moving(self) -> bool:
+        """It drives, brakes, or has not come to rest yet."""
+        resting = abs(self._speed) * self.period_s <= AT_REST_COUNTS
+        driving = (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION_ACTIVE)
+        return self.machine.state in driving or not resting
+
     def step(self) -> None:
         """Obeys the control word and moves for one period; what was measured at its end is in the objects then."""
         word = self.values[od.CONTROL_WORD.index]

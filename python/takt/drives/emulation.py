@@ -8,10 +8,7 @@ measured and then takes over its set point, as drives do; without SYNC it goes o
 
 from __future__ import annotations
 
-import queue
 import struct
-import sys
-import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
@@ -20,14 +17,10 @@ from takt.drives import objects as od
 from takt.drives.can_link import CanLink, packages, parse
 from takt.drives.cia402 import State
 from takt.drives.emulated import HOME_HERE, EmulatedDrive
-from takt.drives.error_texts import error_text
+from takt.drives.emulation_commands import CLOCK, CLOCK_IS_SYNC, NAME, PRODUCT, VENDOR, Commanded
 from takt.drives.scaling import scaling_of
 from takt.errors import TaktError
 
-CLOCK: Final = (0x2000, 0)  # of an emulated drive: what its time goes by
-CLOCK_IS_SYNC: Final = 1
-VENDOR: Final = 0x0000_0000
-PRODUCT: Final = 0x5441_4B54  # "TAKT"
 HEARTBEAT_LOST: Final = 0x8130
 SYNC_LOST: Final = 0x8700
 SILENCE_S: Final = 0.1  # without SYNC, before it is missed
@@ -35,10 +28,6 @@ MOST_MADE_UP_S: Final = 0.2  # of the clock, where the host gave no time
 OPERATIONAL: Final = 5
 PRE_OPERATIONAL: Final = 127
 NOT_MAPPED: Final = 1 << 31
-HELP: Final = (
-    "fault NODE CODE [lasting] | clear NODE | cut NODE|all | join NODE|all | power NODE off|on | stall NODE | show | "
-    "quit"
-)
 
 
 def _dictionary(product: int) -> Any:
@@ -77,7 +66,7 @@ def _dictionary(product: int) -> Any:
     ):
         whole.add_object(variable(index, 0, bits, value, access))
     name = dictionary.ODVariable("device name", 0x1008, 0)
-    name.data_type, name.default, name.access_type = datatypes.VISIBLE_STRING, "Takt emulated drive", "const"
+    name.data_type, name.default, name.access_type = datatypes.VISIBLE_STRING, NAME, "const"
     whole.add_object(name)
     record(0x1016, variable(0x1016, 1, 32, 0))
     record(0x1018, *(variable(0x1018, k, 32, v, "ro") for k, v in ((1, VENDOR), (2, product), (3, 1), (4, 0))))
@@ -179,15 +168,12 @@ class EmulatedNode:
         return _Map(cob_id & 0x7FF, self.number(index, 2), again_s, [od.OBJECTS[word >> 16] for word in words])
 
 
-class Emulation:
+class Emulation(Commanded):
     """Nodes on a bus. `run` serves them until `stop`; commands are texts as `takt drives emulate` reads them."""
 
     def __init__(self, link: Any, nodes: Sequence[EmulatedNode], say: Callable[[str], None]) -> None:
+        super().__init__({node.id: node for node in nodes}, say)
         self.link = link
-        self.nodes = {node.id: node for node in nodes}
-        self._say = say
-        self._commands: queue.Queue[str] = queue.Queue()
-        self._running = True
         self.silence_s = SILENCE_S
         link.emulation = self
         network = link.network
@@ -206,15 +192,7 @@ class Emulation:
             self.link.pump(0.002)
             self.link.drain(100)
             self._tick(time.monotonic())
-            while not self._commands.empty():
-                self._obey(self._commands.get())
-
-    def stop(self) -> None:
-        self._running = False
-
-    def command(self, text: str) -> None:
-        """From any thread."""
-        self._commands.put(text)
+            self.obey()
 
     def reaches(self, node: EmulatedNode) -> bool:
         return not node.cut and not node.off
@@ -331,47 +309,13 @@ class Emulation:
 
     # --- commands ---
 
-    def _obey(self, text: str) -> None:
-        words = text.split()
-        if not words:
-            return
-        try:
-            said = self._carry_out(words[0], words[1:])
-        except (ValueError, IndexError, KeyError):
-            said = f"not understood: {text!r}; expected {HELP}"
-        self._say(said)
+    def cut(self, node: EmulatedNode, out: bool) -> None:
+        node.cut = out
 
-    def _which(self, word: str) -> list[EmulatedNode]:
-        return list(self.nodes.values()) if word == "all" else [self.nodes[int(word)]]
-
-    def _carry_out(self, verb: str, rest: Sequence[str]) -> str:
-        if verb == "quit":
-            self.stop()
-            return "ends"
-        if verb == "show":
-            return "; ".join(
-                f"node {n.id}: {n.drive.machine.state.value}, {error_text(n.drive.machine.error_code)}, position "
-                f"{n.drive.read(od.POSITION)}"
-                for n in self.nodes.values()
-            )
-        for node in self._which(rest[0]):
-            if verb == "fault":
-                node.drive.fault(int(rest[1], 0), lasting=rest[2:] == ["lasting"])
-            elif verb == "clear":
-                node.drive.held_fault = 0
-            elif verb == "cut":
-                node.cut = True
-            elif verb == "join":
-                node.cut = False
-            elif verb == "stall":
-                node.drive.never_ready = True
-            elif verb == "power":
-                was, node.off = node.off, {"off": True, "on": False}[rest[1]]
-                if was and not node.off:
-                    self._boot(node)
-            else:
-                raise ValueError(verb)
-        return f"{verb} {' '.join(rest)}: done"
+    def power(self, node: EmulatedNode, on: bool) -> None:
+        was, node.off = node.off, not on
+        if was and on:
+            self._boot(node)
 
 
 def emulated_link(bus: str) -> Any:
@@ -420,16 +364,6 @@ def emulated_nodes(described: Mapping[str, Any], machine: Mapping[str, Any], tex
         drive.period_s = float(machine["cycle"]["period_s"])
         nodes.append(EmulatedNode(one["node"], drive))
     return nodes
-
-
-def read_commands(emulation: Emulation) -> None:
-    """Takes commands from standard input, beside the emulation."""
-
-    def read() -> None:
-        for line in sys.stdin:
-            emulation.command(line)
-
-    threading.Thread(target=read, daemon=True).start()
 
 
 def bus_of(machine: Mapping[str, Any], file: str, bus: str | None) -> list[Mapping[str, Any]]:

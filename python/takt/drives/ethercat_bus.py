@@ -1,0 +1,661 @@
+"""Drives of CiA 402 on EtherCAT, for an engine: start-up, process data in one frame a cycle, what is lost and back.
+
+A cycle: one frame takes control words and set points to all drives and brings back what they measured before. Its
+working counter tells whether all took part; who did not is asked by a thread beside the cycle, which also brings slaves
+that are back into operation, in steps so short that the cycle of the others goes on.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import struct
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import Any, Final
+
+from takt import drive
+from takt.counted import counted
+from takt.drives import objects as od
+from takt.drives.axis import AXIS_MODES, DriveAxis, Words, set_point_mode
+from takt.drives.cia402 import MODE_NAMES, Mode
+from takt.drives.emulation_commands import CLOCK, CLOCK_IS_SYNC
+from takt.drives.ethercat_link import (
+    ERROR_BIT,
+    INIT,
+    OPERATIONAL,
+    PRE_OPERATIONAL,
+    SAFE_OPERATIONAL,
+    Sdo,
+    Wire,
+    state_text,
+)
+from takt.drives.scaling import scaling_of
+from takt.drives.sdo import SdoError
+from takt.errors import TaktError
+
+ANSWERS_WITHIN: Final = 0.9  # of a period, in real time
+ANSWERS_WITHIN_S: Final = 1.0  # in simulated time
+SIGNS_MISSING: Final = 3  # of heartbeat_s: the watchdog of a slave's outputs
+OPERATIONAL_WITHIN_S: Final = 5.0
+STATE_WITHIN_S: Final = 2.0
+REGISTERS_US: Final = 3000  # how long the frame of a register may be under way
+LOOK_AGAIN_S: Final = 0.05  # at slaves that are not in operation
+SILENT: Final = 20  # frames lost in a row: the wire itself
+RX_MAP, TX_MAP, RX_ASSIGNED, TX_ASSIGNED = 0x1600, 0x1A00, 0x1C12, 0x1C13
+AL_CONTROL, AL_STATUS = 0x0120, 0x0130
+FMMUS, MAILBOX_MANAGERS, DATA_MANAGERS = (0x0600, 64), (0x0800, 16), (0x0810, 16)  # registers that are written again
+
+# What is mapped, the last ones only where the drive has them. Those of 8 bits last: some drives want even addresses.
+OUTPUTS: Final = (od.CONTROL_WORD, None, od.TARGET_TORQUE, od.MAX_TORQUE, od.MODE)  # None: the target of the mode
+INPUTS: Final = (od.STATUS_WORD, od.POSITION, od.TORQUE, od.DIGITAL_INPUTS, od.ERROR_CODE)
+
+
+class _Layout:
+    """Where objects are in process data: bytes from their begin."""
+
+    def __init__(self, words: Sequence[int]) -> None:
+        self.words = list(words)
+        self.at: dict[int, tuple[int, od.Object]] = {}
+        bits = 0
+        for word in words:
+            entry = od.OBJECTS.get(word >> 16)
+            if entry is not None and entry.mapping == word and bits % 8 == 0:
+                self.at.setdefault(entry.index, (bits // 8, entry))
+            bits += word & 0xFF
+        self.size = (bits + 7) // 8
+
+    def has(self, entry: od.Object) -> bool:
+        return entry.index in self.at
+
+    def put(self, data: bytearray, entry: od.Object, value: int) -> None:
+        found = self.at.get(entry.index)
+        if found is not None:
+            data[found[0] : found[0] + entry.bits // 8] = entry.encode(value)
+
+    def get(self, data: bytes, entry: od.Object) -> int:
+        """0 where it is not mapped."""
+        found = self.at.get(entry.index)
+        return 0 if found is None else entry.decode(data[found[0] :])
+
+    def text(self) -> str:
+        return " ".join(f"0x{word >> 16:04X}:{word >> 8 & 0xFF}" for word in self.words) or "nothing"
+
+
+class _Slave:
+    """One drive, and what is known of it."""
+
+    def __init__(self, described: Mapping[str, Any], axis: Mapping[str, Any]) -> None:
+        self.described, self.axis_described = described, axis
+        self.axis: str = described["axis"]
+        self.mode = AXIS_MODES[axis["drive"]["mode"]]
+        self.position = 0  # from 1
+        self.slave: Any = None
+        self.sdo: Sdo
+        self.drive: DriveAxis | None = None
+        self.emulated = False
+        self.outputs = self.inputs = _Layout(())
+        self.state = 0  # as last seen
+        self.registers: dict[int, bytes] = {}
+        self.told_lost = False
+
+    @property
+    def called(self) -> str:
+        return f"slave {self.position}"
+
+    @property
+    def named(self) -> str:
+        return f"{self.axis}: slave {self.position}"
+
+    @property
+    def operational(self) -> bool:
+        return self.state == OPERATIONAL
+
+
+class EthercatBus(drive.Bus):
+    """The drives of one bus of a machine file.
+
+    Raises TaktError where something is not as the machine file says."""
+
+    def __init__(self, described: Mapping[str, Any], machine: Mapping[str, Any], say: Callable[[str], None]) -> None:
+        self.described = described
+        self.period_s = float(machine["cycle"]["period_s"])
+        self._say = say
+        axes = {axis["name"]: axis for axis in machine["axes"]}
+        self._slaves = [_Slave(one, axes[one["axis"]]) for one in described["drives"]]
+        self.axes: Sequence[str] = [one.axis for one in self._slaves]
+        self._by_axis = {one.axis: one for one in self._slaves}
+        self._simulated = False
+        self.cycles = 0
+        self.late = 0  # drives' answers that did not come in time
+        self.lost_frames = 0
+        self._lost_in_a_row = 0
+        self._counter = 0  # of the last frame
+        self._others_count = 0  # what slaves that are no axis' may add to it
+        self._told_silent = False
+        self._said: set[str] = set()
+        self.sent_s: deque[float] = deque(maxlen=200_000)  # in real time: when frames were sent
+        self.round_trips_s: deque[float] = deque(maxlen=200_000)
+        self._look = threading.Event()
+        self._ended = False
+        self._watcher: threading.Thread | None = None
+        self._others: list[Any] = []  # slaves that are no axis'
+        self._wire = Wire(described["bus"])
+        try:
+            self._start_up()
+        except BaseException:
+            self._wire.close()
+            raise
+        self._watcher = threading.Thread(target=self._watch, daemon=True)
+        self._watcher.start()
+
+    @property
+    def bus_name(self) -> str:
+        return str(self.described["bus"])
+
+    # --- before motion ---
+
+    def _start_up(self) -> None:
+        for tries_left in (2, 1, 0):
+            self._find()
+            for one in self._slaves:
+                self._set_up(one)
+            try:
+                self._map()
+                break
+            except TaktError:  # the package takes objects whose answers got lost for none
+                if not tries_left:
+                    raise
+        self._operate()
+
+    def _find(self) -> None:
+        """Every drive is at its place within its time, else none moves."""
+        end_s = time.monotonic() + max(float(one["ready_within_s"]) for one in self.described["drives"])
+        while True:
+            found = self._wire.find()
+            wrong = self._place(found)
+            if not wrong:
+                return
+            if time.monotonic() > end_s:
+                raise TaktError(f"{self.bus_name}: {wrong}")
+            time.sleep(0.05)
+
+    def _place(self, found: Sequence[Any]) -> str:
+        """Gives each axis its slave; what is missing."""
+        aliases: dict[int, int] = {}
+        if any(one.described.get("alias") is not None for one in self._slaves):
+            for position, slave in enumerate(found, start=1):
+                aliases.setdefault(self._wire.alias(slave), position)
+        missing = []
+        for one in self._slaves:
+            alias = one.described.get("alias")
+            wanted = one.described.get("position") if alias is None else aliases.get(alias)
+            place = f"position {wanted}" if alias is None else f"alias {alias}"
+            if wanted is None or wanted > len(found):
+                missing.append(f"{place} (axis {one.axis})")
+                continue
+            one.position, one.slave = wanted, found[wanted - 1]
+            one.sdo = self._wire.sdo(one.slave, wanted)
+        used = {one.position for one in self._slaves}
+        self._others = [slave for position, slave in enumerate(found, start=1) if position not in used]
+        if not missing:
+            return ""
+        there = ", ".join(f"{k}: {slave.name or 'no name'}" for k, slave in enumerate(found, start=1)) or "none"
+        return (
+            f"no slave at {', '.join(missing)}; slaves that are there: {there} (check supply, cables and their order)"
+        )
+
+    def _set_up(self, one: _Slave) -> None:
+        """Everything that a drive is told in PREOP. Raises TaktError."""
+        try:
+            self._check(one)
+            for start in one.described["start_up"]:
+                index, subindex = (int(text, 0) for text in start["object"].split(":"))
+                one.sdo.write(index, subindex, start["value"], start["bits"])
+            one.sdo.write(od.MODE.index, 0, one.mode, 8)
+            self._tell_period(one)
+            self._choose(one)
+            code = one.sdo.find(od.ERROR_CODE.index)
+        except SdoError as error:
+            raise TaktError(f"{self.bus_name}: {one.named}: {error}") from None
+        if one.drive is not None:
+            one.drive.error_code = code or 0
+
+    def _check(self, one: _Slave) -> None:
+        for key, found, name in (
+            ("vendor", one.slave.man, "vendor"),
+            ("product", one.slave.id, "product code"),
+        ):
+            wanted = one.described.get(key)
+            if wanted is not None and found != int(wanted, 16):
+                raise TaktError(f"{self.bus_name}: {one.named}: expected {name} {wanted}, found 0x{found:X}")
+        sdo = one.sdo
+        device = sdo.read(0x1000)
+        if device & 0xFFFF != 402:
+            raise TaktError(
+                f"{self.bus_name}: {one.named} is no drive of CiA 402: its device type (0x1000) is 0x{device:08X}, "
+                f"expected 0x....0192"
+            )
+        supported = sdo.find(od.SUPPORTED_MODES.index)
+        modes = frozenset(m for m in Mode if m and (supported is None or supported >> (m - 1) & 1))
+        if one.mode not in modes:
+            has = ", ".join(MODE_NAMES[m] for m in sorted(modes)) or "none"
+            raise TaktError(
+                f"{self.bus_name}: {one.named} does not have the mode {MODE_NAMES[one.mode]}, which drive: mode of "
+                f"its axis asks for; it has {has}"
+            )
+        one.emulated = sdo.find(*CLOCK) is not None
+        rated = sdo.find(od.RATED_TORQUE.index)
+        scaling = scaling_of(one.described, one.axis_described, (rated or 1000) / 1000)
+        if one.drive is None:
+            usable = frozenset({one.mode}) | (modes & {Mode.CYCLIC_TORQUE})
+            one.drive = DriveAxis(one.axis, one.called, scaling, one.described["inputs"], usable, self._say)
+        else:
+            one.drive.restarted()
+
+    def _tell_period(self, one: _Slave) -> None:
+        period_us = round(1e6 * self.period_s)
+        exponent = next(e for e in (-3, -4, -5, -6) if period_us % 10 ** (6 + e) == 0)
+        if one.sdo.try_to_write(0x60C2, 2, exponent, 8):
+            one.sdo.try_to_write(0x60C2, 1, period_us // 10 ** (6 + exponent), 8)
+        mode = 2 if self.described["dc"] else 1  # synchronous with SYNC0, or with the frames
+        for index in (0x1C32, 0x1C33):
+            one.sdo.try_to_write(index, 1, mode if index == 0x1C32 or mode == 2 else 0x22, 16)
+
+    def _choose(self, one: _Slave) -> None:
+        """Maps what is needed; where a drive has a mapping that stays as it is, that must do."""
+        target = od.TARGET_POSITION if one.mode is Mode.CYCLIC_POSITION else od.TARGET_VELOCITY
+        outputs = [target if entry is None else entry for entry in OUTPUTS]
+        one.outputs = self._map_one(one, RX_MAP, RX_ASSIGNED, outputs, (od.CONTROL_WORD, target))
+        one.inputs = self._map_one(one, TX_MAP, TX_ASSIGNED, INPUTS, (od.STATUS_WORD, od.POSITION))
+        if one.drive is not None and not (one.outputs.has(od.MODE) and one.outputs.has(od.TARGET_TORQUE)):
+            one.drive.modes = frozenset({one.mode})
+
+    def _map_one(
+        self, one: _Slave, index: int, assigned: int, wanted: Sequence[od.Object], needed: Sequence[od.Object]
+    ) -> _Layout:
+        sdo = one.sdo
+        there = [entry for entry in wanted if entry in needed or sdo.find(entry.index) is not None]
+        reason = ""
+        try:
+            sdo.write(assigned, 0, 0, 8)
+            sdo.write(index, 0, 0, 8)
+            for number, entry in enumerate(there, start=1):
+                sdo.write(index, number, entry.mapping, 32)
+            sdo.write(index, 0, len(there), 8)
+            sdo.write(assigned, 1, index, 16)
+            sdo.write(assigned, 0, 1, 8)
+        except SdoError as error:
+            if error.code is None:
+                raise
+            reason = str(error)
+        words = []
+        for k in range(1, sdo.read(assigned, 0) + 1):
+            used = sdo.read(assigned, k)
+            words += [sdo.read(used, n) for n in range(1, sdo.read(used, 0) + 1)]
+        layout = _Layout(words)
+        lacking = [entry for entry in needed if not layout.has(entry)]
+        if lacking:
+            names = ", ".join(f"0x{entry.index:04X} ({entry.name})" for entry in lacking)
+            raise TaktError(
+                f"{self.bus_name}: {one.named}: its process data are {layout.text()}; expected {names} among them"
+                + (f"; they cannot be changed: {reason}" if reason else "")
+            )
+        return layout
+
+    def _map(self) -> None:
+        master, pysoem = self._wire.master, self._wire.pysoem
+        try:
+            master.config_map()
+            if self.described["dc"]:
+                self._synchronise()
+        except pysoem.ConfigMapError as error:
+            raise TaktError(f"{self.bus_name}: the process data cannot be mapped: {error}") from None
+        watchdog_ms = 1000 * SIGNS_MISSING * float(self.described["heartbeat_s"])
+        for one in self._slaves:
+            for name, has, layout in (("in", one.slave.input, one.inputs), ("out", one.slave.output, one.outputs)):
+                if len(has) != layout.size:
+                    raise TaktError(
+                        f"{self.bus_name}: {one.named}: expected {counted(layout.size, 'byte')} of process data "
+                        f"{name}, as mapped, found {len(has)}"
+                    )
+            with contextlib.suppress(Exception):
+                one.slave.set_watchdog("processdata", watchdog_ms)
+            for at, length in (FMMUS, MAILBOX_MANAGERS, DATA_MANAGERS, (0x0400, 2), (0x0420, 2)):
+                one.registers[at] = self._asked(one, at, length)
+        if master.state_check(SAFE_OPERATIONAL, round(1e6 * STATE_WITHIN_S)) != SAFE_OPERATIONAL:
+            raise TaktError(self._not_in(SAFE_OPERATIONAL))
+
+    def _asked(self, one: _Slave, register: int, length: int) -> bytes:
+        for _ in range(5):
+            with contextlib.suppress(Exception):
+                return bytes(one.slave._fprd(register, length, REGISTERS_US))
+        raise TaktError(f"{self.bus_name}: {one.named}: register 0x{register:04X} cannot be read: no answer")
+
+    def _synchronise(self) -> None:
+        """Clocks run together, and SYNC0 comes every period."""
+        if not self._wire.master.config_dc():
+            raise TaktError(f"{self.bus_name}: dc: true, but no slave has a distributed clock")
+        period_ns = round(1e9 * self.period_s)
+        for one in self._slaves:
+            one.slave.dc_sync(True, period_ns, period_ns // 2)
+
+    def _not_in(self, state: int) -> str:
+        self._wire.master.read_state()
+        said = [
+            f"{one.named} is in {state_text(one.slave.state)}, {self._reason(one)}"
+            for one in self._slaves
+            if one.slave.state != state
+        ]
+        return f"{self.bus_name}: expected all drives in {state_text(state)}: {'; '.join(said) or 'a slave is not'}"
+
+    def _reason(self, one: _Slave) -> str:
+        code = one.slave.al_status
+        text = self._wire.pysoem.al_status_code_to_string(code)
+        return f"AL status code 0x{code:04X} ({text})"
+
+    def _operate(self) -> None:
+        master = self._wire.master
+        for one in self._slaves:
+            one.slave.output = bytes(one.outputs.size)
+        for slave in self._others:
+            with contextlib.suppress(Exception):
+                slave.output = bytes(len(slave.output))
+        self._frame(0.01)
+        master.state = OPERATIONAL
+        master.write_state()
+        end_s = time.monotonic() + OPERATIONAL_WITHIN_S
+        while time.monotonic() < end_s:
+            self._frame(0.01)
+            master.read_state()
+            if all(one.slave.state == OPERATIONAL for one in self._slaves):
+                break
+            time.sleep(0.001)
+        else:
+            raise TaktError(self._not_in(OPERATIONAL))
+        for one in self._slaves:
+            one.state = OPERATIONAL
+        self._others_count = sum(3 if len(s.output) and len(s.input) else 0 for s in self._others)
+        self._wire.hurry()
+        for _ in range(50):
+            if self._frame(0.02) and self._take_in():
+                return
+        raise TaktError(f"{self.bus_name}: the frames do not come back: {self.lost_frames} were lost")
+
+    # --- frames ---
+
+    def _frame(self, within_s: float) -> int:
+        """Sends the outputs and takes in the inputs; the working counter, 0 where the frame was lost."""
+        master = self._wire.master
+        end_s = time.monotonic() + within_s
+        master.send_processdata()
+        if not self._wire.lock.locked():  # else the other thread may take this frame in, too
+            self._wire.await_frame(within_s)
+        counter = master.receive_processdata(max(50, round(1e6 * (end_s - time.monotonic()))))
+        self._counter = max(0, counter)
+        if counter <= 0:
+            self.lost_frames += 1
+            self._lost_in_a_row += 1
+            if self._lost_in_a_row == SILENT:
+                self._look.set()
+        else:
+            self._lost_in_a_row = 0
+            if self._told_silent:
+                self._look.set()
+        return self._counter
+
+    def _expected(self) -> tuple[int, int]:
+        """The working counter as the states of the drives let expect it: at least, at the most. Drives that are not in
+        operation may or may not take outputs."""
+        least = most = 0
+        for one in self._slaves:
+            if one.state == OPERATIONAL:
+                least, most = least + 3, most + 3
+            elif one.state & 0x0F == SAFE_OPERATIONAL:
+                least, most = least + 1, most + 3
+        return least, most + self._others_count
+
+    def _take_in(self) -> dict[str, drive.Measured]:
+        """By axis what the drives in operation have measured; nothing unless all of those have answered."""
+        if not self._counter:
+            return {}
+        least, most = self._expected()
+        fits = least <= self._counter <= most
+        if not fits or least < self._full:
+            self._look.set()
+        if not fits:
+            return {}
+        now_s = time.monotonic()
+        return {one.axis: self._measure(one, one.drive, now_s) for one in self._slaves if one.operational and one.drive}
+
+    @property
+    def _full(self) -> int:
+        return 3 * len(self._slaves)
+
+    def _measure(self, one: _Slave, axis: DriveAxis, now_s: float) -> drive.Measured:
+        data, layout = one.slave.input, one.inputs
+        axis.error_code = layout.get(data, od.ERROR_CODE) or axis.error_code
+        return axis.measured(
+            layout.get(data, od.STATUS_WORD),
+            layout.get(data, od.POSITION),
+            layout.get(data, od.TORQUE),
+            layout.get(data, od.DIGITAL_INPUTS),
+            now_s,
+        )
+
+    def _put(self, one: _Slave, words: Words) -> None:
+        layout = one.outputs
+        data = bytearray(layout.size)
+        layout.put(data, od.CONTROL_WORD, words.control)
+        layout.put(data, od.MODE, words.mode or one.mode)
+        layout.put(data, od.TARGET_POSITION, words.position)
+        layout.put(data, od.TARGET_VELOCITY, words.velocity)
+        layout.put(data, od.TARGET_TORQUE, words.torque)
+        layout.put(data, od.MAX_TORQUE, words.torque_limit)
+        one.slave.output = bytes(data)
+
+    # --- who is out of operation ---
+
+    def _watch(self) -> None:
+        """Beside the cycle: looks at the drives when the working counter is not as it should be."""
+        while not self._ended:
+            if not self._look.wait(0.2):
+                continue
+            self._look.clear()
+            with self._wire.lock:
+                try:
+                    self._look_at_all()
+                except Exception as error:  # whatever the package raises: tried again
+                    self._say_once(f"{self.bus_name}: {' '.join(str(error).split()) or type(error).__name__}")
+            time.sleep(LOOK_AGAIN_S)
+
+    def _say_once(self, sentence: str) -> None:
+        if sentence not in self._said:
+            self._said.add(sentence)
+            self._say(sentence)
+
+    def _look_at_all(self) -> None:
+        if self._lost_in_a_row >= SILENT:
+            if not self._told_silent:
+                self._told_silent = True
+                self._say(f"{self.bus_name}: no frame comes back any more: cable, first slave, or the interface")
+            return
+        if self._told_silent:
+            self._told_silent = False
+            self._say(f"{self.bus_name}: frames come back again")
+        for one in self._slaves:
+            state = self._state_of(one)
+            if state is not None and not self._ended:
+                self._judge(one, state)
+
+    def _state_of(self, one: _Slave) -> int | None:
+        """0: it is not there. None: frames get lost."""
+        for _ in range(4):
+            begin_s = time.monotonic()
+            try:
+                return bytes(one.slave._fprd(AL_STATUS, 2, REGISTERS_US))[0] & 0x1F
+            except self._wire.pysoem.WkcError:
+                if time.monotonic() - begin_s < 0.9e-6 * REGISTERS_US:
+                    return 0  # the frame has come back at once, and nobody has taken part
+        return None
+
+    def _judge(self, one: _Slave, state: int) -> None:
+        if state == OPERATIONAL:
+            one.state = state
+            if one.told_lost:
+                one.told_lost = False
+                self._say(f"{one.named} is heard again")
+            return
+        fell = one.state == OPERATIONAL
+        one.state = state
+        with contextlib.suppress(Exception):
+            one.slave.output = bytes(one.outputs.size)  # nothing moves by itself when it is back
+        if state == 0:
+            if not one.told_lost:
+                one.told_lost = True
+                self._say(f"{one.named} is not heard any more on {self.bus_name}: cable, supply, or the slave itself")
+            if one.slave.recover(REGISTERS_US) <= 0:
+                return
+            state = self._state_of(one) or 0
+            if state == 0:
+                return
+        elif fell:
+            code = int.from_bytes(self._asked(one, 0x0134, 2), "little")
+            text = self._wire.pysoem.al_status_code_to_string(code)
+            self._say(f"{one.named} has left operation: {state_text(state)}, AL status code 0x{code:04X} ({text})")
+        try:
+            self._bring_back(one, state)
+        except (TaktError, SdoError) as error:
+            self._say_once(f"{error}: tried again")
+
+    def _bring_back(self, one: _Slave, state: int) -> None:
+        """Into operation again. Raises TaktError."""
+        again = state & 0x0F != SAFE_OPERATIONAL
+        if again:
+            self._to(one, INIT)
+            self._write(one, MAILBOX_MANAGERS[0])
+            self._to(one, PRE_OPERATIONAL)
+            self._set_up(one)
+            for at in (DATA_MANAGERS[0], FMMUS[0], 0x0400, 0x0420):
+                self._write(one, at)
+            if self.described["dc"]:
+                one.slave.dc_sync(True, round(1e9 * self.period_s), round(1e9 * self.period_s) // 2)
+        self._to(one, SAFE_OPERATIONAL)
+        if one.emulated and self._simulated:
+            one.sdo.write(*CLOCK, CLOCK_IS_SYNC, 8)
+        self._to(one, OPERATIONAL)
+        one.told_lost = False
+        one.state = OPERATIONAL
+        self._say(f"{one.named} is {'set up again' if again else 'in operation again'}")
+
+    def _write(self, one: _Slave, register: int) -> None:
+        pysoem = self._wire.pysoem
+        for _ in range(5):
+            with contextlib.suppress(pysoem.WkcError):
+                one.slave._fpwr(register, one.registers[register], REGISTERS_US)
+                return
+        raise TaktError(f"{self.bus_name}: {one.named}: register 0x{register:04X} cannot be written: no answer")
+
+    def _to(self, one: _Slave, wanted: int) -> None:
+        """Asks for a state and waits for it, in short steps."""
+        pysoem = self._wire.pysoem
+        end_s = time.monotonic() + STATE_WITHIN_S
+        while time.monotonic() < end_s:
+            state = self._state_of(one)
+            if state == wanted:
+                return
+            if state == 0:
+                raise TaktError(f"{self.bus_name}: {one.named} is gone again")
+            if state is not None:
+                with contextlib.suppress(pysoem.WkcError):
+                    acknowledge = ERROR_BIT if state & ERROR_BIT else 0
+                    request = state & 0x0F if acknowledge and wanted == OPERATIONAL else wanted
+                    one.slave._fpwr(AL_CONTROL, struct.pack("<H", request | acknowledge), REGISTERS_US)
+            time.sleep(0.002)
+        raise TaktError(f"{self.bus_name}: {one.named}: expected {state_text(wanted)}, found another state")
+
+    # --- cycles ---
+
+    def start(self, axis: str, *, real_time: bool, period_s: float) -> None:
+        if abs(period_s - self.period_s) > 1e-9:
+            raise TaktError(
+                f"the engine's cycle is {1000 * period_s:g} ms, the machine file's {1000 * self.period_s:g} ms"
+            )
+        if real_time is not self._simulated:
+            return
+        metal = [one for one in self._slaves if not one.emulated]
+        if not real_time and metal:
+            raise TaktError(
+                f"{metal[0].named} is no emulated drive and has a clock of its own, but the engine runs in simulated "
+                f"time; run taktd --pace real"
+            )
+        with self._wire.lock:
+            for one in self._slaves:
+                if one.emulated and one.operational:
+                    one.sdo.write(*CLOCK, 0 if real_time else CLOCK_IS_SYNC, 8)
+            self._simulated = not real_time
+
+    def exchange(self, told: Mapping[str, drive.SetPoint], *, real_time: bool) -> Mapping[str, drive.Measured | None]:
+        begin_s = time.monotonic()
+        now_s = begin_s if real_time else self.cycles * self.period_s
+        for axis, point in told.items():
+            one = self._by_axis[axis]
+            if one.operational and one.drive is not None:
+                self._put(one, one.drive.words(point, now_s))
+        self._frame(ANSWERS_WITHIN * self.period_s if real_time else ANSWERS_WITHIN_S)
+        if real_time:
+            self.sent_s.append(begin_s)
+            self.round_trips_s.append(time.monotonic() - begin_s)
+        measured = self._take_in()
+        self.cycles += 1
+        self.late += sum(one.axis not in measured for one in self._slaves)
+        return {one.axis: measured.get(one.axis) for one in self._slaves}
+
+    def idle(self, stop: Collection[str]) -> None:
+        now_s = time.monotonic()
+        for one in self._slaves:
+            if one.operational and one.drive is not None:
+                off_in_its_mode = drive.SetPoint(mode=set_point_mode(one.mode))
+                self._put(one, one.drive.words(off_in_its_mode, now_s, stop=one.axis in stop))
+        self._frame(max(0.002, ANSWERS_WITHIN * self.period_s))
+        self._take_in()
+
+    # --- the end ---
+
+    def close(self, within_s: float = 2.0) -> None:
+        """Brakes what moves along the quick stop ramps, switches off, and leaves the bus."""
+        end_s = time.monotonic() + within_s
+        if not self._simulated:
+            while (
+                time.monotonic() < end_s
+                and self._lost_in_a_row < SILENT
+                and any(one.operational and one.drive is not None and one.drive.energised for one in self._slaves)
+            ):
+                self.idle(self.axes)
+                time.sleep(self.period_s)
+        self._ended = True
+        self._look.set()
+        if self._watcher is not None:
+            self._watcher.join()
+        with contextlib.suppress(Exception):
+            self._wire.master.state = INIT
+            self._wire.master.write_state()
+        self._wire.close()
+
+    def summary(self) -> str:
+        """What the cycles were like, in a line."""
+        said = (
+            f"{self.bus_name}: {counted(self.cycles, 'cycle')}, {counted(self.late, 'answer')} late or lost, "
+            f"{counted(self.lost_frames, 'frame')} lost"
+        )
+        if len(self.sent_s) > 2:
+            periods = sorted(b - a for a, b in zip(list(self.sent_s)[:-1], list(self.sent_s)[1:], strict=True))
+            trips = sorted(self.round_trips_s)
+            low, middle, high = (1000 * periods[int(q * (len(periods) - 1))] for q in (0.01, 0.5, 0.99))
+            trip, worst = (1000 * trips[int(q * (len(trips) - 1))] for q in (0.5, 0.99))
+            said += (
+                f"; frames every {middle:.3f} ms (1 % below {low:.3f}, 1 % above {high:.3f}); from set points to "
+                f"answers {trip:.3f} ms, 1 % above {worst:.3f}"
+            )
+        return said

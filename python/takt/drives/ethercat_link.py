@@ -1,0 +1,238 @@
+"""An EtherCAT bus by the package pysoem: opened by the name of an Ethernet interface, its slaves and their objects."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import fcntl
+import os
+import select
+import socket
+import stat
+import struct
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Final
+
+from takt.drives.esc import ETHERTYPE
+from takt.drives.sdo import Objects, SdoError, abort_text
+from takt.errors import TaktError
+
+KIND: Final = "ethercat"
+MISSING: Final = "EtherCAT needs the package pysoem: pip install 'takt-motion[ethercat]'"
+QUESTIONS: Final = 3  # without an answer
+FRAME_US: Final = 20_000  # how long a frame may be under way before there are cycles: busy hosts take their time
+LISTENED_S: Final = 0.05  # for another master
+GET_FLAGS: Final = 0x8913  # of an interface, by ioctl
+GET_LINK, LINKED_WITH = 18, 5  # of rtnetlink
+ALIAS_WORD: Final = 4  # of the EEPROM
+
+INIT, PRE_OPERATIONAL, SAFE_OPERATIONAL, OPERATIONAL = 1, 2, 4, 8
+ERROR_BIT: Final = 0x10
+STATES: Final = {
+    0: "not there",
+    INIT: "INIT",
+    PRE_OPERATIONAL: "PREOP",
+    3: "BOOT",
+    SAFE_OPERATIONAL: "SAFEOP",
+    OPERATIONAL: "OP",
+}
+
+
+def state_text(state: int) -> str:
+    """ "SAFEOP with an error"."""
+    name = STATES.get(state & 0x0F, f"state {state & 0x0F}")
+    return f"{name} with an error" if state & ERROR_BIT else name
+
+
+def package() -> Any:
+    """The module pysoem; TaktError says how to get it."""
+    try:
+        import pysoem
+    except ImportError:
+        raise TaktError(MISSING) from None
+    pysoem.settings.always_release_gil = True
+    pysoem.settings.timeouts.ret = FRAME_US
+    return pysoem
+
+
+def is_ethercat(bus: str) -> bool:
+    return bus.startswith(f"{KIND}:")
+
+
+def parse(text: str) -> str:
+    """The interface of "ethercat:INTERFACE"."""
+    kind, _, interface = text.partition(":")
+    if kind != KIND or not interface:
+        raise TaktError(f"{text}: expected ethercat:INTERFACE, such as ethercat:eth1")
+    return interface
+
+
+def ethernet_socket(interface: str) -> socket.socket:
+    """Takes and sends frames of EtherCAT; TaktError says in one line why not."""
+    name = f"{KIND}:{interface}"
+    known = [found for _, found in socket.if_nameindex()]
+    if interface not in known:
+        raise TaktError(f"{name}: there is no interface {interface}; this host has {', '.join(sorted(known))}")
+    try:
+        opened = socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.htons(ETHERTYPE))
+        opened.bind((interface, ETHERTYPE))
+    except OSError as error:
+        if error.errno in (errno.EPERM, errno.EACCES):
+            raise TaktError(
+                f"{name}: no right to raw Ethernet frames (CAP_NET_RAW): run this as root, or "
+                f"setcap cap_net_raw+ep on the Python that runs it"
+            ) from None
+        raise TaktError(f"{name}: the interface cannot be opened: {error.strerror}") from None
+    if not _is_up(opened, interface):
+        opened.close()
+        raise TaktError(f"{name}: the interface is switched off: ip link set {interface} up")
+    return opened
+
+
+def other_end(interface: str) -> str:
+    """Of a veth pair."""
+    linked = _linked(interface)
+    if linked:
+        with contextlib.suppress(OSError):  # it is in another network namespace
+            return socket.if_indextoname(linked)
+    raise TaktError(
+        f"{KIND}:{interface}: expected one end of a veth pair of this host, whose other end the emulation takes: "
+        f"ip link add {interface} type veth peer name {interface}-drives; "
+        f"ip link set {interface} up; ip link set {interface}-drives up"
+    )
+
+
+def _linked(interface: str) -> int:
+    """The number of the interface that this one is linked with, 0: none. Asks the kernel (rtnetlink), as /sys may be
+    that of another network namespace."""
+    with contextlib.suppress(OSError, struct.error):
+        index = socket.if_nametoindex(interface)
+        with socket.socket(socket.AF_NETLINK, socket.SOCK_RAW, 0) as asking:
+            asking.send(struct.pack("<IHHII", 32, GET_LINK, 1, 1, 0) + struct.pack("<BxHiII", 0, 0, index, 0, 0))
+            answer = asking.recv(65536)
+        at = 32
+        while at + 4 <= len(answer):
+            length, kind = struct.unpack_from("<HH", answer, at)
+            if kind == LINKED_WITH:
+                found: int = struct.unpack_from("<I", answer, at + 4)[0]
+                return 0 if found == index else found
+            at += max(4, length + 3 & ~3)
+    return 0
+
+
+def _is_up(opened: socket.socket, interface: str) -> bool:
+    asked = fcntl.ioctl(opened, GET_FLAGS, struct.pack("16sH14x", interface.encode(), 0))
+    return bool(struct.unpack_from("H", asked, 16)[0] & 1)
+
+
+def _packet_sockets() -> set[int]:
+    """Those of this process."""
+    found = set()
+    for path in Path("/proc/self/fd").iterdir():
+        number = int(path.name)
+        with contextlib.suppress(OSError):
+            if stat.S_ISSOCK(os.fstat(number).st_mode):
+                with socket.socket(fileno=os.dup(number)) as opened:
+                    if opened.family == socket.AF_PACKET:
+                        found.add(number)
+    return found
+
+
+def another_master(interface: str, listened_s: float = LISTENED_S) -> bool:
+    """Whether frames of EtherCAT go over the interface while nothing here sends any."""
+    with ethernet_socket(interface) as listening:
+        return bool(select.select([listening], [], [], listened_s)[0])
+
+
+class Wire:
+    """The master on an interface. Everything but the exchange of process data may be done by one thread at a time
+    beside it, with `lock`."""
+
+    def __init__(self, bus: str) -> None:
+        pysoem = self.pysoem = package()
+        self.bus, self.interface = bus, parse(bus)
+        if another_master(self.interface):
+            raise TaktError(f"{bus}: another master is at work on {self.interface}; two on one wire disturb each other")
+        self.master = pysoem.Master()
+        self.lock = threading.Lock()
+        before = _packet_sockets()
+        try:
+            self.master.open(self.interface)
+        except Exception as error:
+            raise TaktError(f"{bus}: the interface cannot be opened: {_line(error)}") from None
+        self._socket: int | None = next(iter(_packet_sockets() - before), None)
+
+    def hurry(self) -> None:
+        """From now on there are cycles. The package waits for frames in the kernel, for several ms at the least where
+        one is lost. So it looks again and again instead, and `await_frame` waits before that as long as a cycle may."""
+        if self._socket is not None:
+            os.set_blocking(self._socket, False)
+
+    def await_frame(self, within_s: float) -> None:
+        """Until a frame has come, or for so long."""
+        if self._socket is not None:
+            select.select([self._socket], [], [], max(0.0, within_s))
+
+    def find(self) -> list[Any]:
+        """Brings the slaves that there are to PREOP; in the order of their positions."""
+        try:
+            count = self.master.config_init()
+        except Exception as error:
+            raise TaktError(f"{self.bus}: the slaves cannot be set up: {_line(error)}") from None
+        return list(self.master.slaves) if count > 0 else []
+
+    def alias(self, slave: Any) -> int:
+        """0: none."""
+        before = None
+        for _ in range(QUESTIONS):  # without an answer it is whatever was there
+            read = int.from_bytes(bytes(slave.eeprom_read(ALIAS_WORD))[:2], "little")
+            if read == before:
+                return read
+            before = read
+        return 0
+
+    def sdo(self, slave: Any, position: int) -> Sdo:
+        return Sdo(self, slave, position)
+
+    def close(self) -> None:
+        self._socket = None
+        self.master.close()
+
+    def __enter__(self) -> Wire:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+class Sdo(Objects):
+    """Objects of the slave at a position, from 1."""
+
+    def __init__(self, wire: Wire, slave: Any, position: int) -> None:
+        self._pysoem, self._slave = wire.pysoem, slave
+        self.position = position
+        self.called = f"slave {position}"
+
+    def upload(self, what: str, index: int, subindex: int) -> bytes:
+        return bytes(self._asked(what, lambda: self._slave.sdo_read(index, subindex)))
+
+    def download(self, what: str, index: int, subindex: int, data: bytes) -> None:
+        self._asked(what, lambda: self._slave.sdo_write(index, subindex, data))
+
+    def _asked(self, what: str, question: Callable[[], Any]) -> Any:
+        pysoem = self._pysoem
+        for _ in range(QUESTIONS):
+            try:
+                return question()
+            except pysoem.SdoError as error:
+                code = error.abort_code & 0xFFFF_FFFF
+                raise SdoError(f"{what}: {abort_text(code)}", code) from None
+            except (pysoem.MailboxError, pysoem.PacketError, pysoem.WkcError):
+                pass  # a frame may get lost
+        raise SdoError(f"{what}: no answer")
+
+
+def _line(error: Exception) -> str:
+    return " ".join(str(error).split()) or type(error).__name__

@@ -1,0 +1,256 @@
+"""AX-87, EN-26: drives of CiA 402 on EtherCAT, emulated ones in a process of their own on a veth pair, run for an
+engine; and what goes wrong there."""
+
+from __future__ import annotations
+
+import signal
+import struct
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import takt
+from buses import eventually
+from machines import new_url, running
+from takt.cli import main
+from takt.drives.ethercat_link import OPERATIONAL, Wire
+from takt.errors import TaktError
+from wires import BUS, DRIVES, MASTER, bus_of, emulated, machine, own_network, run, tell
+
+pytest.importorskip("pysoem")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def network() -> Iterator[None]:
+    with own_network():
+        yield
+
+
+def test_axes_move_over_ethercat_as_they_should(tmp_path: Path) -> None:
+    """AX-87, EN-26: in simulated time; gear and resolution, position, velocity and torque loops in the drive; a
+    fault in words, reset; the other drive goes on."""
+    url = new_url()
+    keys = "scaling: {increments_per_revolution: 65536, gear_motor: 7, gear_shaft: 2, feed: 9}, rated_torque: 2"
+    text = machine(url, 2, drive_keys=keys).replace(
+        "x2\n    limits: {",
+        "x2\n    drive: {mode: cyclic_velocity}\n    loop: {kp: 0.06, ff: 1, velocity_at_10v: 600}\n    limits: {",
+    )
+    with emulated(text, tmp_path) as emulation, run(text, url) as (served, said), takt.Engine(text) as engine:
+        x1, x2 = engine.axis("x1"), engine.axis("x2")
+        for axis in (x1, x2):
+            axis.power().wait()
+        record = engine.record()
+        away = x2.move_absolute(position=-40.0)
+        x1.move_absolute(position=123.456).wait()
+        away.wait()
+        engine.run(0.2)
+        recording = record.stop()
+        assert x1.actual_position == pytest.approx(123.456, abs=0.002)
+        assert x2.actual_position == pytest.approx(-40.0, abs=0.05)
+        assert abs(recording["x1"]["following_error"]).max() < 0.1
+        increments = int(tell(emulation, "show").split("position ")[1].split(";")[0])
+        assert increments == pytest.approx(123.456 * 65536 * 3.5 / 9, abs=65536 * 3.5 / 9 / 1000)
+        assert (served.late, served.lost_frames) == (0, 0)
+
+        x1.torque_control(torque=0.2, velocity=50.0)
+        engine.run(0.4)
+        assert x1.actual_velocity > 10
+        x1.halt().wait()
+        x2.move_velocity(velocity=10.0)
+        tell(emulation, "fault 1 0x3210")
+        engine.run(0.5)
+        assert (x1.state, x1.error) == (takt.PlcState.ERROR_STOP, 3002)
+        assert "x1: slave 1: fault 0x3210 (DC link overvoltage)" in said
+        assert "x1: slave 1: the fault has been reset" in said
+        assert x2.set_velocity == pytest.approx(10.0), "the other drive goes on"
+        x1.reset().wait()
+        x1.power(enable=False).wait()
+        x1.power().wait()
+        x1.move_absolute(position=0.0).wait()
+
+
+def test_cables_supply_and_lost_frames_in_motion(tmp_path: Path) -> None:
+    """AX-87, in real time: drives before the broken cable go on, those behind it are in ErrorStop 3002; with the cable
+    back, or the supply, or the whole wire, they are set up again and MC_Reset brings their axes back."""
+    url = new_url()
+    text = machine(url, 3, bus_keys="missing_cycles: 100\n      heartbeat_s: 0.5")
+    with (
+        emulated(text, tmp_path) as emulation,
+        run(text, url, watchdog=1000) as (served, said),
+        running(tmp_path, url, machine=text, pace="real"),
+        takt.connect(url) as session,
+    ):
+        axes = [session.axis(f"x{k}") for k in (1, 2, 3)]
+
+        def back() -> None:
+            for axis in axes:
+                if axis.error:
+                    session.wait(lambda axis=axis: not axis.reset().wait_final(timeout=20).error, timeout=20)
+                    axis.power(enable=False).wait(timeout=20)
+            for axis in axes:
+                axis.power().wait(timeout=20)
+            for axis in axes:
+                axis.move_velocity(velocity=20.0)
+            session.wait(lambda: all(axis.actual_velocity > 15 for axis in axes), timeout=20)
+
+        def heard(text: str, since: int) -> None:
+            assert eventually(lambda: any(text in line for line in said[since:]), 20), said
+
+        back()
+        tell(emulation, "cut 2")
+        session.wait(lambda: [axis.error for axis in axes] == [0, 3002, 3002], timeout=20)
+        heard(f"x2: slave 2 is not heard any more on {BUS}: cable, supply, or the slave itself", 0)
+        tell(emulation, "join 2")
+        heard("x3: slave 3 is heard again", 0)
+        assert axes[0].actual_velocity > 15
+        back()
+
+        count = len(said)
+        tell(emulation, "power 3 off")
+        session.wait(lambda: axes[2].error == 3002, timeout=20)
+        heard("x3: slave 3 is not heard any more", count)
+        tell(emulation, "power 3 on")
+        heard("x3: slave 3 is set up again", count)
+        assert [axis.error for axis in axes[:2]] == [0, 0]
+        back()
+
+        count = len(said)
+        tell(emulation, "cut 1")
+        session.wait(lambda: all(axis.error == 3002 for axis in axes), timeout=20)
+        heard(f"{BUS}: no frame comes back any more: cable, first slave, or the interface", count)
+        tell(emulation, "join 1")
+        heard(f"{BUS}: frames come back again", count)
+        assert eventually(lambda: all(one.operational for one in served._slaves), 20)
+        back()
+
+        for percent in ("0.1", "1", "30"):
+            tell(emulation, f"lose {percent}")
+            session.run(0.3)
+        assert [axis.error for axis in axes] == [0, 0, 0]
+        assert served.lost_frames > 10
+        tell(emulation, "lose 0")
+
+        emulation.process.send_signal(signal.SIGKILL)
+        session.wait(lambda: all(axis.error == 3002 for axis in axes), timeout=20)
+    assert "frames lost" in served.summary()
+
+
+def wrong(text: str) -> str:
+    """What the start says of this machine's bus."""
+    with pytest.raises(TaktError) as caught:
+        bus_of(text)
+    return str(caught.value)
+
+
+def test_what_is_wrong_at_start(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """AX-87: nothing moves, and one line says what; scan and info say what is there."""
+    there = machine(new_url(), 2).replace("position: 2", "alias: 77")
+    with emulated(there, tmp_path):
+        assert main(["drives", "scan", "--bus", BUS]) == 0
+        said = capsys.readouterr()
+        assert said.out.splitlines() == [
+            f"slave {k}: Takt emulated drive, vendor 0x0, product 0x54414B54, revision 0x1, switch on disabled, "
+            "no error"
+            for k in ("1", "2 (alias 77)")
+        ]
+        assert said.err == f"{BUS}: 2 slaves\n"
+        assert main(["drives", "info", "--bus", BUS, "--position", "2"]) == 0
+        out = capsys.readouterr().out
+        for line in ("modes: hm, csp, csv, cst", "inputs: 0x1A00: 0x6041:0 0x6064:0", "0x6041 status word: 0x0240"):
+            assert f"  {line}\n" in out
+        assert main(["drives", "info", "--bus", BUS, "--position", "9"]) == 2
+        assert capsys.readouterr().err == f"takt: {BUS}: no slave at position 9; there are 2\n"
+
+        bus_of(there).close()  # by its alias
+        late = "ready_within_s: 0.1"
+        assert wrong(machine(new_url(), 4, drive_keys=late)) == (
+            f"{BUS}: no slave at position 3 (axis x3), position 4 (axis x4); slaves that are there: 1: Takt emulated "
+            f"drive, 2: Takt emulated drive (check supply, cables and their order)"
+        )
+        for keys, sentence in (
+            ('vendor: "0x2E1"', "x1: slave 1: expected vendor 0x2E1, found 0x0"),
+            ('product: "0x17"', "x1: slave 1: expected product code 0x17, found 0x54414B54"),
+            (
+                'start_up: [{object: "0x2FFF:1", value: 5}]',
+                "x1: slave 1: 0x2FFF:1 cannot be written with 5: SDO abort 0x06020000, the object does not exist",
+            ),
+            (
+                'start_up: [{object: "0x6098:0", value: 17, bits: 8}]',
+                "x1: slave 1: 0x6098:0 cannot be written with 17: SDO abort 0x06090030, the value is out of range",
+            ),
+            (
+                'start_up: [{object: "0x6098:0", value: 35, bits: 16}]',
+                "x1: slave 1: 0x6098:0 cannot be written with 35: SDO abort 0x06070010, the length is wrong",
+            ),
+        ):
+            assert wrong(machine(new_url(), 1, drive_keys=keys)) == f"{BUS}: {sentence}"
+
+        url = new_url()
+        with run(machine(url, 2), url):  # sends frames by itself
+            assert wrong(machine(url, 2)) == (
+                f"{BUS}: another master is at work on {MASTER}; two on one wire disturb each other"
+            )
+
+
+def test_distributed_clocks(tmp_path: Path) -> None:
+    """AX-87: dc: true; clocks are compared, SYNC0 is set, and all get into operation."""
+    text = machine(new_url(), 3, bus_keys="dc: true")
+    with emulated(text, tmp_path):
+        served = bus_of(text)
+        assert [one.state for one in served._slaves] == [OPERATIONAL] * 3
+        assert served._asked(served._slaves[2], 0x0981, 1) == b"\x03"
+        assert struct.unpack("<I", served._asked(served._slaves[2], 0x09A0, 4)) == (4_000_000,)
+        served.close()
+
+
+def test_another_master_brings_the_drives_into_operation(tmp_path: Path) -> None:
+    """EN-26: kickcat, which shares nothing with pysoem, judges the emulation."""
+    kickcat = pytest.importorskip("kickcat")
+    from datetime import timedelta
+
+    with emulated(machine(new_url(), 3), tmp_path):
+        link = kickcat.create_link(MASTER, "")
+        link.set_timeout(timedelta(milliseconds=20))
+        bus = kickcat.Bus(link)
+        bus.init(timedelta(milliseconds=500))
+        slaves = bus.slaves()
+        assert len(slaves) == 3
+        second = timedelta(seconds=2)
+        assert bus.read_sdo(slaves[1], 0x1000, 0, kickcat.Access.PARTIAL, 4, second) == struct.pack("<I", 0x0002_0192)
+        bus.create_mapping()
+        assert {(one.output_size, one.input_size) for one in slaves} == {(6, 6)}
+        bus.request_state(kickcat.State.SAFE_OP)
+        bus.wait_for_state(kickcat.State.SAFE_OP, second)
+        for one in slaves:
+            one.set_output_bytes(bytes(6))
+        bus.process_data_no_check()
+        bus.request_state(kickcat.State.OPERATIONAL)
+        bus.wait_for_state(kickcat.State.OPERATIONAL, second, bus.process_data_no_check)
+        states: list[int] = []
+        for word in [6] * 20 + [7] * 20 + [15] * 500:
+            for one in slaves:
+                one.set_output_bytes(struct.pack("<Hi", word, 0))
+            bus.process_data_no_check()
+            states = [struct.unpack("<Hi", one.input_data)[0] & 0x6F for one in slaves]
+            if states == [0x27] * 3:
+                break
+            time.sleep(0.001)
+        assert states == [0x27] * 3, "operation enabled"
+        bus.request_state(kickcat.State.INIT)
+
+
+def test_interfaces_that_cannot_be_used() -> None:
+    """AX-87: one line, with what to do."""
+    with pytest.raises(TaktError, match="ethercat:nix0: there is no interface nix0; this host has ec0, ec1, lo"):
+        Wire("ethercat:nix0")
+    with pytest.raises(TaktError, match="ethercat:: expected ethercat:INTERFACE, such as ethercat:eth1"):
+        Wire("ethercat:")
+
+
+def test_an_empty_wire(capsys: pytest.CaptureFixture[str]) -> None:
+    """AX-87: exit code 1."""
+    assert main(["drives", "scan", "--bus", BUS]) == 1
+    assert capsys.readouterr().err == f"{BUS}: 0 slaves\n"
+    assert main(["drives", "emulate", "--bus", f"ethercat:{DRIVES}x"]) == 2
+    assert f"there is no interface {DRIVES}x" in capsys.readouterr().err

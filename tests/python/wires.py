@@ -1,0 +1,109 @@
+"""A network of this process alone with a pair of Ethernet interfaces, and machines with drives on EtherCAT there."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import subprocess
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from buses import LONG_S, Said, described, drives, eventually
+from takt import drive
+from takt.drives.ethercat_bus import EthercatBus
+
+MASTER, DRIVES = "ec0", "ec1"  # the ends of the wire
+BUS = f"ethercat:{MASTER}"
+PERIOD_S = 0.004
+_NEW_NETWORK = 0x4000_0000
+
+_LOOPBACK = """
+ip link set lo up multicast on
+ip route add 224.0.0.0/4 dev lo
+"""
+_WIRE = f"""
+ip link add {MASTER} type veth peer name {DRIVES}
+ip link set {MASTER} up
+ip link set {DRIVES} up
+"""
+
+
+@contextlib.contextmanager
+def own_network(*, wire: bool = True) -> Iterator[None]:
+    """Skips where the rights, or what else it takes, are missing. wire: with the pair of interfaces."""
+    libc = ctypes.CDLL(None, use_errno=True)
+    before = os.open("/proc/thread-self/ns/net", os.O_RDONLY)
+    try:
+        if libc.unshare(_NEW_NETWORK):
+            pytest.skip(f"no right to make a network namespace ({os.strerror(ctypes.get_errno())})")
+        try:
+            made = subprocess.run(["sh", "-ec", _LOOPBACK + _WIRE * wire], capture_output=True, text=True, check=False)
+            if made.returncode:
+                pytest.skip(f"no veth pair can be made here: {' '.join(made.stderr.split())}")
+            yield
+        finally:
+            libc.setns(before, _NEW_NETWORK)
+    finally:
+        os.close(before)
+
+
+def machine(url: str, axes: int = 2, *, drive_keys: str = "", bus_keys: str = "", axis_keys: str = "") -> str:
+    lines = ["name: bus", f"cycle: {{period_s: {PERIOD_S}, overruns_in_a_row: 0}}", f'lcm: {{url: "{url}"}}', "axes:"]
+    for k in range(1, axes + 1):
+        lines += [
+            f"  - name: x{k}",
+            "    limits: {velocity: 500, acceleration: 5000, jerk: 100000}",
+            "    encoder: {increments_per_unit: 1000}",
+        ]
+        lines += [f"    {axis_keys}"] if axis_keys else []
+    lines += ["external:", "  answer_within_s: 20", "  buses:", f"    - bus: {BUS}"]
+    lines += [f"      {bus_keys}"] if bus_keys else []
+    lines += ["      drives:"]
+    for k in range(1, axes + 1):
+        lines += [f"        - {{axis: x{k}, position: {k}{', ' + drive_keys if drive_keys else ''}}}"]
+    return "\n".join(lines) + "\n"
+
+
+@contextlib.contextmanager
+def emulated(text: str, folder: Path) -> Iterator[Said]:
+    """The drives of the machine's only bus, in a process."""
+    file = folder / "emulated.yaml"
+    file.write_text(text)
+    with drives("emulate", file) as emulation:
+        emulation.wait_for(f"ethercat:{DRIVES}: ")
+        yield emulation
+
+
+@contextlib.contextmanager
+def run(text: str, url: str, watchdog: int = drive.WATCHDOG) -> Iterator[tuple[EthercatBus, list[str]]]:
+    """What `takt drives run` is, on a thread; what it says."""
+    said: list[str] = []
+    whole = described(text)
+    bus = EthercatBus(whole["external"]["buses"][0], whole, said.append)
+    plant = drive.Plant({}, url, buses=[bus], watchdog=watchdog, say=said.append)
+    thread = threading.Thread(target=plant.run)
+    thread.start()
+    eventually(lambda: plant._running)
+    try:
+        yield bus, said
+    finally:
+        plant.stop()
+        thread.join(LONG_S)
+        bus.close()
+
+
+def tell(emulation: Said, command: str) -> str:
+    """What the emulation answers to a command."""
+    count = len(emulation.lines)
+    emulation.tell(command)
+    assert eventually(lambda: len(emulation.lines) > count)
+    return emulation.lines[count]
+
+
+def bus_of(text: str, said: Any = None) -> EthercatBus:
+    whole = described(text)
+    return EthercatBus(whole["external"]["buses"][0], whole, said or (lambda _: None))
