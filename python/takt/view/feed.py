@@ -20,6 +20,7 @@ from takt.keys import Key, not_the_key
 from takt.lying import objects_of, rows_of
 from takt.network import open_network
 from takt.remote import JUMP_S
+from takt.scene import rounded_poses
 from takt.tables import fields_of
 from takt.view.ledger import Ledger
 from takt.view.machine import Machine, Source, drawn
@@ -89,7 +90,7 @@ class Feed:
         self.engine: dict[str, Any] | None = None
         self.objects: dict[str, list[list[float]]] = {}  # what lies on belts
         self.shapes = Shapes()  # of tracks
-        self.links: dict[str, list[list[float]]] = {}  # where the links of groups are
+        self.links: dict[str, list[list[float]]] = {}  # poses of the links of groups
         self.trouble = ""  # what is wrong beside the engine, in a sentence
         self.messages = 0  # of the scope, so far
         self.epoch = 0  # counts the machines that were seen
@@ -274,8 +275,9 @@ class Feed:
         assert self.machine is not None
         assert self.overview is not None
         for name, (_, axes, _) in self.machine.mechanisms.items():
-            places = self.machine.links_of(name, [self.overview.value(axis, "actual_position") for axis in axes])
-            self.links[name] = np.round(places, 2).tolist() if np.all(np.isfinite(places)) else []
+            joints = np.array([[self.overview.value(axis, "actual_position") for axis in axes]], float)
+            poses = rounded_poses(self.machine.link_poses(name, joints)[0])
+            self.links[name] = poses.tolist() if np.all(np.isfinite(poses)) else []
 
 
 def _drain(network: Any, most: int) -> None:
