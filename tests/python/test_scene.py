@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from takt import msgs
+from takt import _core, msgs
 from takt.kinematics import Kinematics, pose_to_matrix
 from takt.ready import ready_machines
 from takt.scene import link_poses, make_scene, matrix_of, node_pose
@@ -79,6 +79,11 @@ def described(text: str, folder: Path | None = None) -> Machine:
     message = msgs.machine_description()
     message.name, message.version, message.period_s, message.text = "m", "0", 0.001, text
     return Machine(message, folder)
+
+
+def kinds(machine: Machine) -> set[str]:
+    """Of all its solids."""
+    return {solid["kind"] for node in machine.scene["nodes"] for solid in node["solids"]}
 
 
 def one_group(kinematics: dict[str, object], more: str = "") -> str:
@@ -262,6 +267,17 @@ def test_urdf_has_its_meshes(tmp_path: Path) -> None:
     assert (lower["kind"], lower["size"], lower["at"][11]) == ("box", [50, 60, 200], 100)
     (upper,) = nodes["robot.upper"]["solids"]
     assert (upper["kind"], max(upper["vertices"]), upper["at"][11]) == ("mesh", 100, 20)
+    # A message that names files opens none; where it says what a file of this host says, that file's are drawn.
+    file = tmp_path / "machine.yaml"
+    file.write_text(text)
+    message = msgs.machine_description()
+    message.name, message.version, message.period_s = "m", "0", 0.001
+    message.text = json.dumps(json.loads(_core.load_machine(text.encode(), str(file))))
+    assert len(Machine(message).scene["nodes"]) == len(nodes)
+    assert not kinds(Machine(message)) & {"mesh"}
+    assert kinds(Machine(message, file=file)) >= {"mesh"}
+    file.write_text(text.replace("x: 100", "x: 101"))
+    assert not kinds(Machine(message, file=file)) & {"mesh"}
     (tmp_path / "arm" / "meshes" / "tip.stl").write_text("solid tip\nvertex 1\n")
     nodes = {node["name"]: node for node in described(text, tmp_path).scene["nodes"]}
     assert all(solid["kind"] != "mesh" for solid in nodes["robot.upper"]["solids"])  # a simple one in its place

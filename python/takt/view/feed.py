@@ -10,6 +10,7 @@ import math
 import re
 import time
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -80,8 +81,10 @@ class Tap:
 
 
 class Feed:
-    def __init__(self, url: str, key: Key | None = None) -> None:
+    def __init__(self, url: str, key: Key | None = None, file: Path | None = None) -> None:
+        """file: of the machine that is thought to run there."""
         self.url = url
+        self._file = file
         self.machine: Machine | None = None
         self.overview: Overview | None = None
         self.ledger = Ledger(())
@@ -189,7 +192,7 @@ class Feed:
             self.trouble = "another engine runs on this network, too: what it says is left out"
             return
         try:
-            self._begin(Machine(message))
+            self._begin(Machine(message, file=self._file))
             self.trouble = ""
         except ConfigError as error:
             self.trouble = f"the machine {message.name} cannot be read here: {error.problems[0]}"

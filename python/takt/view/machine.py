@@ -14,6 +14,7 @@ import numpy as np
 
 from takt import _core, msgs
 from takt.checks.series import quantity, words
+from takt.engine import read_machine
 from takt.errors import ConfigError, TaktError
 from takt.figures import COUNTS
 from takt.kinematics import Kinematics, pose_to_matrix
@@ -49,19 +50,22 @@ class Source:
 class Machine:
     """What an engine said it runs. Raises ConfigError where this package cannot read it.
 
-    folder: where files are that the text names; without, none is opened."""
+    folder: where files are that the text names; without, none is opened. file: a machine file of this host; if it says
+    the same, the meshes that it names are drawn."""
 
-    def __init__(self, message: msgs.machine_description, folder: Path | None = None) -> None:
+    def __init__(self, message: msgs.machine_description, folder: Path | None = None, file: Path | None = None) -> None:
         self.run_id = message.run_id
         self.name = message.name
         self.version = message.version
         self.period_s = message.period_s
         self.text = message.text
         self.folder = folder or Path()
-        self._opens_files = folder is not None
+        self._drawn_from = (self.text, folder)
         self.parameters: dict[str, Any] = json.loads(
             _core.load_machine(self.text.encode(), str(self.folder / "machine"), files=folder is not None)
         )
+        if file is not None and folder is None and self.parameters == _loaded(file):
+            self._drawn_from = (file.read_text(encoding="utf-8"), file.parent)
         self.sources = [
             Source(i, name, kind.name, Layout(kind.name, name), parameters)
             for i, (name, (kind, parameters)) in enumerate(components_of(self.parameters).items())
@@ -215,12 +219,20 @@ class Machine:
     @cached_property
     def scene(self) -> dict[str, Any]:
         """The machine in three dimensions (`takt.scene`)."""
-        return make_scene(self.parameters, self.mechanisms, self.text, self.folder if self._opens_files else None)
+        return make_scene(self.parameters, self.mechanisms, *self._drawn_from)
 
     def link_poses(self, group: str, joints: Array) -> Array:
         """(n, links, 7): where the links of a group are in the world, for rows of positions of its axes."""
         mechanism, _, base = self.mechanisms[group]
         return link_poses(mechanism, base, joints[:, : mechanism.axes])
+
+
+def _loaded(file: Path) -> Any:
+    """What a machine file says; None where it cannot be read."""
+    try:
+        return json.loads(_core.load_machine(*read_machine(file)))
+    except (ConfigError, OSError):
+        return None
 
 
 def drawn(table: Any) -> dict[str, Any]:
