@@ -14,8 +14,8 @@ A scene is JSON. `nodes` are frames with solids on them, in mm:
     {"component": "x", "slide": "actual_position", "from": 0, "scale": 1, "wrap": 600, "turns": true}
                                                               along X, or about Z in deg
 
-`belts` says where what lies on them gets its size, `trails` which groups leave a line, `followed` what a camera can
-follow. Nothing is there whose section the machine file leaves out.
+`label` says how high above its frame a node has its name. `belts` says how large what lies on them is, `trails` which
+groups leave a line, `followed` what a camera can follow. Nothing is there whose section the machine file leaves out.
 """
 
 from __future__ import annotations
@@ -145,7 +145,7 @@ class _Maker:
             front = box((0.06 * width, 0.5 * height, MOVER + 1), (0.44 * width, 0, MOVER / 2), "mark")
             moved = {"component": mover["name"], "pose": list("xyzabc"), "system": "coordinate_system"}
             solids = [box((width, height, MOVER), (0, 0, MOVER / 2), "mover"), front]
-            self._add(mover["name"], solids, of=mover["name"], moved=moved, label=True)
+            self._add(mover["name"], solids, of=mover["name"], moved=moved, label=70)
 
     # --- belts ---
 
@@ -157,7 +157,7 @@ class _Maker:
             if belt["kind"] == "turning":
                 table = cylinder(TABLE, (0, 0, -PRODUCT - 20), (0, 0, -PRODUCT), "belt")
                 mark = box((TABLE, 8, 2), (TABLE / 2, 0, -PRODUCT), "mark")
-                self._add(belt["name"], [table], at=at, of=belt["name"], label=True)
+                self._add(belt["name"], [table], at=at, of=belt["name"], label=70)
                 self._add(f"{belt['name']}.marks", [mark], at=at, of=belt["name"], moved={**moved, "turns": True})
                 self.room += [[frame[0, 3] + x, frame[1, 3] + y] for x, y in ((-TABLE, -TABLE), (TABLE, TABLE))]
                 continue
@@ -183,7 +183,7 @@ class _Maker:
                 ],
                 at=at,
                 of=belt["name"],
-                label=True,
+                label=70,
             )
             places = np.arange(start, end - MARKS + 1e-9, MARKS)
             marks = [box((2, BELT_WIDTH, 1), (x, 0, -PRODUCT + 0.3), "mark") for x in places]
@@ -238,7 +238,7 @@ class _Maker:
             ends = ((80, 0, 0), (0, 80, 0), (0, 0, 80))
             solids = [cylinder(3, (0, 0, 0), end, f"axis_{i}") for i, end in zip("xyz", ends, strict=True)]
             moved = {"component": pose["name"], "pose": [f"pose_{axis}" for axis in "xyzabc"]}
-            self._add(pose["name"], solids, of=pose["name"], moved=moved, label=True)
+            self._add(pose["name"], solids, of=pose["name"], moved=moved, label=70)
 
     def _ranges_of(self, group: Mapping[str, Any]) -> Array:
         mechanism, axes, _ = self.mechanisms[group["name"]]
@@ -258,13 +258,12 @@ class _Maker:
         alone = [axis for axis in self.machine["axes"] if axis["name"] not in taken]
         places = np.array(self.room or [[0.0, ROOM]], float).reshape(-1, 2)
         left, front = float(places[:, 0].min()), float(places[:, 1].min()) - ROOM
-        for axis in alone:
-            if axis["unit"] not in ("deg", "°", "rev") and axis["kind"] != "rotary":
-                self._slide(axis, left, front)
-                front -= ROOM
         discs = [axis for axis in alone if axis["unit"] in ("deg", "°", "rev") or axis["kind"] == "rotary"]
         for i, axis in enumerate(discs):
             self._disc(axis, left + DISC + ROOM * (i % 6), front - ROOM * (i // 6))
+        front -= ROOM * math.ceil(len(discs) / 6)
+        for i, axis in enumerate(axis for axis in alone if axis not in discs):
+            self._slide(axis, left, front - ROOM * i)
 
     def _slide(self, axis: Mapping[str, Any], left: float, y: float) -> None:
         lower, upper = self._range(axis["name"])
@@ -281,7 +280,7 @@ class _Maker:
         name = axis["name"]
         rail = [box((length + 80, 50, 16), (length / 2, 0, 8), "base")]
         rail += [box((6, 60, 40), (x, 0, 20), "limit") for x in (-43, length + 43)] if "wrap" not in moved else []
-        self._add(f"{name}.rail", rail, at=at, of=name, label=True)
+        self._add(f"{name}.rail", rail, at=at, of=name, label=70)
         carriage = [box((70, 64, 34), (0, 0, 33), "link"), box((4, 66, 36), (0, 0, 33), "mark")]
         self._add(name, carriage, at=at, of=name, moved=moved)
 
@@ -294,7 +293,7 @@ class _Maker:
         if turn != 1.0:
             moved["scale"] = turn
         stand = [box((40, 40, DISC + 20), (0, 30, (DISC + 20) / 2), "base")]
-        self._add(f"{name}.stand", stand, at=rounded(shift(x, y, 0)), of=name, label=True)
+        self._add(f"{name}.stand", stand, at=rounded(shift(x, y, 0)), of=name, label=2 * DISC + 25)
         disc = [cylinder(DISC, (0, 0, 0), (0, 0, 14), "link"), box((DISC - 6, 8, 4), (DISC / 2, 0, 16), "mark")]
         self._add(name, disc, at=rounded(upright), of=name, moved=moved)
 

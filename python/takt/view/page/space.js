@@ -177,12 +177,12 @@ export class Space {
     return COLOURS[role] ? css(COLOURS[role]) : tone(role);
   }
 
-  label({ name, of, solids }, parent) {
+  label({ name, of, solids, label }, parent) {
     const { three } = this;
     const sprite = new three.Sprite(new three.SpriteMaterial({ sizeAttenuation: false, depthTest: false, premultipliedAlpha: true }));
     const size = Math.max(...solids[0].size);
     sprite.userData = { text: of ?? name, size };
-    sprite.position.set(0, 0, Math.min(70, size / 2));
+    sprite.position.set(0, 0, label);
     sprite.center.set(0, 0);
     sprite.renderOrder = 2;
     parent.add(sprite);
@@ -219,7 +219,9 @@ export class Space {
     for (const one of this.nodes) {
       const known = this.placed(one);
       one.root.visible = known;
-      if (known) one.root.matrixWorldNeedsUpdate = true;
+      if (!known) continue;
+      one.root.matrixWorldNeedsUpdate = true;
+      if (this.floor && one.node.moved?.group) this.floor.position.z = Math.min(this.floor.position.z, one.root.matrix.elements[14] - 10);
     }
   }
 
