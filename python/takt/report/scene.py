@@ -15,7 +15,7 @@ from takt.errors import ConfigError
 from takt.recording import Array, Recording
 from takt.report.columns import Block
 from takt.scene import rounded_poses
-from takt.scene.moving import POSE
+from takt.scene.moving import POSE, held
 from takt.view.machine import Machine, drawn
 
 RATE_HZ = 50.0  # of the places of arms, where they stay below
@@ -89,17 +89,9 @@ def _links(machine: Machine, group: str, recording: Recording, block: Block) -> 
     count = POSE * len(mechanism.links)
     n = max(2, min(math.ceil((last - first) * RATE_HZ), NUMBERS // count))
     times = np.linspace(first, last, n)
-    joints = np.stack([_at(recording, axis, "actual_position", times) for axis in axes], axis=1)
+    joints = np.stack([held(recording, axis, "actual_position", times) for axis in axes], axis=1)
     poses = rounded_poses(machine.link_poses(group, joints))
     return {"from": first, "to": last, "n": n, "count": count, **block.exactly(poses, "f32")}
-
-
-def _at(recording: Recording, component: str, field: str, times: Array) -> Array:
-    """The last sample at or before each time."""
-    table = recording[component]
-    rows = np.searchsorted(table["time_s"], times + 1e-9, side="right") - 1
-    column: Array = table[field][np.maximum(rows, 0)].astype(np.float64)
-    return column
 
 
 def _objects(told: dict[str, Array], block: Block) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from takt.kinematics import Kinematics, KinematicsError, pose_to_matrix
-from takt.recording import Array
+from takt.recording import Array, Recording
 
 POSE = 7  # numbers
 Values = Callable[[str, str], float]  # of a component and one of its fields
@@ -57,6 +57,14 @@ def poses_of(matrices: Array) -> Array:
 def rounded_poses(poses: Array) -> Array:
     """To 0.01 mm, and 0.01 mm on 1 m: what pictures need."""
     return np.concatenate([np.round(poses[..., :3], 2), np.round(poses[..., 3:], 5)], axis=-1)
+
+
+def held(recording: Recording, component: str, field: str, times: Array) -> Array:
+    """The last sample at or before each time; before all of them the first one."""
+    table = recording[component]
+    rows = np.searchsorted(table["time_s"], times + 1e-9, side="right") - 1
+    column: Array = table[field][np.maximum(rows, 0)].astype(np.float64)
+    return column
 
 
 def matrix_of(pose: Array) -> Array:
