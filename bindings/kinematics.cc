@@ -4,6 +4,7 @@
 #include <pybind11/typing.h>
 
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -12,7 +13,11 @@
 #include "bindings.h"
 #include "takt/core/angle.h"
 #include "takt/core/arguments.h"
+#include "takt/core/schema.h"
 #include "takt/kinematics/links.h"
+#include "takt/kinematics/serial.h"
+#include "takt/workspace/mesh.h"
+#include "takt/workspace/urdf_links.h"
 
 namespace takt::bindings {
 namespace {
@@ -212,6 +217,35 @@ class Mechanism {
     return {places, verdicts.reasons()};
   }
 
+  // Of every link its frame as the upper three rows of a matrix, in mm, (rows, links, 12).
+  Answer LinkFrames(const Numbers& joints) const {
+    const std::size_t rows = RowsOf(joints, axes());
+    const std::size_t count = kinematics::LinksOf(kinematics_).size();
+    Numbers matrices({rows, count, std::size_t{12}});
+    std::fill_n(matrices.mutable_data(), rows * count * 12, kNone);
+    Verdicts verdicts(rows);
+    for (std::size_t i = 0; i < rows; ++i) {
+      kinematics::LinkFrameArray frames;
+      if (!verdicts.Take(i, kinematics::LinkFrames(kinematics_, JointsAt(joints, i), frames))) continue;
+      for (std::size_t k = 0; k < count; ++k) {
+        double* twelve = matrices.mutable_data() + (i * count + k) * 12;
+        for (int row = 0; row < 3; ++row) {
+          for (int column = 0; column < 3; ++column) *twelve++ = frames[k].M(row, column);
+          *twelve++ = frames[k].p(row);
+        }
+      }
+    }
+    return {matrices, verdicts.reasons()};
+  }
+
+  // Of every link where the next axis is, in its own frame, mm, (links, 3).
+  Numbers LinkSpans() const {
+    const std::vector<kinematics::LinkInfo> links = kinematics::LinksOf(kinematics_);
+    Numbers spans = Table(links.size(), 3);
+    for (std::size_t k = 0; k < links.size(); ++k) std::copy_n(links[k].span.data, 3, spans.mutable_data() + 3 * k);
+    return spans;
+  }
+
   // Names of shoulder, elbow, wrist.
   std::vector<std::string> ConfigurationAt(const Numbers& joints) const {
     if (RowsOf(joints, axes()) != 1) throw std::invalid_argument("expected one row");
@@ -329,6 +363,34 @@ std::vector<std::string> ReasonTexts() {
   return texts;
 }
 
+// The shapes that URDF gives the links of a chain, as workspaces take them, each as JSON.
+std::vector<std::string> UrdfSolids(const std::string& urdf, const std::string& base, const std::string& tip,
+                                    const std::string& folder) {
+  std::string why;
+  std::vector<std::string> solids;
+  if (!kinematics::ReadUrdf(urdf, base, tip, why)) return solids;
+  for (const workspace::SolidParams& solid : workspace::LinksOfUrdf({urdf, base, tip}, folder).links)
+    solids.push_back(ToJson(TypeOf<workspace::SolidParams>(), &solid).dump());
+  return solids;
+}
+
+using Surface = std::pair<Numbers, py::array_t<std::uint32_t>>;
+
+// Vertices (n, 3) in mm and triangles (m, 3) of an STL file; nothing where it cannot be read.
+std::optional<Surface> SurfaceOf(const std::string& path, double scale) {
+  std::string why;
+  const std::optional<workspace::Mesh> mesh = workspace::LoadStl(path, scale, why);
+  if (!mesh) return std::nullopt;
+  Numbers vertices = Table(mesh->vertices.size(), 3);
+  for (std::size_t i = 0; i < mesh->vertices.size(); ++i)
+    std::copy_n(mesh->vertices[i].data, 3, vertices.mutable_data() + 3 * i);
+  py::array_t<std::uint32_t> triangles({mesh->triangles.size(), std::size_t{3}});
+  std::uint32_t* corner = triangles.mutable_data();
+  for (const std::array<std::size_t, 3>& triangle : mesh->triangles)
+    for (const std::size_t vertex : triangle) *corner++ = static_cast<std::uint32_t>(vertex);
+  return Surface{vertices, triangles};
+}
+
 }  // namespace
 
 void BindKinematics(py::module_& m) {
@@ -336,6 +398,8 @@ void BindKinematics(py::module_& m) {
   m.def("reason_texts", &ReasonTexts, "The same as sentences.");
   m.def("poses_to_matrices", &ToMatrices, py::arg("poses"));
   m.def("matrices_to_poses", &ToPoses, py::arg("matrices"));
+  m.def("urdf_solids", &UrdfSolids, py::arg("urdf"), py::arg("base"), py::arg("tip"), py::arg("folder"));
+  m.def("surface_of_stl", &SurfaceOf, py::arg("path"), py::arg("scale"));
   m.def("poses_between", &Between, py::arg("ends"), py::arg("shares"));
 
   py::class_<Mechanism>(m, "Mechanism", "The kinematics of a group of axes, on tables with a row a position.")
@@ -352,6 +416,8 @@ void BindKinematics(py::module_& m) {
       .def("jacobian", &Mechanism::JacobianAt, py::arg("joints"))
       .def_property_readonly("links", &Mechanism::Links)
       .def("link_places", &Mechanism::LinkPlaces, py::arg("joints"))
+      .def("link_frames", &Mechanism::LinkFrames, py::arg("joints"))
+      .def_property_readonly("link_spans", &Mechanism::LinkSpans)
       .def("configuration", &Mechanism::ConfigurationAt, py::arg("joints"));
 }
 

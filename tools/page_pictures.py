@@ -55,6 +55,7 @@ PICTURES: dict[str, tuple[str, bool, str, float, str]] = {
         "",
     ),
     "view_plan": ("pick_cell", False, "tab=plan", 12.0, ""),
+    "view_3d": ("delta_cell", True, "tab=3d", 12.0, ""),
     "view_movers": ("planar_line", True, "tab=plan", 50.0, ""),
     "view_machine": ("pick_cell", True, "tab=machine", 12.0, ""),
     "view_first": (
@@ -82,8 +83,18 @@ REPORTS: dict[str, tuple[bool, str]] = {
             window.takt.clock.set(window.takt.clock.from + 15.3);
         }""",
     ),
+    "report_3d": (
+        False,
+        """() => {
+            document.getElementById("scene-section").scrollIntoView();
+            window.takt.clock.set(window.takt.clock.from + 15.3);
+            window.takt.scene.open("space");
+        }""",
+    ),
 }
 
+
+PARTS = {"report_3d": "#scene-section"}  # of pages, by themselves
 
 COMPARISON = "compare"  # of two runs
 SWEEP = "sweep"
@@ -162,7 +173,11 @@ def take_report(name: str, target: Path) -> None:
         if before:
             page.evaluate(before)
         page.wait_for_timeout(1000)
-        page.screenshot(path=str(target))
+        if name in PARTS:
+            page.wait_for_function("() => window.takt.space.frames > 1")
+            page.locator(PARTS[name]).screenshot(path=str(target))
+        else:
+            page.screenshot(path=str(target))
         browser.close()
 
 

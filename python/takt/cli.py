@@ -300,7 +300,7 @@ def _demo(
 
     scenario = load_scenario(scenario_of(what))
     of = machine or scenario.machine
-    page = Beside(scenario.view, port, browser, _say) if view else None
+    page = Beside(scenario.view, port, browser, _say, of) if view else None
     stays = page is not None and (sys.stdin.isatty() if stay is None else stay)
 
     def judged(outcome: Outcome, figures: Mapping[str, Any]) -> None:

@@ -49,7 +49,7 @@ def write(
     yield from troubles(chosen)
     for target in targets:
         if target.suffix == ".mcap":
-            said = counted(to_mcap(chosen, target), "message")
+            said = counted(to_mcap(chosen, target, scene=not signals), "message")
             yield f"{target}: {said} of {counted(len(chosen), 'component')} and of events"
         elif target.suffix == ".parquet":
             yield f"{chosen.to_parquet(target)}: {words_on_rates(chosen)}"
@@ -78,10 +78,11 @@ def words_on_rates(recording: Recording) -> str:
     return f"rates differ ({said}): a row for each cycle of any component; cells of those without a sample are empty"
 
 
-def to_mcap(recording: Recording, path: Path) -> int:
+def to_mcap(recording: Recording, path: Path, scene: bool = True) -> int:
     """Writes MCAP and says how many messages: a channel of JSON for each component, named like it, and one for the
     events. Log times are engine time in ns. Units stand in the descriptions of the schemas; enumerations are texts;
-    what is no number is left out, as JSON does not know it. The machine file is attached. Needs the package mcap."""
+    what is no number is left out, as JSON does not know it. The machine file is attached. `scene`: what can be seen of
+    it is there, too, and how it moved (/scene, /tf). Needs the package mcap."""
     try:
         from mcap.writer import Writer
     except ImportError:
@@ -91,6 +92,7 @@ def to_mcap(recording: Recording, path: Path) -> int:
         writer.start(profile="", library="takt")
         streams = [_component(writer, recording, name) for name in recording]
         streams.append(_events(writer, recording))
+        streams += _scene(writer, recording) if scene else []
         count = 0
         for time_ns, channel, data in sorted_by_time(streams):
             writer.add_message(channel, log_time=time_ns, data=data, publish_time=time_ns, sequence=count)
@@ -163,6 +165,21 @@ def _events(writer: Any, recording: Recording) -> tuple[Array, int, Iterator[byt
             ).encode()
 
     return times, channel, messages()
+
+
+def _scene(writer: Any, recording: Recording) -> list[tuple[Array, int, Iterator[bytes]]]:
+    """None of recordings that do not know their machine."""
+    from takt.report.scene import machine_of  # reports need this module
+    from takt.scene.foxglove import streams_of
+
+    machine = machine_of(recording)
+    shown: list[tuple[Array, int, Iterator[bytes]]] = []
+    for stream in streams_of(recording, machine) if machine is not None and len(recording) else ():
+        data = json.dumps(stream.schema).encode()
+        number = writer.register_schema(name=stream.schema["title"], encoding="jsonschema", data=data)
+        channel = writer.register_channel(topic=stream.topic, message_encoding="json", schema_id=number)
+        shown.append((_ns(stream.times_s), channel, (json.dumps(message).encode() for message in stream.messages)))
+    return shown
 
 
 def _about(writer: Any, recording: Recording) -> None:

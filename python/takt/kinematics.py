@@ -196,6 +196,22 @@ class Kinematics:
         _raise_first(reasons)
         return _like(places, single)
 
+    @property
+    def link_spans(self) -> Array:
+        """(links, 3): where the next axis is, seen from each link, in mm; 0 for links without such an extent."""
+        return self._core.link_spans
+
+    def link_frames(self, joints: npt.ArrayLike) -> Array:
+        """(n, links, 4, 4): where each link is, seen from the base, as a homogeneous matrix in mm. Raises
+        KinematicsError where a Delta's arms do not meet."""
+        rows, single = _rows(joints, self.axes)
+        upper, reasons = self._core.link_frames(rows)
+        _raise_first(reasons)
+        frames = np.zeros((*upper.shape[:2], 4, 4))
+        frames[:, :, :3] = upper.reshape(*upper.shape[:2], 3, 4)
+        frames[:, :, 3, 3] = 1.0
+        return _like(frames, single)
+
     def configuration(self, joints: npt.ArrayLike) -> Configuration:
         """Which branch one position (axes,) is in; "keep" for what the mechanism has no choice of."""
         return Configuration(*self._core.configuration(_rows(joints, self.axes)[0]))  # type: ignore[arg-type]

@@ -115,6 +115,7 @@ def test_mcap_is_sound_and_says_all_by_itself(tmp_path: Path) -> None:
     assert (records[0], records[-1]) == ("Header", "Footer")
 
     kinds: dict[str, Any] = {"number": (int, float), "integer": int, "boolean": bool, "string": str, "object": dict}
+    kinds["array"] = list
     shown: dict[int, dict[str, Any]] = {}
     for schema, channel, message in through:
         assert schema is not None

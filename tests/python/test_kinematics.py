@@ -168,6 +168,13 @@ def test_links_keep_their_lengths_and_hang_together(name, seed):
     np.testing.assert_allclose(places[:, -1, :3], robot.forward(joints)[:, :3], atol=1e-6)  # the last one is the tool
     lengths = np.linalg.norm(places[..., 3:] - places[..., :3], axis=-1)
     np.testing.assert_allclose(lengths, lengths[:1].repeat(5, axis=0), atol=1e-6)
+    # The same by frames: where each begins, and its span turned by it.
+    frames = robot.link_frames(joints)
+    np.testing.assert_allclose(frames[:, -1], kin.pose_to_matrix(robot.forward(joints)), atol=1e-6)
+    np.testing.assert_array_equal(frames[..., :3, 3], places[..., :3])
+    ends = np.einsum("nlij,lj->nli", frames[..., :3, :3], robot.link_spans) + frames[..., :3, 3]
+    np.testing.assert_allclose(ends, places[..., 3:], atol=1e-9)
+    np.testing.assert_array_equal(robot.link_frames(joints[0]), frames[0])
     if name == "delta":
         link = {link: places[:, i] for i, link in enumerate(robot.links)}
         for arm in "123":

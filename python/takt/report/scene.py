@@ -1,5 +1,5 @@
-"""The machine from above, for the page's own drawing of it: the model that the live page gets, and how its arms and
-what lies on its belts were at all times."""
+"""The machine from above and in three dimensions, for the page's own drawing of it: the model that the live page gets,
+and how its arms and what lies on its belts were at all times."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ import numpy as np
 from takt import msgs, style
 from takt.cam import Table
 from takt.errors import ConfigError
-from takt.kinematics import KinematicsError
 from takt.recording import Array, Recording
 from takt.report.columns import Block
+from takt.scene import rounded_poses
+from takt.scene.moving import POSE, held
 from takt.view.machine import Machine, drawn
 
 RATE_HZ = 50.0  # of the places of arms, where they stay below
@@ -57,16 +58,18 @@ def cams_of(recording: Recording, machine: Machine | None) -> dict[str, Any] | N
 
 
 def scene_of(recording: Recording, block: Block, machine: Machine | None) -> dict[str, Any] | None:
-    """None where nothing lies in the plane, or the recording does not know its machine."""
+    """None where the machine has nothing to draw, or the recording does not know its machine."""
     if machine is None:
         return None
     told = machine.describe()
-    if not any(told["plan"][what] for what in LYING):
+    flat = any(told["plan"][what] for what in LYING)
+    if not flat and not told["scene"]["nodes"]:
         return None
     kinds = {name: {"live": kind["live"], "fields": []} for name, kind in told["kinds"].items()}
-    shown = {name: told[name] for name in ("name", "period_s", "components", "palette", "states", "plan")}
+    shown = {name: told[name] for name in ("name", "period_s", "components", "palette", "states", "plan", "scene")}
     groups = {name: _links(machine, name, recording, block) for name in machine.mechanisms}
     return {
+        "flat": flat,
         "machine": {**shown, "kinds": kinds},
         "links": {name: links for name, links in groups.items() if links is not None},
         "objects": {belt: _objects(told, block) for belt, told in recording.meta.get("objects", {}).items()},
@@ -74,8 +77,8 @@ def scene_of(recording: Recording, block: Block, machine: Machine | None) -> dic
 
 
 def _links(machine: Machine, group: str, recording: Recording, block: Block) -> dict[str, Any] | None:
-    """Where the links of a group are, frame after frame: n frames from `from` to `to`, of `count` numbers each."""
-    mechanism, axes, base = machine.mechanisms[group]
+    """Poses of the links of a group, frame after frame: n frames from `from` to `to`, of `count` numbers each."""
+    mechanism, axes, _ = machine.mechanisms[group]
     axes = axes[: mechanism.axes]
     if any(axis not in recording or len(recording[axis]) < 2 for axis in axes):
         return None
@@ -83,32 +86,12 @@ def _links(machine: Machine, group: str, recording: Recording, block: Block) -> 
     last = min(float(recording[axis]["time_s"][-1]) for axis in axes)
     if not last > first:
         return None
-    count = 6 * len(mechanism.links)
+    count = POSE * len(mechanism.links)
     n = max(2, min(math.ceil((last - first) * RATE_HZ), NUMBERS // count))
     times = np.linspace(first, last, n)
-    joints = np.stack([_at(recording, axis, "actual_position", times) for axis in axes], axis=1)
-    places = _places(mechanism, joints).reshape(n, -1, 3) @ base[:3, :3].T + base[:3, 3]
-    return {"from": first, "to": last, "n": n, "count": count, **block.exactly(np.round(places, 2), "f32")}
-
-
-def _places(mechanism: Any, joints: Array) -> Array:
-    """NaN where links cannot be said to be anywhere."""
-    try:
-        return np.asarray(mechanism.link_places(joints))
-    except (KinematicsError, ValueError):
-        nowhere = np.full((1, len(mechanism.links), 6), np.nan)
-        if len(joints) == 1:
-            return nowhere
-        half = len(joints) // 2
-        return np.concatenate([_places(mechanism, part) for part in (joints[:half], joints[half:])])
-
-
-def _at(recording: Recording, component: str, field: str, times: Array) -> Array:
-    """The last sample at or before each time."""
-    table = recording[component]
-    rows = np.searchsorted(table["time_s"], times + 1e-9, side="right") - 1
-    column: Array = table[field][np.maximum(rows, 0)].astype(np.float64)
-    return column
+    joints = np.stack([held(recording, axis, "actual_position", times) for axis in axes], axis=1)
+    poses = rounded_poses(machine.link_poses(group, joints))
+    return {"from": first, "to": last, "n": n, "count": count, **block.exactly(poses, "f32")}
 
 
 def _objects(told: dict[str, Array], block: Block) -> dict[str, Any]:

@@ -40,7 +40,7 @@ def run(
     url = free_url()
     with contextlib.ExitStack() as stack:
         directory = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="takt-view-")))
-        address = stack.enter_context(serving(url, port, key=key))
+        address = stack.enter_context(serving(url, port, key=key, file=file))
         engine = stack.enter_context(taktd(file, url, None, pace, directory, key))
         _show(address, f"{file} on {url}", browser, say)
         return _until_it_ends(engine, directory / "taktd.txt", say)
@@ -55,12 +55,13 @@ class Beside:
     port: int  # 0: any
     browser: bool
     say: Callable[[str], None]
+    machine: Path | None = None  # its file
 
     @contextlib.contextmanager
     def __call__(self, url: str) -> Iterator[None]:
         end_in_order()
         drawn = threading.Event()
-        with serving(url, self.port, drawn, read_key()) as address:
+        with serving(url, self.port, drawn, read_key(), self.machine) as address:
             address += f"#{self.shows}" if self.shows else ""
             self.say(f"the live page: {address} (the scenario begins as soon as it is open)")
             if self.browser:

@@ -10,6 +10,7 @@ import math
 import re
 import time
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from takt.keys import Key, not_the_key
 from takt.lying import objects_of, rows_of
 from takt.network import open_network
 from takt.remote import JUMP_S
+from takt.scene import rounded_poses
 from takt.tables import fields_of
 from takt.view.ledger import Ledger
 from takt.view.machine import Machine, Source, drawn
@@ -79,8 +81,10 @@ class Tap:
 
 
 class Feed:
-    def __init__(self, url: str, key: Key | None = None) -> None:
+    def __init__(self, url: str, key: Key | None = None, file: Path | None = None) -> None:
+        """file: of the machine that is thought to run there."""
         self.url = url
+        self._file = file
         self.machine: Machine | None = None
         self.overview: Overview | None = None
         self.ledger = Ledger(())
@@ -89,7 +93,7 @@ class Feed:
         self.engine: dict[str, Any] | None = None
         self.objects: dict[str, list[list[float]]] = {}  # what lies on belts
         self.shapes = Shapes()  # of tracks
-        self.links: dict[str, list[list[float]]] = {}  # where the links of groups are
+        self.links: dict[str, list[list[float]]] = {}  # poses of the links of groups
         self.trouble = ""  # what is wrong beside the engine, in a sentence
         self.messages = 0  # of the scope, so far
         self.epoch = 0  # counts the machines that were seen
@@ -188,7 +192,7 @@ class Feed:
             self.trouble = "another engine runs on this network, too: what it says is left out"
             return
         try:
-            self._begin(Machine(message))
+            self._begin(Machine(message, file=self._file))
             self.trouble = ""
         except ConfigError as error:
             self.trouble = f"the machine {message.name} cannot be read here: {error.problems[0]}"
@@ -274,8 +278,9 @@ class Feed:
         assert self.machine is not None
         assert self.overview is not None
         for name, (_, axes, _) in self.machine.mechanisms.items():
-            places = self.machine.links_of(name, [self.overview.value(axis, "actual_position") for axis in axes])
-            self.links[name] = np.round(places, 2).tolist() if np.all(np.isfinite(places)) else []
+            joints = np.array([[self.overview.value(axis, "actual_position") for axis in axes]], float)
+            poses = rounded_poses(self.machine.link_poses(name, joints)[0])
+            self.links[name] = poses.tolist() if np.all(np.isfinite(poses)) else []
 
 
 def _drain(network: Any, most: int) -> None:

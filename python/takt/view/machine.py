@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +14,12 @@ import numpy as np
 
 from takt import _core, msgs
 from takt.checks.series import quantity, words
+from takt.engine import read_machine
 from takt.errors import ConfigError, TaktError
 from takt.figures import COUNTS
-from takt.kinematics import Kinematics, KinematicsError, pose_to_matrix
+from takt.kinematics import Kinematics, pose_to_matrix
 from takt.recording import Array
+from takt.scene import link_poses, make_scene
 from takt.style import PALETTE, STATES, USUAL_FIELDS, is_set_point
 from takt.tables import KINDS, PREFIXES, components_of, unit_of, units_of
 from takt.track_layout import TrackLayout
@@ -49,18 +52,22 @@ class Source:
 class Machine:
     """What an engine said it runs. Raises ConfigError where this package cannot read it.
 
-    folder: where files are that the text names; without, none is opened."""
+    folder: where files are that the text names; without, none is opened. file: a machine file of this host; if it says
+    the same, the meshes that it names are drawn."""
 
-    def __init__(self, message: msgs.machine_description, folder: Path | None = None) -> None:
+    def __init__(self, message: msgs.machine_description, folder: Path | None = None, file: Path | None = None) -> None:
         self.run_id = message.run_id
         self.name = message.name
         self.version = message.version
         self.period_s = message.period_s
         self.text = message.text
         self.folder = folder or Path()
+        self._drawn_from = (self.text, folder)
         self.parameters: dict[str, Any] = json.loads(
             _core.load_machine(self.text.encode(), str(self.folder / "machine"), files=folder is not None)
         )
+        if file is not None and folder is None and self.parameters == _loaded(file):
+            self._drawn_from = (file.read_text(encoding="utf-8"), file.parent)
         self.sources = [
             Source(i, name, kind.name, Layout(kind.name, name), parameters)
             for i, (name, (kind, parameters)) in enumerate(components_of(self.parameters).items())
@@ -106,6 +113,7 @@ class Machine:
             "palette": PALETTE,
             "states": STATES,
             "plan": self._plan(),
+            "scene": self.scene,
             "cams": self._cams(),
         }
 
@@ -210,15 +218,23 @@ class Machine:
             found[group["name"]] = (mechanism, list(group["axes"]), np.asarray(pose_to_matrix(_pose(group["base"]))))
         return found
 
-    def links_of(self, group: str, positions: Sequence[float]) -> Array:
-        """(links, 6): where each link of a group begins and ends, in the world; NaN where that cannot be said."""
+    @cached_property
+    def scene(self) -> dict[str, Any]:
+        """The machine in three dimensions (`takt.scene`)."""
+        return make_scene(self.parameters, self.mechanisms, *self._drawn_from)
+
+    def link_poses(self, group: str, joints: Array) -> Array:
+        """(n, links, 7): where the links of a group are in the world, for rows of positions of its axes."""
         mechanism, _, base = self.mechanisms[group]
-        try:
-            places = np.asarray(mechanism.link_places(positions[: mechanism.axes])).reshape(-1, 3)
-        except (KinematicsError, ValueError):
-            return np.full((len(mechanism.links), 6), math.nan)
-        world: Array = (places @ base[:3, :3].T + base[:3, 3]).reshape(-1, 6)
-        return world
+        return link_poses(mechanism, base, joints[:, : mechanism.axes])
+
+
+def _loaded(file: Path) -> Any:
+    """What a machine file says; None where it cannot be read."""
+    try:
+        return json.loads(_core.load_machine(*read_machine(file)))
+    except (ConfigError, OSError):
+        return None
 
 
 def drawn(table: Any) -> dict[str, Any]:

@@ -12,6 +12,7 @@ import traceback
 from collections import deque
 from collections.abc import AsyncIterator, Iterator
 from importlib import resources
+from pathlib import Path
 from typing import Any
 
 import uvicorn
@@ -296,10 +297,11 @@ def serving(
     port: int = 0,
     drawn: threading.Event | None = None,
     key: Key | None = None,
+    file: Path | None = None,
 ) -> Iterator[str]:
     """The page of the engine on this network, on a thread of its own. Yields its address. `drawn` is set as soon as
-    somebody's page has drawn something of the engine."""
-    site = Site(Feed(url, key), drawn or threading.Event())
+    somebody's page has drawn something of the engine. `file`: the machine file that is thought to run there."""
+    site = Site(Feed(url, key, file), drawn or threading.Event())
     with socket.socket() as listener:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

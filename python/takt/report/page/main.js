@@ -105,5 +105,5 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   scene?.draw();
   cams?.draw();
 });
-window.takt = { data, clock, curves, verdicts, recorded, cams, model: scene?.model, plan: scene?.plan }; // for the console, and for tests
+window.takt = { data, clock, curves, verdicts, recorded, cams, model: scene?.model, plan: scene?.plan, space: scene?.space, scene }; // for the console, and for tests
 document.body.classList.add("ready");

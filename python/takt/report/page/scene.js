@@ -1,10 +1,14 @@
-// The machine from above at any time of the recording: feeds the live page's model and drawing from columns.
+// The machine from above and in three dimensions at any time of the recording: feeds the live page's model and drawings
+// from columns.
 
 import { Model } from "../../view/page/model.js";
 import { Plan } from "../../view/page/plan.js";
+import { Space } from "../../view/page/space.js";
 import { Series } from "../../view/page/store.js";
 import { byId } from "../../view/page/dom.js";
-import { rowAt } from "./columns.js";
+import { inflated, rowAt } from "./columns.js";
+
+const CORE = "./three.core.min.js"; // as the other module of three.js imports it
 
 export class Scene {
   constructor(data, columns, recorded, clock) {
@@ -12,8 +16,10 @@ export class Scene {
     this.clock = clock;
     this.model = new Model();
     this.model.begin(data.machine);
-    const { plan } = data.machine;
-    this.shown = [...plan.movers, ...plan.parts, ...plan.belts, ...plan.groups].map(({ name }) => this.model.byName.get(name));
+    const { plan, scene } = data.machine;
+    const moved = scene.nodes.map((node) => node.moved?.component).filter(Boolean);
+    const shown = [...[...plan.movers, ...plan.parts, ...plan.belts, ...plan.groups].map(({ name }) => name), ...moved];
+    this.shown = [...new Set(shown)].map((name) => this.model.byName.get(name));
     this.model.live = new Float64Array(this.model.components.reduce((sum, one) => sum + this.model.kinds[one.kind].live.length, 0)).fill(NaN);
     this.links = Object.entries(data.links).map(([name, links]) => ({ name, ...links, values: columns.numbers(links, 0) }));
     this.objects = Object.entries(data.objects).map(([name, { time, first, rows }]) => (
@@ -28,8 +34,15 @@ export class Scene {
     }
     byId("scene-section").hidden = false;
     this.plan = new Plan(this.model, () => trails, { ctrlZooms: true, onchange: () => this.draw() });
+    this.space = new Space(this.model, () => trails, threeInside, { ctrlZooms: true, onchange: () => this.draw() });
     this.show();
     this.plan.begin();
+    this.space.begin();
+    for (const button of byId("scene-tabs").children) {
+      button.onclick = () => this.open(button.value);
+      button.hidden = !(button.value === "plan" ? data.flat : scene.nodes.length);
+    }
+    this.open(data.flat ? "plan" : "space");
     clock.addEventListener("change", () => {
       this.show();
       this.draw();
@@ -54,7 +67,7 @@ export class Scene {
       const frame = Math.round(((time - from) / (to - from)) * (n - 1));
       const numbers = frame >= 0 && frame < n ? values.subarray(frame * count, (frame + 1) * count) : [];
       const known = numbers.length && numbers.every(Number.isFinite);
-      model.links[name] = known ? Array.from({ length: count / 6 }, (_, i) => [...numbers.subarray(6 * i, 6 * i + 6)]) : [];
+      model.placeLinks(name, known ? Array.from({ length: count / 7 }, (_, i) => [...numbers.subarray(7 * i, 7 * i + 7)]) : []);
     }
     for (const { name, times, first, rows } of this.objects) {
       const at = rowAt(times, time);
@@ -62,12 +75,31 @@ export class Scene {
     }
   }
 
+  // From above, or in three dimensions.
+  open(tab) {
+    this.tab = tab;
+    for (const name of ["plan", "space"]) {
+      byId(`${name}-bar`).hidden = name !== tab;
+      byId(`${name}-box`).hidden = name !== tab;
+    }
+    for (const button of byId("scene-tabs").children) button.setAttribute("aria-pressed", String(button.value === tab));
+    this.draw();
+  }
+
   draw() {
-    if (this.waiting || !this.plan) return;
+    if (this.waiting || !this.tab) return;
     this.waiting = true;
     requestAnimationFrame(() => {
       this.waiting = false;
-      this.plan.draw();
+      this[this.tab].draw();
     });
   }
+}
+
+// three.js as it is inside the page: its two modules, inflated when they are needed.
+async function threeInside() {
+  const texts = new TextDecoder().decode(await inflated(byId("three").textContent)).split("\0");
+  const url = (text) => URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
+  const core = url(texts[0]);
+  return import(url(texts[1].replaceAll(`"${CORE}"`, JSON.stringify(core))));
 }

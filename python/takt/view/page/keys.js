@@ -1,4 +1,4 @@
-// What the pointer does in the scope and in the plan, by keys.
+// What the pointer does in the scope, in the plan and in three dimensions, by keys.
 
 import { byId } from "./dom.js";
 
@@ -6,11 +6,11 @@ const CLOSER = 0.8; // of a window, by one key
 const PART = 0.1; // of a window or a view, by one key
 
 // `tab()`: the name of the view that is seen.
-export function listen(tab, scope, plan) {
+export function listen(tab, scope, plan, space) {
   const cursors = new Cursors(scope);
   addEventListener("keydown", (event) => {
     if (/INPUT|SELECT|TEXTAREA/.test(event.target.tagName) || event.ctrlKey || event.altKey || event.metaKey) return;
-    const taken = tab() === "scope" ? cursors.key(event) : tab() === "plan" ? look(plan, event.key) : false;
+    const taken = { scope: () => cursors.key(event), plan: () => look(plan, event.key), "3d": () => space.key(event) }[tab()]?.();
     if (taken) event.preventDefault();
   });
   giveUpFocus();

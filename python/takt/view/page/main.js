@@ -12,8 +12,9 @@ import { Model } from "./model.js";
 import { Plan } from "./plan.js";
 import { put } from "./rows.js";
 import { Scope } from "./scope.js";
+import { Space } from "./space.js";
 
-const TABS = ["machine", "scope", "plan", "cams", "engine"];
+const TABS = ["machine", "scope", "plan", "3d", "cams", "engine"];
 const FIRST_SIGNALS = 6;
 const COMPLAINT_MS = 5000; // that one is to be read
 
@@ -26,8 +27,9 @@ const commands = new Commands(model, connection);
 const cams = new Cams(model, commands);
 const details = new Details(model, scope, commands);
 const plan = new Plan(model, () => scope.store.series);
+const space = new Space(model, () => scope.store.series, () => import("./three/three.module.min.js"), { onchange: () => tab === "3d" && redraw() });
 const health = new Health(model, scope, connection);
-const views = { machine: list, scope, plan, cams, engine: health };
+const views = { machine: list, scope, plan, "3d": space, cams, engine: health };
 let tab = "machine";
 let epoch = null;
 let run = null;
@@ -67,7 +69,8 @@ function usualSignals() {
 function ask() {
   if (epoch === null) return;
   const signals = scope.signals.map((signal) => [signal.component.index, signal.field.name]);
-  if (tab === "plan") signals.push(...plan.signals().filter(([i, f]) => !signals.some(([j, g]) => i === j && f === g)));
+  const trails = { plan, "3d": space }[tab];
+  if (trails) signals.push(...trails.signals().filter(([i, f]) => !signals.some(([j, g]) => i === j && f === g)));
   const wanted = tab === "scope" ? chooser.details() : details.component ? [details.component.index] : [];
   const request = { epoch, signals, details: wanted };
   const text = JSON.stringify(request);
@@ -89,7 +92,7 @@ connection.addEventListener("machine", ({ detail }) => {
     run = detail.run;
     scope.forget();
     model.begin(detail);
-    for (const view of [list, chooser, plan, cams, health]) view.begin();
+    for (const view of [list, chooser, plan, space, cams, health]) view.begin();
     details.show(null);
     choose(names ?? usualSignals());
     if (names?.length && !scope.signals.length) scope.choose(usualSignals());
@@ -111,11 +114,14 @@ connection.addEventListener("frame", ({ detail }) => {
   for (const { target, verb, sentence } of detail.header.answers ?? []) complain(`${target}.${verb}: ${sentence}`);
   say();
   ask();
-  if (!dirty) {
-    dirty = true;
-    requestAnimationFrame(draw);
-  }
+  redraw();
 });
+
+function redraw() {
+  if (dirty) return;
+  dirty = true;
+  requestAnimationFrame(draw);
+}
 
 function draw() {
   dirty = false;
@@ -230,7 +236,7 @@ addEventListener("keydown", (event) => {
     scope.zoom = null;
     scope.clearCursors();
     details.show(null);
-  } else if (/^[1-5]$/.test(event.key)) show(TABS[event.key - 1]);
+  } else if (/^[1-6]$/.test(event.key)) show(TABS[event.key - 1]);
 });
 addEventListener("hashchange", () => {
   const said = fromAddress();
@@ -238,6 +244,6 @@ addEventListener("hashchange", () => {
   if (said.signals && model.machine && said.signals.join() !== scope.signals.map((s) => s.name).join()) choose(said.signals);
 });
 
-listen(() => tab, scope, plan);
+listen(() => tab, scope, plan, space);
 show(fromAddress().tab);
-window.takt = { model, scope, connection, plan, cams, health }; // to look at from the console, and for tests
+window.takt = { model, scope, connection, plan, space, cams, health }; // to look at from the console, and for tests

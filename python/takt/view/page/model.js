@@ -14,7 +14,8 @@ export class Model {
     this.engine = null;
     this.cycle = 0;
     this.objects = {};
-    this.links = {};
+    this.poses = {}; // of the links of groups: place and quaternion
+    this.links = {}; // where each begins and ends
     this.shapes = new Map(); // of tracks, by name
     this.madeCams = new Map(); // at run time, by number
     this.health = {};
@@ -67,9 +68,18 @@ export class Model {
     for (const shape of header.shapes ?? []) this.shapes.set(shape.name, shape);
     for (const cam of header.cams ?? []) this.madeCams.set(cam.number, cam);
     this.objects = header.objects;
-    this.links = header.links;
+    for (const [name, poses] of Object.entries(header.links)) this.placeLinks(name, poses);
     this.health = header.health;
     return at;
+  }
+
+  placeLinks(group, poses) {
+    const spans = this.machine.scene.spans[group];
+    this.poses[group] = poses;
+    this.links[group] = poses.map(([x, y, z, ...turn], i) => {
+      const [dx, dy, dz] = turned(turn, spans.slice(3 * i, 3 * i + 3));
+      return [x, y, z, x + dx, y + dy, z + dz];
+    });
   }
 
   liveOf(component, field) {
@@ -105,4 +115,10 @@ export class Model {
   isBad(row) {
     return Boolean(row && (row.error || /error/i.test(row.state)));
   }
+}
+
+// A vector turned by a unit quaternion.
+function turned([x, y, z, w], [a, b, c]) {
+  const [u, v, t] = [2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)];
+  return [a + w * u + y * t - z * v, b + w * v + z * u - x * t, c + w * t + x * v - y * u];
 }
