@@ -432,7 +432,7 @@ class RemoteSession(Session):
     def _track_links(self, track: Track) -> tuple[list[int], list[int]]:
         return self._geometry.links(track)
 
-    def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:
+    def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool, every: int = 1) -> bool:
         end = self.now + timeout
         cycle, since = self._cycle, time.monotonic()
         while True:
