@@ -21,7 +21,7 @@ import numpy.typing as npt
 import takt
 
 Array = npt.NDArray[np.float64]
-EVERY = 5  # cycles between two looks of sensors and control: what passes a sensor meanwhile is found between them
+EVERY = 10  # cycles between two looks of sensors and control: what passes a sensor meanwhile is found between them
 
 
 @dataclass(frozen=True)
