@@ -53,6 +53,7 @@ from takt.routing import (
     plan_routes,
     plan_surface,
 )
+from takt.saved import Saved
 from takt.session import Recorder, Session
 from takt.track import Track, TrackPosition
 from takt.trail import TrackTrail
@@ -92,6 +93,7 @@ __all__ = [
     "ReplayResult",
     "RoutePlan",
     "RoutingError",
+    "Saved",
     "Session",
     "SurfaceJourney",
     "SurfaceLeg",

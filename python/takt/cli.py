@@ -205,6 +205,7 @@ def run(
 @click.option("--machine", type=FILE, help="The machine [machine.yaml beside FILE].")
 @click.option("-o", "--output", type=FILE, help="Directory of table and page [sweeps/FILE].")
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes [one a processor].")
+@click.option("--scheduler", metavar="tcp://HOST:PORT", help="Run on the workers of this scheduler of Dask instead.")
 @click.option("--stop-after", type=click.IntRange(0), metavar="RUNS", help="So many runs now; later it goes on.")
 @click.option("--timeout", default=600.0, show_default=True, type=click.FloatRange(0.1), help="s that a run may take.")
 @click.option("--fresh", is_flag=True, help="Begin again [go on with what is there].")
@@ -216,6 +217,7 @@ def run_sweep(
     machine: Path | None,
     output: Path | None,
     workers: int | None,
+    scheduler: str | None,
     stop_after: int | None,
     timeout: float,
     fresh: bool,
@@ -234,6 +236,7 @@ def run_sweep(
             machine=machine,
             seed=seed,
             workers=workers,
+            scheduler=scheduler,
             stop_after=stop_after,
             timeout_s=timeout,
             fresh=fresh,

@@ -7,6 +7,7 @@ import math
 import os
 import warnings
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -19,7 +20,7 @@ from takt.axis import Axis
 from takt.belt import Belt
 from takt.changes import changed
 from takt.component import Component
-from takt.errors import ConfigError, DriveWarning, seconds, whole
+from takt.errors import ConfigError, DriveWarning, TaktError, seconds, whole
 from takt.feedback import Feedback
 from takt.forecast import Forecast
 from takt.keys import KeyFile, read_key
@@ -28,6 +29,7 @@ from takt.mover import Mover
 from takt.network import network_of
 from takt.plant import Plant, axes_of
 from takt.recording import Recording
+from takt.saved import JournalEntry, Saved
 from takt.session import Recorder, Session
 from takt.tables import KINDS, fields_of_kind, make_recording, named
 from takt.track import Track
@@ -39,13 +41,23 @@ MOST_BYTES = 8_000_001  # of a machine file: one more than there may be
 CHUNK = 20_000  # cycles between two looks at Ctrl-C
 
 
+@dataclass(frozen=True)
+class _Text:
+    """The text of a machine file, and whose it is."""
+
+    text: bytes
+    file_name: str
+
+
 Machine = str | os.PathLike[str] | Mapping[str, Any]  # a path, the text itself, or what the text says, as dicts
 
 
-def read_machine(machine: Machine) -> tuple[bytes, str]:
+def read_machine(machine: Machine | _Text) -> tuple[bytes, str]:
     """Text and file name of a machine given as a path, as the text itself (which has more than one line), or as dicts
     and lists. The text stays as it is: the engine says where it is not UTF-8. Of dicts a text is made, in which places
     of problems are counted, a key a line."""
+    if isinstance(machine, _Text):
+        return machine.text, machine.file_name
     if isinstance(machine, Mapping):
         return _text_of(machine), "machine"
     if isinstance(machine, str) and "\n" in machine:
@@ -87,7 +99,8 @@ class Engine(Session):
 
     machine: the path of a machine file, its text, or the same as a dict.
     period: s, instead of the machine file's.
-    journal: keep the journal and a hash of the whole state after every cycle (`take_journal`, `take_hashes`).
+    journal: keep the journal and a hash of the whole state after every cycle (`take_journal`, `take_hashes`), which
+        `save` and `clone` need.
     url: LCM network of external drives, instead of the machine file's (`lcm.url`, else LCM_DEFAULT_URL). Time stands
         still until they have answered.
     changes: values of the machine file to be changed, as {"axes.x.limits.velocity": 300}.
@@ -98,7 +111,7 @@ class Engine(Session):
 
     def __init__(
         self,
-        machine: Machine,
+        machine: Machine | _Text,
         *,
         period: float | None = None,
         journal: bool = False,
@@ -109,6 +122,9 @@ class Engine(Session):
     ) -> None:
         text, file_name = read_machine(machine)
         text = changed(text, file_name, changes or {})
+        self._origin = (text, file_name, period)
+        self._journal: list[JournalEntry] | None = [] if journal else None  # all of it, for states that are kept
+        self._taken = 0  # entries of it that `take_journal` has given
         if period is not None:
             period = seconds(period, "a period")
         described = json.loads(_core.load_machine(text, file_name))
@@ -167,9 +183,62 @@ class Engine(Session):
         super().close()
         self._core.leave_network()
 
-    def take_journal(self) -> list[tuple[int, int, float, str, str, str]]:
+    def take_journal(self) -> list[JournalEntry]:
         """Commands applied since the last call: (cycle, ticket, lease in s, target, verb, arguments)."""
-        return self._core.take_journal()
+        if self._journal is None:
+            return []
+        self._journal += self._core.take_journal()
+        begin, self._taken = self._taken, len(self._journal)
+        return self._journal[begin:]
+
+    def save(self) -> Saved:
+        """The state as it is now. `Engine.restore` makes an engine that stands there, and goes on in the same way. What
+        led there is kept, and is made again, so restoring takes as long as bare cycles do. Needs `journal=True`; there
+        must be no plant and no external drives, whose states are not the engine's, and no command that no cycle has
+        applied yet."""
+        self._check_open()
+        if self._journal is None:
+            raise TaktError("only an engine with a journal can be saved: takt.Engine(machine, journal=True)")
+        if self.plant is not None or self.machine["external"]["drives"]:
+            raise TaktError(
+                "an engine whose axes a plant or external drives move cannot be saved: it lacks their state"
+            )
+        self._journal += self._core.take_journal()
+        text, file_name, period = self._origin
+        journal = tuple(self._journal)
+        return Saved(text, file_name, period, self.cycle, self.state_hash, journal, _core.__version__)
+
+    @classmethod
+    def restore(cls, saved: Saved) -> Engine:
+        """An engine in the state that was saved, which it is held against. It has a journal, too."""
+        engine = cls.__new__(cls)
+        Engine.__init__(engine, _Text(saved.machine_text, saved.file_name), period=saved.period_s, journal=True)
+        engine._go_to(saved)
+        return engine
+
+    def clone(self) -> Engine:
+        """A second engine in the same state. Neither knows of the other; feedback objects, programs and recordings stay
+        with this one."""
+        return Engine.restore(self.save())
+
+    def _go_to(self, saved: Saved) -> None:
+        for cycle, ticket, lease_s, target, verb, arguments in saved.journal:
+            if ticket == 0:
+                continue  # what the engine gave itself, it gives itself again
+            self._core.step(cycle - self.cycle)
+            _, error_id, sentence = self._core.resubmit(target, verb, arguments, ticket, lease_s)
+            if error_id:
+                raise TaktError(f"the saved command {target}.{verb} {arguments} cannot be given again: {sentence}")
+        self._core.step(saved.cycle - self.cycle)
+        self._core.take_feedback()
+        self._core.take_hashes()
+        self._journal = self._core.take_journal()
+        self._taken = len(self._journal)
+        if self.state_hash != saved.hash:
+            raise TaktError(
+                f"the state after {saved.cycle} cycles is not the one that was saved (by version {saved.version}, "
+                f"this is {_core.__version__})"
+            )
 
     def take_drive_journal(self) -> list[tuple[int, int, int, dict[str, Any]]]:
         """What external drives had measured, as it was taken since the last call: (cycle, number of the axis from 0,
@@ -240,7 +309,8 @@ class Engine(Session):
             self._release(feedback)
         if self._programs:
             self._scan()
-        if self._programs or self._unreleased:
+            cycles = min(cycles, max(1, min(program.due for program in self._programs) - self.cycle))
+        if self._unreleased:
             cycles = 1
         if any(recorder.belts for recorder in self._recorders):
             cycles = min(cycles, max(1, round(LOOK_S / self.period)))
@@ -271,12 +341,12 @@ class Engine(Session):
         while cycles > 0:
             cycles -= self._step(cycles, False)
 
-    def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:
+    def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool, every: int = 1) -> bool:
         left = math.ceil(timeout / self.period) if timeout < math.inf else CHUNK
         while not condition():
             if left <= 0:
                 return False
-            made = self._step(left if on_feedback else 1, True)
+            made = self._step(left if on_feedback else min(left, every), True)
             left -= made if timeout < math.inf else 0
         return True
 

@@ -458,7 +458,7 @@ class RemoteSession(Session):
         with self._news:
             self._news.wait_for(lambda: condition() or self._trouble, timeout)
 
-    def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:
+    def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool, every: int = 1) -> bool:
         end = self.now + timeout
         cycle, since = self._cycle, time.monotonic()
         while True:

@@ -9,6 +9,7 @@ import sys
 from abc import abstractmethod
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType, MappingProxyType, TracebackType
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
@@ -44,6 +45,17 @@ if TYPE_CHECKING:
     from takt.routing.router import SurfaceOrder, SurfaceRouter
 
 Program = Callable[[], object]
+
+
+@dataclass
+class Scheduled:
+    """A program, and the cycle ahead of which it is called next."""
+
+    scan: Program
+    every: int
+    due: int
+
+
 P = TypeVar("P", bound=Program)
 C = TypeVar("C", bound=Component)
 
@@ -119,8 +131,8 @@ class Session(SessionWithCams):
         self._planar_groups = {name: c for name, c in self._components.items() if isinstance(c, PlanarGroup)}
         self._environments = {name: c for name, c in self._components.items() if isinstance(c, Environment)}
         self._parts = {name: c for name, c in self._components.items() if isinstance(c, Part)}
-        self._programs: list[Program] = []
         self._routers: dict[int, SurfaceRouter] = {}  # by coordinate system
+        self._programs: list[Scheduled] = []
         self._scanning = False
         self._recorders: list[Recorder] = []
         self._refused: deque[Feedback] = deque(maxlen=REFUSED)
@@ -389,15 +401,24 @@ class Session(SessionWithCams):
 
     # --- time ---
 
-    def wait(self, condition: Callable[[], object], timeout: float = DEFAULT_TIMEOUT_S, *, what: str = "") -> None:
+    def wait(
+        self,
+        condition: Callable[[], object],
+        timeout: float = DEFAULT_TIMEOUT_S,
+        *,
+        what: str = "",
+        every: int = 1,
+    ) -> None:
         """Lets engine time pass until `condition()` is true; takt.TimeoutError when it is not within `timeout` s of
-        engine time. In process it is asked after every cycle, over LCM whenever something new has come; what is
-        published is then nowhere older than what the condition saw."""
+        engine time. In process it is asked after every cycle, or after every so many, which takes less time of the
+        processor; over LCM whenever something new has come; what is published is then nowhere older than what the
+        condition saw."""
         self._check_open()
         if not callable(condition):
             raise TypeError(f"a condition is a function, not {condition!r}")
         timeout = seconds(timeout, "a timeout")
-        if not self._wait_for(lambda: bool(condition()), timeout, on_feedback=False):
+        every = whole(every, "every", 1)
+        if not self._wait_for(lambda: bool(condition()), timeout, on_feedback=False, every=every):
             raise TimeoutError(f"{what or 'the condition'}: not met within {timeout:g} s")
         self._catch_up(self.cycle)
 
@@ -406,13 +427,17 @@ class Session(SessionWithCams):
         self._check_open()
         self._run(round(seconds(duration, "a duration", sys.float_info.max) / self.period))
 
-    def program(self, scan: P) -> P:
+    def program(self, scan: P, *, every: int = 1) -> P:
         """Has `scan` called before every cycle, like a program in a PLC: the place for function blocks (takt.plcopen).
-        Over LCM it is called whenever the engine's state has come. Serves as a decorator."""
+        Over LCM it is called whenever the engine's state has come. Serves as a decorator.
+
+        every: cycles from one call to the next. What need not look into every cycle holds the engine up less.
+        """
         self._check_open()
+        every = whole(every, "every", 1)
         if not callable(scan):
             raise TypeError(f"a program is a function, not {scan!r}")
-        self._programs.append(scan)
+        self._programs.append(Scheduled(scan, every, self.cycle))
         return scan
 
     def _scan(self) -> None:
@@ -420,8 +445,11 @@ class Session(SessionWithCams):
             raise TaktError("a program is called in every cycle: it cannot let time pass itself")
         self._scanning = True
         try:
-            for scan in self._programs:
-                scan()
+            now = self.cycle
+            for program in self._programs:
+                if program.every == 1 or program.due <= now:
+                    program.due = now + program.every
+                    program.scan()
         finally:
             self._scanning = False
 
@@ -548,9 +576,9 @@ class Session(SessionWithCams):
         raise TaktError("forecasts are made in process only; over LCM a feedback has travel_time_s")
 
     @abstractmethod
-    def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool) -> bool:
-        """Lets time pass until the condition holds, which changes only with feedback if `on_feedback`. False: timed
-        out."""
+    def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool, every: int = 1) -> bool:
+        """Lets time pass until the condition holds, which changes only with feedback if `on_feedback`, and else is
+        asked every so many cycles. False: timed out."""
 
     @abstractmethod
     def _run(self, cycles: int) -> None:

@@ -529,3 +529,21 @@ def test_what_is_no_number_or_name_is_said_in_a_sentence(engine: takt.Engine) ->
         with pytest.raises(kind) as raised:
             use()
         assert str(raised.value) == sentence
+
+
+def test_programs_and_conditions_every_so_many_cycles(engine: takt.Engine) -> None:
+    """PY-24: what need not look into every cycle holds the engine up less."""
+    seen: list[int] = []
+    every: list[int] = []
+    asked: list[int] = []
+    engine.program(lambda: seen.append(engine.cycle), every=5)
+    engine.step(12)
+    assert seen == [0, 5, 10]
+    engine.program(lambda: every.append(engine.cycle))
+    engine.step(4)
+    assert (seen, every) == ([0, 5, 10, 15], [12, 13, 14, 15])
+    engine.wait(lambda: asked.append(engine.cycle) or engine.cycle >= 30, every=7)
+    assert asked[-1] >= 30
+    for wrong in (0, -1, 1.5, True):
+        with pytest.raises((ValueError, TypeError)):
+            engine.program(lambda: None, every=wrong)  # type: ignore[arg-type]

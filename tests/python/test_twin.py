@@ -247,6 +247,16 @@ def test_ready_machines(name: str, tmp_path: Path) -> None:
         assert axis.following[1] < 0.5, axis
 
 
+def test_nothing_touches_in_two_robots() -> None:
+    """PY-23: the scenario of two Deltas that reach into one box, in the twin: no rod touches another one."""
+    scenario = takt.scenario.load_scenario(EXAMPLES / "two_robots" / "scenario.py")
+    ran = twin_command.run(scenario.machine, scenario, compare=False)
+    said = {verdict.title: verdict for verdict in ran.outcome.verdicts}
+    assert said["twin.contacts"].passed, said["twin.contacts"].sentence
+    assert not ran.twin.contacts
+    assert ran.outcome.passed, (ran.outcome.complaint, [v.sentence for v in said.values() if not v.passed])
+
+
 SHORT = '''"""All robots on, there and back."""
 from takt import expect
 

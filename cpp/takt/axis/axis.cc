@@ -442,6 +442,13 @@ void Move(const Context& c, State& s) noexcept {
   s.cam_outputs = s.cam_switch.list < 0 ? 0 : SwitchCams(c, s);
 }
 
+// Torque that the set point of this cycle takes by what is known of the load.
+double OffsetOf(const TorqueOffset& offset, const KinematicState& set) noexcept {
+  const double along = std::clamp(set.velocity / offset.full_at, -1.0, 1.0);
+  return offset.inertia * set.acceleration + offset.viscous_friction * set.velocity + offset.coulomb_friction * along +
+         offset.load_torque;
+}
+
 bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   const AxisParams& p = c.params;
   const bool torque = s.torque.engaged && FollowsTorque(s);
@@ -469,7 +476,9 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
                           : engine_closes ? CountRateAt(p.encoder, loop.velocity)
                                           : sign * CountRateAt(p.encoder, s.setpoint.velocity + corrected);
   out.voltage_v = loop.voltage_v;
-  out.torque_nm = torque ? sign * s.torque.set_torque_nm : 0;
+  out.torque_nm = torque                                   ? sign * s.torque.set_torque_nm
+                  : p.drive.torque_offset && s.loop_closed ? sign * OffsetOf(*p.drive.torque_offset, s.setpoint)
+                                                           : 0;
   out.torque_until_counts_s = torque ? sign * CountRateAt(p.encoder, s.torque.until) : 0;
   out.torque_limit_nm = TorqueLimit(p, s);
   out.digital_outputs = s.cam_outputs | s.written_outputs;

@@ -45,6 +45,16 @@ void describe(Description<Supervision>& d) {
                                          "How long to wait for that; then the command fails with error 0003.");
 }
 
+void describe(Description<TorqueOffset>& d) {
+  using T = TorqueOffset;
+  d.about("What the drive is told to add to the torque of its own loops: that of the set point.");
+  d.defaulted<&T::inertia>(unit::none, between(0, 1e9), "Torque that one u/s2 takes.");
+  d.defaulted<&T::coulomb_friction>(unit::nm, between(0, 1e9), "Friction that does not depend on the speed.");
+  d.defaulted<&T::viscous_friction>(unit::none, between(0, 1e9), "Torque that one u/s takes.");
+  d.defaulted<&T::load_torque>(unit::nm, between(-1e9, 1e9), "Of gravity, constant; positive pushes upwards.");
+  d.defaulted<&T::full_at>(unit::u_s, positive, "Set velocity from which on coulomb_friction is added whole.");
+}
+
 void describe(Description<Drive>& d) {
   d.about("The drive behind the axis.");
   d.defaulted<&Drive::mode>("What the drive is commanded by.");
@@ -57,6 +67,7 @@ void describe(Description<Drive>& d) {
       unit::s, between(0, 10), "How long the brake takes to open: the axis is held meanwhile, and power is done then.");
   d.defaulted<&Drive::brake_closes_s>(
       unit::s, between(0, 10), "How long it takes to close: at power off the loop stays closed as long as that.");
+  d.defaulted<&Drive::torque_offset>("Torque that the drive adds, from the set point; unset: none.");
 }
 
 void describe(Description<InputSense>& d) {

@@ -42,12 +42,22 @@ struct Supervision {
   double in_position_timeout_s = 1.0;      // s after the set point's arrival; then the command fails with error 0003
 };
 
+// What the drive is told to add to the torque of its own loops, from the set point: a torque offset (CiA 402 0x60B2).
+struct TorqueOffset {
+  double inertia = 0;           // torque per u/s²
+  double coulomb_friction = 0;  // torque, in the sense of the set velocity
+  double viscous_friction = 0;  // torque per u/s
+  double load_torque = 0;       // torque, constant
+  double full_at = 1;           // u/s, from which on coulomb_friction is added whole
+};
+
 struct Drive {
   DriveMode mode = DriveMode::kCyclicPosition;
-  bool invert = false;           // AX-03: invert the control sense
-  double ready_timeout_s = 1.0;  // s from enabling to ready
-  double brake_opens_s = 0;      // s from energising the brake relay until the brake is open (AX-115)
-  double brake_closes_s = 0;     // s from letting it go until the brake holds
+  bool invert = false;                          // AX-03: invert the control sense
+  double ready_timeout_s = 1.0;                 // s from enabling to ready
+  double brake_opens_s = 0;                     // s from energising the brake relay until the brake is open (AX-115)
+  double brake_closes_s = 0;                    // s from letting it go until the brake holds
+  std::optional<TorqueOffset> torque_offset{};  // csp and csv
 };
 
 // AX-03: which of the switch inputs are active low.
@@ -148,6 +158,7 @@ inline std::uint32_t FindAxis(std::span<const AxisParams> axes, std::string_view
 void describe(Enumeration<AxisKind>&);
 void describe(Description<AxisLimits>&);
 void describe(Description<Supervision>&);
+void describe(Description<TorqueOffset>&);
 void describe(Description<Drive>&);
 void describe(Description<InputSense>&);
 void describe(Description<Following>&);

@@ -110,7 +110,8 @@ void describe(Description<ServoOutputs>& d) {
   d.internal<&S::velocity_counts_s>(unit::count_s,
                                     "Velocity: feed-forward (csp), set point (csv) or largest speed (cst).");
   d.internal<&S::voltage_v>(unit::volt, "Analogue set point.");
-  d.internal<&S::torque_nm>(unit::nm, "Torque set point (cst); a force in N on linear motors.");
+  d.internal<&S::torque_nm>(
+      unit::nm, "Torque set point (cst), or torque that the drive adds (csp, csv); a force in N on linear motors.");
   d.internal<&S::mode>("Which of these the drive follows.");
   d.internal<&S::enable>("Power stage on.");
   d.internal<&S::release_brake>("Brake relay energised.");

@@ -43,7 +43,7 @@ struct ServoOutputs {
   double position_counts = 0;    // csp: set point in encoder counts
   double velocity_counts_s = 0;  // csp: feed-forward; csv: set point; cst: largest speed either way, >= 0
   double voltage_v = 0;          // analogue: -10 to 10 V
-  double torque_nm = 0;          // cst: set point; N on linear motors
+  double torque_nm = 0;          // cst: set point; csp and csv: added by the drive; N on linear motors
   DriveMode mode = DriveMode::kCyclicPosition;
   bool enable = false;         // power stage on
   bool release_brake = false;  // brake relay energised

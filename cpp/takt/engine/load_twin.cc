@@ -20,6 +20,8 @@ class TwinChecker {
     if (twin_.axes.empty()) Add("twin.axes", "expected at least one axis");
     for (std::size_t i = 0; i < twin_.axes.size(); ++i) CheckAxis(i);
     for (std::size_t i = 0; i < twin_.mechanisms.size(); ++i) CheckMechanism(i);
+    for (std::size_t i = 0; i < twin_.belts.size(); ++i) CheckBelt(i);
+    if (!made_ && twin_.products) Add("twin.products", "expected no products beside a model that is given");
     return std::move(problems_);
   }
 
@@ -89,6 +91,7 @@ class TwinChecker {
     if (made_ && !mechanism.tool.empty()) {
       Add(path + ".tool", "expected a model that has it (twin.model), found none");
     }
+    if (mechanism.gripper) CheckGripper(*group, path + ".gripper");
     if (!made_) return;
     if (group->kinematics->core_xy) {
       Add(path + ".group",
@@ -104,12 +107,44 @@ class TwinChecker {
     check(mechanism.rod_mass, "rod_mass", "each rod");
   }
 
+  void CheckGripper(const group::GroupParams& group, const std::string& path) {
+    if (!made_ || group.kinematics->serial) {
+      Add(path, "expected a mechanism that is made of kinematics, found one whose model is given");
+    } else if (!twin_.products) {
+      Add(path, "expected products that it can hold (twin.products), found none");
+    }
+  }
+
+  void CheckBelt(std::size_t i) {
+    const plant::TwinBelt& belt = twin_.belts[i];
+    const std::string path = "twin.belts[" + std::to_string(i) + "]";
+    std::vector<std::string_view> names;
+    for (const conveyor::BeltParams& one : machine_.belts) names.push_back(one.name);
+    if (!Known(path + ".belt", "a belt", belt.belt, names, belts_)) return;
+    const auto at = std::ranges::find(machine_.belts, belt.belt, &conveyor::BeltParams::name);
+    if (!made_) Add(path, "expected no belts beside a model that is given");
+    if (at->kind != conveyor::BeltKind::kStraight) Add(path + ".belt", "expected a straight belt, found a table");
+    if (at->ratio != 1) Add(path + ".belt", "expected a belt whose ratio is 1, found " + std::to_string(at->ratio));
+    if (std::ranges::find(axes_, at->axis) == axes_.end()) {
+      Add(path + ".belt", "expected its axis in twin.axes, found no " + Quoted(at->axis));
+    }
+    for (std::size_t k = 0; k < i; ++k) {
+      const auto other = std::ranges::find(machine_.belts, twin_.belts[k].belt, &conveyor::BeltParams::name);
+      if (other != machine_.belts.end() && other->axis == at->axis) {
+        Add(path + ".belt",
+            "expected an axis of its own, found that " + Quoted(at->axis) + " moves " + Quoted(other->name) + ", too");
+      }
+    }
+    if (!(belt.from < belt.to)) Add(path + ".to", "expected an end behind the beginning (from)");
+  }
+
   const SourceMap& source_;
   const Machine& machine_;
   const plant::TwinParams& twin_;
   const bool made_;
   std::vector<std::string_view> axes_;
   std::vector<std::string_view> groups_;
+  std::vector<std::string_view> belts_;
   std::vector<Problem> problems_;
 };
 

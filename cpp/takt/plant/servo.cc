@@ -301,7 +301,10 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
   const bool probe_wired = p.switches.touch_probe.from || p.switches.touch_probe.to;
   const double set_step = (end_position - start_position) / steps;
   const double feed_forward_step = (end_velocity - start_velocity) / steps;
-  law.bias = s.compensation;
+  const double offset = csp || (powered && commanded.mode == DriveMode::kCyclicVelocity)
+                            ? sense * FiniteOrZero(commanded.torque_nm) * per_inertia
+                            : 0;
+  law.bias = s.compensation + offset;
   Motion motion{s.motor_position, s.faults.stuck ? 0 : s.velocity, s.load_position};
   for (int i = 0; i < steps; ++i) {
     if (csp) {
@@ -324,14 +327,16 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
     const double lag = law.target - begin.velocity;
     const double asked = law.gain * lag + law.bias;
     if (compensates && !hit && asked >= law.low && asked <= law.high) {
-      const double expected = begin.velocity + lag * (law.gain * model.to_velocity);
+      // With an offset the axis accelerates as it is set to, without lagging: that is no load to be learnt.
+      const double set_change = csp && offset != 0 ? feed_forward_step : 0;
+      const double expected = begin.velocity + lag * (law.gain * model.to_velocity) + set_change;
       law.bias = std::clamp(law.bias + learning * (expected - motion.velocity), -most, most);
     }
   }
   s.motor_position = motion.position;
   s.velocity = motion.velocity;
   s.load_position = motion.load;
-  s.compensation = law.bias;
+  s.compensation = law.bias - offset;
   s.torque = law.DriveAt(s.velocity) * mechanics.inertia;
   if (cst) {  // the position loop will take over from where the axis is
     s.following = true;
@@ -503,6 +508,8 @@ double AskTorque(const ServoParams& p, int i, double position, double velocity, 
 
   double asked = 0;
   m.limited = false;
+  const bool offers = m.commanded.mode == DriveMode::kCyclicPosition || m.commanded.mode == DriveMode::kCyclicVelocity;
+  const double offset = offers ? (drive.inverted ? -1 : 1) * FiniteOrZero(m.commanded.torque_nm) : 0;
   if (m.powered) {
     const double limit = FiniteOrZero(m.commanded.torque_limit_nm);
     const double most = limit > 0 ? std::min(limit / inertia, motor_limit) : motor_limit;
@@ -532,11 +539,15 @@ double AskTorque(const ServoParams& p, int i, double position, double velocity, 
     }
     // The gain that leads as far within a step as the continuous law does: stable whatever the time constant.
     const double share = 1 - maths::Exp(-m.time / law.lag);
-    const double free = share / m.time * (law.target - velocity) + s.compensation + feed_forward / inertia;
+    const double free = share / m.time * (law.target - velocity) + s.compensation + (feed_forward + offset) / inertia;
     asked = std::clamp(free, law.low, law.high);
     m.limited = std::abs(free) > most;
     m.expects = asked == free;
     m.expected_velocity = velocity + share * (law.target - velocity);
+    // With an offset the axis accelerates as it is set to, without lagging: that is no load to be learnt.
+    if (offset != 0 && m.commanded.mode == DriveMode::kCyclicPosition) {
+      m.expected_velocity += (m.end_velocity - m.start_velocity) / m.steps;
+    }
     if (m.commanded.mode == DriveMode::kCyclicTorque) {  // the position loop will take over from where the axis is
       s.following = true;
       s.set_position = position;

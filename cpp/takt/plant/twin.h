@@ -27,6 +27,36 @@ struct TwinAxis {
   std::optional<double> brake_torque{};      // Nm or N; unset: as max_torque
 };
 
+// A belt that carries products by friction: a plate whose surface moves, the top of it level with the belt's origin.
+struct TwinBelt {
+  std::string belt;                 // name of the belt
+  double from = -200;               // mm from its origin, where it begins ...
+  double to = 1000;                 // ... and ends
+  double width = 200;               // mm
+  double surface = 0;               // mm, of Z of its origin
+  double friction = 0.8;            // coefficient, of products on it
+  std::optional<double> barrier{};  // mm from its origin: a light barrier, wired as touch probe of the belt's axis
+};
+
+// Products, all alike: boxes that belts carry and grippers hold.
+struct TwinProducts {
+  int count = 12;         // at once
+  double length = 0;      // mm, along X
+  double width = 0;       // mm
+  double height = 0;      // mm
+  double mass = 0;        // kg
+  double friction = 0.6;  // coefficient, on one another
+};
+
+// A vacuum gripper at the tool: a cup above the tool's point.
+struct TwinGripper {
+  double reach = 2;      // mm, from the tool to the middle of a product's top at which it holds it
+  double force = 30;     // N, at which it loses it
+  double acts_s = 0.03;  // s, to close and to open
+  double radius = 10;    // mm, of its cup
+  double length = 30;    // mm, of its cup
+};
+
 // The mechanism of a group of axes.
 struct TwinMechanism {
   std::string group;                      // name of the group
@@ -34,6 +64,7 @@ struct TwinMechanism {
   std::optional<double> rod_mass{};       // kg, Delta, of each of the six rods
   double payload = 0;                     // kg, a point at the tool
   std::string tool{};                     // site or body of the model that is given
+  std::optional<TwinGripper> gripper{};   // at the tool
 };
 
 struct TwinParams {
@@ -41,10 +72,15 @@ struct TwinParams {
   double step_s = 0.0005;  // s, of the physics
   std::vector<TwinAxis> axes;
   std::vector<TwinMechanism> mechanisms;
+  std::vector<TwinBelt> belts;
+  std::optional<TwinProducts> products{};
 };
 
 void describe(Enumeration<TwinDirection>&);
 void describe(Description<TwinAxis>&);
+void describe(Description<TwinBelt>&);
+void describe(Description<TwinProducts>&);
+void describe(Description<TwinGripper>&);
 void describe(Description<TwinMechanism>&);
 void describe(Description<TwinParams>&);
 

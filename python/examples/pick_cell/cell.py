@@ -3,6 +3,8 @@
 Belts are moved by their simulated servos, and slip. Products lie on the infeed at random places that the seed alone
 decides; some slide after the camera has seen them. The camera notices a product at once when it passes, and says late
 and not quite exactly where it lies. The gripper takes its time; it holds a product that is near enough just then.
+
+In the twin (takt twin pick_cell) MuJoCo says where products are, and whether the gripper holds one.
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ import numpy.typing as npt
 import takt
 
 Array = npt.NDArray[np.float64]
+EVERY = 10  # cycles between two looks of sensors and control: what passes a sensor meanwhile is found between them
 
 
 @dataclass(frozen=True)
@@ -36,6 +39,7 @@ class Settings:
     slides_at: float = 150.0  # ... when they are so many mm behind the camera
     gripper_s: float = 0.03  # s to close, and to open
     holds_within: float = 2.0  # mm from the middle of a product at which the gripper still holds it
+    begins: float = -60.0  # mm from the camera: where products of the twin are put onto the infeed
 
 
 @dataclass(frozen=True)
@@ -111,6 +115,11 @@ class Conveyor:
         self._before = self._measured()
         self._start = self._before[0]
         self._pictures: list[tuple[float, Seen, takt.Feedback]] = []
+        plant = getattr(session, "plant", None)
+        self.cargo = plant.cargo if plant is not None and late > 0 else None
+        self._slid: set[int] = set()
+        self._coming = products(settings)  # those to be put into the twin
+        self._arrives = next(self._coming)
 
     @property
     def travel(self) -> float:
@@ -119,6 +128,8 @@ class Conveyor:
 
     def truth(self, thing: Thing) -> Array:
         """X and Y in the world."""
+        if self.cargo is not None:
+            return np.asarray(self.cargo.position(thing.number)[:2])
         return in_world(self.origin, *place(thing, self.travel, self.settings))
 
     @property
@@ -135,9 +146,10 @@ class Conveyor:
         """The sensor latches what has passed it since the last look, the camera gives poses that are due."""
         (true_0, actual_0), (true_1, actual_1) = self._before, self._measured()
         self._before = true_1, actual_1
-        while float(place(self._next, true_1 - self._start, self.settings)[0]) >= 0:
-            passed_at = self._start + self._next.at / (1 - self.settings.slip)
-            share = (passed_at - true_0) / (true_1 - true_0) if true_1 > true_0 else 1.0
+        if self.cargo is not None:
+            self._carry(true_1 - self._start)
+        while (past := self._past(true_1 - self._start)) >= 0:
+            share = 1 - past / (true_1 - true_0) if true_1 > true_0 else 1.0
             self._latch(self._next, actual_0 + min(max(share, 0.0), 1.0) * (actual_1 - actual_0))
             self._next = next(self._things)
         while self._pictures and self._pictures[0][0] <= self.session.now and self._pictures[0][2].final:
@@ -147,6 +159,29 @@ class Conveyor:
                 if self.late > 0:
                     self.belt.locate(number=seen.number, x=seen.x, y=seen.y)
                 self.seen[seen.number] = seen
+
+    def _past(self, travel: float) -> float:
+        """mm of travel since the next thing has passed the sensor."""
+        if self.cargo is None:
+            return travel - self._next.at / (1 - self.settings.slip)
+        if self._next.number not in self.cargo.here:
+            return -math.inf
+        x, y, *_ = self.cargo.position(self._next.number)
+        turn = math.radians(self.origin.get("c", 0.0))
+        return float((x - self.origin["x"]) * math.cos(turn) + (y - self.origin["y"]) * math.sin(turn))
+
+    def _carry(self, travel: float) -> None:
+        """Puts products of the twin onto the belt before they come to the camera, and has some slide behind it."""
+        assert self.cargo is not None
+        while (x := float(place(self._arrives, travel, self.settings)[0])) >= self.settings.begins:
+            self.cargo.put(self.belt.name, x, self._arrives.y)
+            self._arrives = next(self._coming)
+        for thing in self.here.values():
+            slid = thing.number in self._slid or thing.slides == (0.0, 0.0)
+            if not slid and place(thing, travel, self.settings)[0] > self.settings.slides_at:
+                self._slid.add(thing.number)
+                self.cargo.move(thing.number, *(in_world({**self.origin, "x": 0.0, "y": 0.0}, *thing.slides)))
+        self.here = {number: thing for number, thing in self.here.items() if number in self.cargo.here}
 
     def _latch(self, thing: Thing, recorded: float) -> None:
         noise = self.settings.noise if self.late > 0 else 0.0
@@ -195,6 +230,32 @@ class Gripper:
         self.cell.session.mark(f"puts product {thing.number} onto tray {tray.number}")
 
 
+class TwinGripper(Gripper):
+    """That of the twin: MuJoCo has the products, and what the gripper holds."""
+
+    def close(self) -> None:
+        self._twin.close()
+
+    def open(self) -> None:
+        self._twin.open()
+
+    @property
+    def _twin(self) -> Any:
+        return self.cell.session.plant.cargo.grippers["robot"]  # type: ignore[attr-defined]
+
+    def step(self) -> None:
+        if self._twin.closed == self.closed:
+            return
+        self.closed = self._twin.closed
+        if not self.closed:
+            self._let_go()
+        elif self._twin.holds is None:
+            self.cell.session.mark("holds nothing")
+        else:
+            self.holds = self.cell.infeed.here.pop(self._twin.holds)
+            self.cell.session.mark(f"holds product {self.holds.number}")
+
+
 class Cell:
     """Both belts and the gripper, from now on in step with the session's engine."""
 
@@ -204,9 +265,9 @@ class Cell:
         self.robot = session.group("robot")
         self.infeed = Conveyor(session, "infeed", products(settings), settings, settings.picture_s)
         self.outfeed = Conveyor(session, "outfeed", trays(settings), settings, 0.0)
-        self.gripper = Gripper(self)
+        self.gripper = Gripper(self) if self.infeed.cargo is None else TwinGripper(self)
         self._later: list[tuple[Callable[[], object], Callable[[], Any]]] = []
-        session.program(self._step)
+        session.program(self._step, every=EVERY)
 
     def when(self, condition: Callable[[], object], what: Callable[[], Any]) -> None:
         """Has something done once, as soon as the condition holds: a command, a change."""

@@ -4,7 +4,7 @@ trays, moves, and says when the gripper is to act; the control starts it, and te
 from __future__ import annotations
 
 import takt
-from cell import Cell, Seen
+from cell import EVERY, Cell, Seen
 
 LIFT = 40.0  # mm above a product: z_distance in the machine file
 INFEED, OUTFEED = 1, 2  # the module's belts
@@ -24,12 +24,12 @@ class Picker:
         self._told = 0, 0  # for what the gripper was told to act last: belt and number there
         self._acted = False
         self._picked = int(self.module.picked)
-        session.program(self._step)
+        session.program(self._step, every=EVERY)
 
     def run(self, until_s: float) -> None:
         """Until the session's time has come, and the last product is put down."""
         loop = self.module.execute()
-        self.session.wait(lambda: self.session.now >= until_s and self._places(), until_s + 60)
+        self.session.wait(lambda: self.session.now >= until_s and self._places(), until_s + 60, every=EVERY)
         self.module.abort()  # the loop ends behind the path in progress
         loop.wait_final()
 
@@ -37,7 +37,7 @@ class Picker:
         return self.module.target == OUTFEED and self.module.workpiece > 0
 
     def _step(self) -> None:
-        """Every cycle."""
+        """Every few cycles: a pulse of one cycle may be missed, then it is the place of the tool that says it."""
         module, gripper = self.module, self.cell.gripper
         picks = module.target == INFEED
         # A control in another process may not see the cycle of the pulse: it is told late then, when the tool is there.

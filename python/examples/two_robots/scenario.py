@@ -23,7 +23,7 @@ SEED = 4
 SPEED, SLOWER = 300.0, 180.0  # mm/s of the belt
 NEAREST, MORE, ACROSS = 105.0, 30.0, 30.0  # mm between two products: at least, and beside that; mm beside the middle
 WORKS, ENDS = "picks begin", "the last ones"
-WORKS_S, SLOW_S, SLOW_FOR_S = 6.0, 3.2, 0.8
+WORKS_S, SLOW_S, SLOW_FOR_S = 6.5, 3.2, 0.8
 
 
 def scenario(session: takt.Session) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 from takt.changes import changed
 from takt.engine import read_machine
 from takt.scenario import load_scenario, with_settings
+from takt.sweep.cluster import Cluster
 from takt.sweep.design import Design, SweepError
 from takt.sweep.pool import Pool
 from takt.sweep.runs import Job, Row
@@ -48,6 +49,7 @@ def sweep(
     machine: str | os.PathLike[str] | None = None,
     seed: int = 0,
     workers: int | None = None,
+    scheduler: str | None = None,
     stop_after: int | None = None,
     timeout_s: float = TIMEOUT_S,
     fresh: bool = False,
@@ -59,6 +61,7 @@ def sweep(
         or, with a dot, paths of the machine file.
     directory: where the table and the page go [sweeps/SCENARIO]; a sweep that is there goes on.
     workers: processes [as many as there are processors].
+    scheduler: address of a scheduler of Dask distributed, "tcp://host:8786", whose workers make the runs instead.
     stop_after: so many runs now; the next call goes on.
     timeout_s: s of this host's time that a run may take.
     fresh: begins again.
@@ -70,6 +73,13 @@ def sweep(
     _check(job, design)
     if workers is not None and workers < 1:
         raise SweepError(f"at least one worker is needed, found {workers}")
+    if workers is not None and scheduler is not None:
+        raise SweepError("a scheduler has workers of its own: give one of both, --workers or --scheduler")
+    pool: Pool | Cluster
+    if scheduler is not None:
+        pool = Cluster(job, design, scheduler, timeout_s)
+    else:
+        pool = Pool(job, design, workers or os.cpu_count() or 1, timeout_s)
     target = Path(directory) if directory is not None else Path("sweeps") / Path(scenario).stem
     table = Table(target, about(job, design), fresh)
     try:
@@ -79,7 +89,7 @@ def sweep(
         if stop_after is not None:
             end = min(end, first + stop_after)
         begin = time.monotonic()
-        repeats = _make(table, Pool(job, design, workers or os.cpu_count() or 1, timeout_s), first, end, job, progress)
+        repeats = _make(table, pool, first, end, job, progress)
         elapsed = time.monotonic() - begin
     finally:
         table.close()
@@ -90,7 +100,9 @@ def sweep(
     return Result(table.path, page, parquet, summary, end - first, elapsed, repeats)
 
 
-def _make(table: Table, pool: Pool, first: int, end: int, job: Job, progress: Callable[[float], None] | None) -> bool:
+def _make(
+    table: Table, pool: Pool | Cluster, first: int, end: int, job: Job, progress: Callable[[float], None] | None
+) -> bool:
     flushed = time.monotonic()
     repeats = True
 

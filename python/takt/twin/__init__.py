@@ -6,7 +6,8 @@ The section `twin` of the machine file says which axes it moves, with which moto
 the kinematics, or given as MJCF or URDF. MuJoCo is an extra: pip install takt-motion[twin].
 """
 
+from takt.twin.cargo import Cargo, Gripper, Handled, ProductSeen
 from takt.twin.judging import Judged, judge
 from takt.twin.plant import ContactSeen, Frame, Twin
 
-__all__ = ["ContactSeen", "Frame", "Judged", "Twin", "judge"]
+__all__ = ["Cargo", "ContactSeen", "Frame", "Gripper", "Handled", "Judged", "ProductSeen", "Twin", "judge"]

@@ -75,6 +75,9 @@ def table(judged: Judged) -> Table:
     for tool in judged.tools:
         made.add_row(tool.group, "tool from its set pose [mm]", *_pair(tool.off), *_pair(tool.servo_off))
         made.add_row("", "tool from Takt's kinematics [mm]", *_pair(tool.agreement), "", "")
+    if judged.products is not None:
+        made.add_row("products", "tool from their middle, gripped [mm]", *_pair(judged.products.beside), "", "")
+        made.add_row("", "moved after they were put down [mm]", *_pair(judged.products.moved), "", "")
     for axis in judged.axes:
         made.add_row(axis.axis, f"following error [{axis.unit}]", *_pair(axis.following), *_pair(axis.servo))
         made.add_row("", f"torque of {axis.max_torque:g}", *_pair(axis.torque), "", "")

@@ -10,12 +10,15 @@ import numpy.typing as npt
 
 from takt.counted import counted
 from takt.recording import Recording
+from takt.twin.cargo import Cargo
 from takt.twin.model import Array
 from takt.twin.plant import Twin
 from takt.verdict import Verdict, seconds
 
 AGREES_MM = 0.3  # between the tool of the model and Takt's kinematics of the model's joints: its rods are springs
 AGREES_DEG = 0.3
+LIES_MM = 1.0  # that a product may move on its belt after a gripper has let it go
+LIES_DEG = 2.0
 
 
 @dataclass(frozen=True)
@@ -43,10 +46,21 @@ class ToolFigures:
 
 
 @dataclass(frozen=True)
+class ProductFigures:
+    """Of all products that grippers held, in mm."""
+
+    gripped: int
+    put: int
+    beside: tuple[float, float]  # rms and largest distance from the tool to the middle of a product that it gripped
+    moved: tuple[float, float]  # on the belt, after it was let go
+
+
+@dataclass(frozen=True)
 class Judged:
     cycles: int
     axes: tuple[AxisFigures, ...]
     tools: tuple[ToolFigures, ...]
+    products: ProductFigures | None
     verdicts: tuple[Verdict, ...]
 
     @property
@@ -94,7 +108,11 @@ def judge(twin: Twin, recording: Recording, servo: Recording | None = None) -> J
         )
         verdicts.append(_within(name, torque, limited, most, period, "N" if abs(joint.scale) == 1000 else "Nm"))
     verdicts.append(_untouched(twin, period))
-    return Judged(len(seen.joints), tuple(axes), tuple(tools), tuple(verdicts))
+    products = None
+    if twin.cargo is not None and (twin.cargo.handled or twin.cargo.fallen):
+        products, verdict = _lie(twin.cargo, period)
+        verdicts.append(verdict)
+    return Judged(len(seen.joints), tuple(axes), tuple(tools), products, tuple(verdicts))
 
 
 def _agrees(group: str, off: Array, turned: Array, period: float) -> Verdict:
@@ -134,6 +152,35 @@ def _untouched(twin: Twin, period: float) -> Verdict:
         f"Y {y:.1f}, Z {z:.1f} mm{others}"
     )
     return _verdict("twin.contacts", "", False, sentence, first.cycle * period, first.depth_mm, "mm")
+
+
+def _lie(cargo: Cargo, period: float) -> tuple[ProductFigures, Verdict]:
+    """Whether products lie where grippers have let them go, upright, and none fell."""
+    handled = cargo.handled
+    put = [one for one in handled if one.put is not None]
+    moved = np.array([one.moved for one in put if not math.isnan(one.moved)])
+    beside = np.array([np.linalg.norm(one.offset) for one in handled])
+    figures = ProductFigures(len(handled), len(put), _size(beside), _size(moved))
+    wrong: list[tuple[int, str]] = [(when, f"product {number} fell") for number, when in cargo.fallen]
+    for one in put:
+        what, when = f"product {one.number}", one.put or 0
+        if one.lost:
+            wrong.append((when, f"{what}: {one.lost}"))
+        elif one.moved > LIES_MM:
+            wrong.append((when, f"{what} moved by {one.moved:.3g} mm on belt {one.belt} after it was put there"))
+        elif one.turned > LIES_DEG:
+            wrong.append((when, f"{what} tilted by {one.turned:.3g} deg on belt {one.belt}"))
+    if wrong:
+        first, sentence = min(wrong)
+        more = f"; {counted(len(wrong) - 1, 'other product')} beside" if len(wrong) > 1 else ""
+        return figures, _verdict("twin.products", "", False, sentence + more, first * period, None, "")
+    sentence = (
+        f"{counted(len(handled), 'product')} gripped within {beside.max(initial=0):.2g} mm of the middle, {len(put)} "
+        f"put down, and lie within {moved.max(initial=0):.2g} mm of where the gripper let go "
+        f"({LIES_MM:g} mm are allowed)"
+    )
+    room = LIES_MM - float(moved.max(initial=0))
+    return figures, _verdict("twin.products", "", True, sentence, None, room, "mm")
 
 
 def _verdict(

@@ -15,7 +15,11 @@ from xml.sax.saxutils import quoteattr
 MECHANISMS = ("gantry", "core_xy", "scara", "delta", "six_axis", "serial")
 ROD_SPACING = 60.0  # mm: of the rods of a Delta that does not say it
 ENVIRONMENT = 1 << 30  # contact group of obstacles; each mechanism has one of its own
+PRODUCTS = 1 << 29  # and that of products
 GROUPS = 29
+PARK_M = (0.0, 50.0, 0.0)  # where products wait that are not in the machine, and one from another
+PARK_STEP_M = 1.0
+TIP = 1.0  # mm between a cup and what it hangs from
 SLIDES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
 TURNS = {"a": (1, 0, 0), "b": (0, 1, 0), "c": (0, 0, 1)}
 
@@ -37,6 +41,8 @@ class Made:
 
     world: list[str] = field(default_factory=list)
     equality: list[str] = field(default_factory=list)
+    contact: list[str] = field(default_factory=list)
+    solids: list[str] = field(default_factory=list)  # shapes of mechanisms, which belts and products must not touch
     joints: dict[str, str] = field(default_factory=dict)  # of axes
     tools: dict[str, str] = field(default_factory=dict)  # sites of groups
 
@@ -59,6 +65,7 @@ def document(name: str, made: Made, step_s: float) -> str:
 <worldbody><light pos="0 -1 2.5" diffuse=".7 .7 .7"/>
 {"".join(made.world)}</worldbody>
 <equality>{"".join(made.equality)}</equality>
+<contact>{"".join(made.contact)}</contact>
 </mujoco>"""
 
 
@@ -73,6 +80,88 @@ def add_group(made: Made, number: int, group: Mapping[str, Any], twin: Mapping[s
         inside = _chain(made, number, group, _bodies(kind, group["axes"], params), axes, told)
     obstacles = "".join(_obstacle(solid) for solid in ((group.get("workspace") or {}).get("obstacles") or ()))
     made.world.append(f"<body {_pose(group['base'])}>{inside}{obstacles}</body>\n")
+
+
+def belt(name: str) -> str:
+    """What body, joint's body and shape of a belt are called."""
+    return f"belt {name}"
+
+
+def product(slot: int) -> str:
+    """What body, joint and shape of a product are called."""
+    return f"product {slot + 1}"
+
+
+def grip(group: str, slot: int) -> str:
+    """What the weld is called by which a gripper holds a product."""
+    return f"{group} holds {slot + 1}"
+
+
+def add_belt(made: Made, told: Mapping[str, Any], params: Mapping[str, Any], axis: Mapping[str, Any]) -> None:
+    """A belt: a plate whose body its axis moves along X. Its shape is put back in each cycle (takt.twin.cargo), so that
+    it stays, and its surface moves; pairs say what it touches, since MuJoCo looks for others where its body is."""
+    name, thick = belt(told["belt"]), 10.0  # mm
+    length = (told["to"] - told["from"]) / 2000
+    at = _metres(((told["from"] + told["to"]) / 2, 0, told["surface"] - thick / 2))
+    made.world.append(
+        f"<body name={quoteattr(name)} {_pose(params['origin'])}>{_joint(made, axis, (1, 0, 0), True)}"
+        f'<geom name={quoteattr(name)} type="box" size="{length!r} {told["width"] / 2000!r} {thick / 2000!r}"'
+        f' pos="{at}" mass="{axis["mass"]!r}" rgba=".35 .4 .45 1" contype="0" conaffinity="0"/></body>\n'
+    )
+    for solid in made.solids:
+        made.contact.append(f"<pair geom1={quoteattr(name)} geom2={quoteattr(solid)}/>")
+
+
+def add_products(made: Made, told: Mapping[str, Any], belts: Sequence[Mapping[str, Any]]) -> None:
+    """Products, which wait beside the machine."""
+    size = " ".join(repr(told[edge] / 2000) for edge in ("length", "width", "height"))
+    contacts = f'contype="{PRODUCTS}" conaffinity="{(1 << GROUPS) - 1 | PRODUCTS | ENVIRONMENT}"'
+    for slot in range(told["count"]):
+        name = quoteattr(product(slot))
+        x, y, z = PARK_M[0] + PARK_STEP_M * slot, PARK_M[1], PARK_M[2]
+        made.world.append(
+            f'<body name={name} pos="{x!r} {y!r} {z!r}"><freejoint name={name}/><geom name={name} type="box"'
+            f' size="{size}" mass="{told["mass"]!r}" friction="{told["friction"]!r} 0.005 0.0001"'
+            f' rgba=".95 .65 .15 1" {contacts}/></body>\n'
+        )
+        for one in belts:
+            f = one["friction"]
+            made.contact.append(
+                f'<pair geom1={quoteattr(belt(one["belt"]))} geom2={name} friction="{f!r} {f!r} 0.005 0.0001 0.0001"'
+                f' solref="0.005 1" solimp="0.99 0.99 0.001"/>'
+            )
+
+
+def add_gripper(made: Made, group: Mapping[str, Any], count: int) -> None:
+    """The welds by which the gripper of a group holds products."""
+    kind, params = mechanism_of(group)
+    name = group["name"]
+    body = f"{name}.platform" if kind == "delta" and not params["rotary"] else _last(group, kind)
+    for slot in range(count):
+        made.equality.append(
+            f"<weld name={quoteattr(grip(name, slot))} body1={quoteattr(body)} body2={quoteattr(product(slot))}"
+            ' active="false" solref="0.002 1"/>'
+        )
+
+
+def _last(group: Mapping[str, Any], kind: str) -> str:
+    """The axis that moves the tool's body."""
+    if kind == "delta":
+        return str(group["axes"][3])
+    return _bodies(kind, group["axes"], mechanism_of(group)[1])[-1].axis
+
+
+def _cup(made: Made, group: Mapping[str, Any], told: Mapping[str, Any]) -> str:
+    """The cup of a gripper, above the tool's point. It touches obstacles and belts; products it may touch."""
+    tool, gripper = group["tool"], told["gripper"]
+    back = -1 if mechanism_of(group)[0] == "six_axis" else 1  # its flange looks along Z, others look against it
+    at = _metres((tool["x"], tool["y"], tool["z"] + back * gripper["length"] / 2))
+    name = f"{group['name']}.gripper"
+    made.solids.append(name)
+    return (
+        f'<geom name={quoteattr(name)} type="cylinder" size="{gripper["radius"] / 1000!r} {gripper["length"] / 2000!r}"'
+        f' pos="{at}" mass="{told["payload"] or 0.001!r}" rgba=".9 .6 .1 1" contype="0" conaffinity="{ENVIRONMENT}"/>'
+    )
 
 
 def add_alone(made: Made, number: int, place: int, axis: Mapping[str, Any], rotary: bool) -> None:
@@ -129,7 +218,17 @@ def _chain(
         axis = axes[body.axis]
         joint = _joint(made, axis, body.direction, body.slides)
         to = body.to if math.hypot(*body.to) > 1 else (0.0, 0.0, -30.0)
-        shape = f'<geom type="capsule" size="0.02" fromto="0 0 0 {_metres(to)}" mass="{axis["mass"]!r}"'
+        start = (0.0, 0.0, 0.0)
+        if told.get("gripper") and body.slides:
+            to = (to[0], to[1], abs(to[2]))  # away from what the gripper reaches for
+        if told.get("gripper") and body is bodies[-1]:  # the cup hangs from it
+            above = max(0.0, group["tool"]["z"] + told["gripper"]["length"]) + 20 + TIP
+            start, to = (0.0, 0.0, above), (0.0, 0.0, above + 30)
+            if mechanism_of(group)[0] == "six_axis":
+                start, to = (0.0, 0.0, -above), (0.0, 0.0, -above - 30)
+        shape = f'<geom name={quoteattr(body.axis)} type="capsule" size="0.02" fromto="{_metres(start)} {_metres(to)}"'
+        shape += f' mass="{axis["mass"]!r}"'
+        made.solids.append(body.axis)
         text += f'<body name={quoteattr(body.axis)} pos="{_metres(body.at)}">{joint}{shape} {_contacts(number)}/>'
         ends += "</body>"
     return text + _tool(made, number, group, told) + ends
@@ -171,18 +270,28 @@ def _delta(
             f'<geom type="capsule" size="0.02" fromto="0 0 0 {p["upper_arm"] / 1000!r} 0 0" mass="{axis["mass"]!r}"'
             f' rgba=".2 .4 .8 1" {_contacts(number)}/>{rods}</body></body>'
         )
+    thick = 0.008
+    # A gripper's cup hangs from the platform, which then is above it.
+    height = (
+        max(0.0, (group["tool"]["z"] + told["gripper"]["length"]) / 1000 + thick + TIP / 1000)
+        if told.get("gripper")
+        else 0.0
+    )
     tool = _tool(made, number, group, told)
     if p["rotary"]:
         axis = axes[group["axes"][3]]
         tool = (
             f"<body name={quoteattr(axis['axis'])}>{_joint(made, axis, (0, 0, 1), False)}"
-            f'<geom type="cylinder" size="0.02 0.01" mass="{axis["mass"]!r}" {_contacts(number)}/>{tool}</body>'
+            f'<geom type="cylinder" size="0.02 0.01" pos="0 0 {height!r}" mass="{axis["mass"]!r}" {_contacts(number)}/>'
+            f"{tool}</body>"
         )
     # Moved onto the world by its free joint, which MuJoCo allows there only: see Twin, which assembles the chain.
+    body = f"{name}.platform"
+    made.solids.append(body)
     made.world.append(
-        f"<body name={quoteattr(name + '.platform')}><freejoint name={quoteattr(name + '.platform')}/>"
-        f'<geom type="cylinder" size="{max(platform, 0.01)!r} 0.008" mass="{told["platform_mass"]!r}" rgba=".8 .2 .2 1"'
-        f" {_contacts(number)}/>{sites}{tool}</body>\n"
+        f"<body name={quoteattr(body)}><freejoint name={quoteattr(body)}/>"
+        f'<geom name={quoteattr(body)} type="cylinder" size="{max(platform, 0.01)!r} {thick!r}" pos="0 0 {height!r}"'
+        f' mass="{told["platform_mass"]!r}" rgba=".8 .2 .2 1" {_contacts(number)}/>{sites}{tool}</body>\n'
     )
     return arms
 
@@ -198,6 +307,8 @@ def _tool(made: Made, number: int, group: Mapping[str, Any], told: Mapping[str, 
     name = f"{group['name']}.flange"
     made.tools[group["name"]] = name
     text = f"<site name={quoteattr(name)}/>"
+    if told.get("gripper"):
+        return text + _cup(made, group, told)
     if payload := told.get("payload", 0):
         tool = group["tool"]
         at = _metres((tool["x"], tool["y"], tool["z"]))

@@ -279,8 +279,24 @@ class _Builder:
             if made.mechanism_of(group)[0] == "core_xy":
                 raise self.problems.fail("twin", f"group {group['name']}: core_xy cannot be made; give a model")
             made.add_group(parts, number, group, twin)
+        belts = {one["name"]: one for one in self.machine["belts"]}
+        of_belts = {belts[one["belt"]]["axis"]: one for one in twin["belts"]}
         for place, (_, axis) in enumerate(alone):
-            made.add_alone(parts, len(self.groups) + place, place, axis, self.rotary(axis["axis"]))
+            if belt := of_belts.get(axis["axis"]):
+                if self.rotary(axis["axis"]):
+                    raise self.problems.fail(
+                        f"twin.belts[{twin['belts'].index(belt)}].belt",
+                        f"expected a belt whose axis is in mm, found that {axis['axis']} is in deg",
+                    )
+                made.add_belt(parts, belt, belts[belt["belt"]], axis)
+            else:
+                made.add_alone(parts, len(self.groups) + place, place, axis, self.rotary(axis["axis"]))
+        if products := twin.get("products"):
+            made.add_products(parts, products, twin["belts"])
+            for mechanism in twin["mechanisms"]:
+                if mechanism.get("gripper"):
+                    group = next(one for one in self.groups if one["name"] == mechanism["group"])
+                    made.add_gripper(parts, group, products["count"])
         spec = self.mujoco.MjSpec.from_string(made.document(self.machine["name"], parts, self.step_s))
         for number, group in enumerate(self.groups):
             if made.mechanism_of(group)[0] == "serial":

@@ -18,6 +18,7 @@ import numpy as np
 
 from takt import _core
 from takt.plant import Plant, PlantError, Rows
+from takt.twin.cargo import Cargo
 from takt.twin.model import Array, Model, build
 
 if TYPE_CHECKING:
@@ -91,6 +92,9 @@ class Twin(Plant):
         self._places = np.array([joint.position for joint in self.built.joints])
         self._scales = np.array([joint.scale for joint in self.built.joints])
         self._zeros = np.array([joint.zero for joint in self.built.joints])
+        carries = twin["belts"] or twin.get("products")
+        self.cargo = Cargo(mujoco, machine, self.built, self.axes, self._period_s) if carries else None
+        self._allowed = self.cargo.allowed if self.cargo else np.zeros((model.ngeom, model.ngeom), bool)
         self._rows: list[tuple[Any, ...]] = []
         self._good = (data.qpos.copy(), data.qvel.copy())
         self._cycle = -1
@@ -113,6 +117,8 @@ class Twin(Plant):
     def step(self, cycle: int, told: Rows, measured: Rows) -> None:
         servos, qpos, qvel, last = self._servos, self._qpos, self._qvel, self.steps - 1
         model, data, step = self.built.model, self.built.data, self._mj_step
+        if self.cargo is not None:
+            self.cargo.before(cycle)
         servos.begin(told)
         at = qpos
         for i in range(self.steps):
@@ -124,6 +130,8 @@ class Twin(Plant):
         if not qvel.dot(qvel) < FASTEST * FASTEST or self._warnings.any():
             self._explode(cycle)
         servos.sense(qpos, qvel, measured)
+        if self.cargo is not None:
+            self.cargo.after(cycle, measured)
         # After a step of MuJoCo, poses of bodies are those of its beginning.
         if cycle >= 0:
             self._rows.append((at, servos.torques, bytes(servos.limited), *[view.copy() for view in self._poses]))
@@ -153,10 +161,10 @@ class Twin(Plant):
 
     def _touch(self, cycle: int) -> None:
         model, data = self.built.model, self.built.data
-        for i in range(data.ncon):
-            contact = data.contact[i]
-            if contact.dist > 0:
-                continue
+        shapes = data.contact.geom
+        wrong = np.flatnonzero((data.contact.dist <= 0) & ~self._allowed[shapes[:, 0], shapes[:, 1]])
+        for i in wrong:
+            contact = data.contact[int(i)]
             names = sorted(_called(model, int(geom)) for geom in contact.geom)
             pair = (names[0], names[1])
             if pair not in self.contacts:

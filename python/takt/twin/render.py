@@ -15,7 +15,7 @@ def render(saved: str, state: str, file: str, width: int, height: int) -> None:
     data = mujoco.MjData(model)
     data.qpos[:] = np.load(state)
     mujoco.mj_forward(model, data)
-    places = [data.geom_xpos[i] for i in range(model.ngeom)]
+    places = [data.geom_xpos[i] for i in range(model.ngeom) if model.geom_rgba[i, 3] > 0]  # others wait elsewhere
     middle = (np.min(places, axis=0) + np.max(places, axis=0)) / 2
     extent = float(np.max(np.ptp(places, axis=0))) + 0.3
     camera = mujoco.MjvCamera()

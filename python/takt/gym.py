@@ -1,0 +1,120 @@
+"""A machine as an environment of gymnasium, for those who learn or search (PY-23): axes are to be brought to places
+that are drawn at random. It trains nothing; it is an example of how an environment is made of an engine.
+
+env = takt.gym.ReachEnv("machine.yaml", ["x", "y"])
+
+gymnasium is an extra: pip install "takt-motion[gym]".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from takt.engine import Engine, Machine
+from takt.errors import TaktError, seconds
+
+try:
+    import gymnasium
+    from gymnasium import spaces
+except ImportError:
+    raise TaktError('environments need gymnasium, which is not installed: pip install "takt-motion[gym]"') from None
+
+Floats = npt.NDArray[np.float32]
+
+MOST = 2.0  # of a position or a speed, as shares of range and limit: what is observed stays within
+
+
+class ReachEnv(gymnasium.Env):  # type: ignore[misc]
+    """Axes that are to reach places.
+
+    An action says where each axis is to go until the next one, as a share of its range from -1 to 1. Observed are, for
+    each axis, its position and the place to be reached as such shares, and its velocity as a share of its limit. The
+    reward of a step is minus the mean distance, in shares; an episode ends when all are there at rest.
+
+    machine: as takt.Engine takes it.
+    axes: names.
+    ranges: by axis, lowest and highest position; unset: the SW limits of the axis.
+    step_s: s of engine time from one action to the next.
+    episode_s: s of engine time after which an episode is broken off.
+    within: share of the range at which a place is reached.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": []}
+
+    def __init__(
+        self,
+        machine: Machine,
+        axes: Sequence[str],
+        *,
+        ranges: Mapping[str, tuple[float, float]] | None = None,
+        step_s: float = 0.05,
+        episode_s: float = 5.0,
+        within: float = 0.01,
+    ) -> None:
+        self._engine = Engine(machine, journal=True)
+        if not axes:
+            raise TaktError("an environment needs at least one axis")
+        self._names = list(axes)
+        self._cycles = max(1, round(seconds(step_s, "a step") / self._engine.period))
+        self._most = max(1, round(seconds(episode_s, "an episode") / step_s))
+        self._within = within
+        low, high, speed = [], [], []
+        for name in self._names:
+            limits = self._engine.axis(name).parameters["limits"]
+            lower, upper = (ranges or {}).get(name, (limits.get("lower"), limits.get("upper")))
+            if lower is None or upper is None or not lower < upper:
+                raise TaktError(f"axis {name}: no range: give ranges={{'{name}': (LOWEST, HIGHEST)}}, or SW limits")
+            low.append(lower)
+            high.append(upper)
+            speed.append(limits["velocity"])
+        self._middle, self._half = (np.add(low, high) / 2, np.subtract(high, low) / 2)
+        self._speed = np.array(speed)
+        for power in [self._engine.axis(name).power() for name in self._names]:
+            power.wait()
+        self._begin = self._engine.save()  # every episode begins here
+        count = len(self._names)
+        self.action_space = spaces.Box(-1.0, 1.0, (count,), np.float32)
+        self.observation_space = spaces.Box(-MOST, MOST, (3 * count,), np.float32)
+        self._goal = np.zeros(count)
+        self._steps = 0
+
+    @property
+    def engine(self) -> Engine:
+        """That of the episode."""
+        return self._engine
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
+        super().reset(seed=seed)
+        self._engine.close()
+        self._engine = Engine.restore(self._begin)
+        self._goal = self.np_random.uniform(-0.9, 0.9, len(self._names))
+        self._steps = 0
+        return self._observed(), {"goal": self._middle + self._half * self._goal}
+
+    def step(self, action: npt.ArrayLike) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
+        told = np.clip(np.asarray(action, float), -1, 1)
+        for name, position in zip(self._names, self._middle + self._half * told, strict=True):
+            self._engine.axis(name).move_absolute(position=float(position))
+        self._engine.step(self._cycles)
+        self._steps += 1
+        at, velocity = self._state()
+        off = np.abs(at - self._goal)
+        reached = bool((off < self._within).all() and (np.abs(velocity) < self._within).all())
+        return self._observed(), -float(off.mean()), reached, self._steps >= self._most and not reached, {}
+
+    def close(self) -> None:
+        self._engine.close()
+
+    def _state(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        axes = [self._engine.axis(name) for name in self._names]
+        positions = np.array([axis.actual_position for axis in axes])
+        velocities = np.array([axis.actual_velocity for axis in axes])
+        return (positions - self._middle) / self._half, velocities / self._speed
+
+    def _observed(self) -> Floats:
+        seen = np.concatenate([*self._state(), self._goal])
+        return np.asarray(np.clip(seen, -MOST, MOST), np.float32)

@@ -1,0 +1,100 @@
+"""What a motor moves, identified from a recording: the values of `drive: torque_offset` of an axis (PY-23).
+
+found = takt.load.identify(recording, "x")
+print(found.machine_file())
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from takt.recording import Array, Recording, RecordingError
+
+LEAST = 100  # samples
+FULL_AT = 1.0  # u/s: as the default of torque_offset.full_at
+HALF = 8  # samples to either side over which is averaged
+LATE = np.arange(-2, 5.1, 0.25)  # samples by which torques may be late
+INDEPENDENT = 0.02  # of what is identified from one another
+
+
+@dataclass(frozen=True)
+class Load:
+    """Of one axis, in Nm or N and its unit u."""
+
+    axis: str
+    inertia: float  # torque per u/s2
+    coulomb_friction: float
+    viscous_friction: float  # torque per u/s
+    load_torque: float
+    left: float  # rms of what is not explained
+    of: float  # rms of the torque
+
+    def machine_file(self) -> str:
+        """As it stands in the machine file."""
+        return (
+            f"drive: {{torque_offset: {{inertia: {self.inertia:.4g}, coulomb_friction: {self.coulomb_friction:.4g}, "
+            f"viscous_friction: {self.viscous_friction:.4g}, load_torque: {self.load_torque:.4g}}}}}"
+        )
+
+
+def _averaged(values: Array) -> Array:
+    """By a triangle of HALF samples to either side."""
+    weights = HALF - np.abs(np.arange(-HALF + 1, HALF))
+    return np.convolve(values, weights / HALF**2, "same")
+
+
+def identify(recording: Recording, axis: str, *, full_at: float = FULL_AT) -> Load:
+    """Fits the torque that the drive reported to what the encoder says, by least squares. The recording needs
+    motion both ways, with acceleration and at more than one speed. Raises RecordingError where it says too little.
+
+    full_at: u/s; slower samples are left out, in which friction is not whole; as in the machine file.
+    """
+    table = recording[axis]
+    period = float(np.median(np.diff(table["time_s"]))) if len(table) > 1 else 1.0
+    closed = np.asarray(table["loop_closed"], bool)
+    rows = np.flatnonzero(closed)
+    inside = slice(rows[0], rows[-1] + 1) if len(rows) else slice(0, 0)
+    position = np.cumsum(np.asarray(table["actual_velocity"], float)[inside]) * period
+    torque = np.asarray(table["torque_nm"], float)[inside]
+    if len(torque) > 2 * HALF:
+        # Of positions alone, all averaged in the same way: the second difference weighs accelerations like a triangle.
+        torque = _averaged(torque)[HALF:-HALF]
+        acceleration = (position[2 * HALF :] - 2 * position[HALF:-HALF] + position[: -2 * HALF]) / (HALF * period) ** 2
+        velocity = _averaged(np.gradient(position, period))[HALF:-HALF]
+    else:
+        acceleration = velocity = torque = np.empty(0)
+    if len(torque) < LEAST:
+        raise RecordingError(f"axis '{axis}': {len(rows)} samples with a closed loop, at least {LEAST} are needed")
+    moves = np.abs(velocity) >= full_at  # at rest friction holds with any torque up to its own
+    if not np.any(np.asarray(table["set_velocity"])[inside]) or moves.sum() < LEAST:
+        raise RecordingError(f"axis '{axis}': it does not move in this recording")
+    parts = np.stack([acceleration, np.sign(velocity), velocity, np.ones_like(velocity)], axis=1)[moves]
+    sizes = np.maximum(np.abs(parts).max(axis=0), 1e-30)
+    values = np.linalg.svd(parts / sizes, compute_uv=False)
+    if values[-1] < INDEPENDENT * values[0]:
+        raise RecordingError(
+            f"axis '{axis}': its friction cannot be told from its load in this recording: it needs motion both "
+            "ways and at more than one speed"
+        )
+    # Torques are of a time somewhat before or behind that of the position: that at which most is explained.
+    at = np.flatnonzero(moves).astype(float)
+    best, found, left, torque_told = math.inf, np.zeros(4), torque, torque
+    for late in LATE:
+        told = np.interp(at + late, np.arange(len(torque)), torque)
+        values, *_ = np.linalg.lstsq(parts / sizes, told, rcond=None)
+        rest = told - parts / sizes @ values
+        if (size := float(rest @ rest)) < best:
+            best, found, left, torque_told = size, values, rest, told
+    inertia, coulomb, viscous, load = found / sizes
+    return Load(
+        axis,
+        max(0.0, float(inertia)),
+        max(0.0, float(coulomb)),
+        max(0.0, float(viscous)),
+        float(load),
+        float(np.sqrt(np.mean(left**2))),
+        float(np.sqrt(np.mean(torque_told**2))),
+    )

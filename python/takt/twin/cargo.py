@@ -1,0 +1,478 @@
+"""Belts, products and grippers of a twin: products lie on belts by friction, a gripper holds one by a weld that is
+switched on where its cup is near enough, and light barriers across belts are touch probes.
+
+A belt is a plate whose body moves and whose shape stays: contact sees a surface that slides. Products that are not in
+the machine wait beside it. MuJoCo alone decides where products are; nothing here moves one that has been put in.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from takt.errors import TaktError
+from takt.twin import made
+
+if TYPE_CHECKING:
+    from takt.plant import Rows
+    from takt.twin.model import Array, Model
+
+PER_M = 1000.0  # mm
+GONE_MM = 100.0  # beneath the surfaces of all belts: it has fallen
+REST_S = 0.02  # from when a gripper lets go until its product lies where it will lie
+LOOK = 10  # cycles between two looks at belts' ends, at what fell and at what waits
+
+
+@dataclass(frozen=True)
+class ProductSeen:
+    """A product on a belt, as a camera above it would see it."""
+
+    number: int  # from 1, in the order in which products were put in; never used again
+    x: float  # mm, of its middle from the origin of the belt
+    y: float
+    z: float  # mm, of its top
+    c: float  # deg, about Z
+
+
+@dataclass(frozen=True)
+class Handled:
+    """A product that a gripper held, and what became of it."""
+
+    number: int
+    gripper: str  # the group's name
+    gripped: int  # cycle
+    offset: Array  # (3,), mm: from the tool to the middle of its top when it was gripped
+    put: int | None = None  # cycle in which the gripper let go
+    belt: str | None = None  # on which it lies then, None: on none
+    moved: float = math.nan  # mm along the belt's surface, from where it was let go to where it came to rest
+    turned: float = math.nan  # deg between its top and the belt's, at rest
+    lost: str = ""  # why it is not where it should be
+
+
+@dataclass
+class _Belt:
+    name: str
+    joint: int  # place in qpos
+    dof: int
+    geom: int
+    row: int  # of its axis
+    origin: Array  # (4, 4), m
+    from_m: float
+    to_m: float
+    half_width: float
+    surface: float
+    barrier: float | None
+    blocked: bool = False
+    rises: int = 0
+    falls: int = 0
+
+
+@dataclass
+class _Product:
+    slot: int
+    qpos: int
+    qvel: int
+    geom: int
+    number: int = 0  # 0: it waits beside the machine
+    held: Gripper | None = None
+
+
+@dataclass
+class _Rests:
+    """A product that a gripper has let go."""
+
+    product: _Product
+    number: int
+    at: int  # index of its Handled
+    due: int  # cycle
+    belt: _Belt | None = None
+    place: Array = field(default_factory=lambda: np.zeros(2))
+
+
+class Gripper:
+    """A vacuum gripper at the tool of a group. `close` and `open` act after the time that the machine file says."""
+
+    def __init__(
+        self, cargo: Cargo, told: Mapping[str, Any], group: str, tool: Any, at: Array, body: int, welds: Sequence[int]
+    ):
+        self.group = group
+        self.closed = False
+        self.holds: int | None = None  # number of the product
+        self._cargo = cargo
+        self._told = told
+        self._tool = tool
+        self._at = at  # m, the tool's point from the flange
+        self._body = body
+        self._welds = welds
+        self._due: list[tuple[int, bool]] = []
+
+    def close(self) -> None:
+        """Tells it to close; it holds the product within its reach, if there is one then."""
+        self._tell(True)
+
+    def open(self) -> None:
+        """Tells it to open."""
+        self._tell(False)
+
+    def _tell(self, close: bool) -> None:
+        cargo = self._cargo
+        self._due.append((cargo.cycle + max(1, round(self._told["acts_s"] / cargo.period_s)), close))
+
+    def _step(self, cycle: int) -> None:
+        while self._due and self._due[0][0] <= cycle:
+            _, self.closed = self._due.pop(0)
+            if self.closed and self.holds is None:
+                self._grip(cycle)
+            elif not self.closed:
+                self._let_go(cycle, "")
+        if self.holds is not None and self._pull() > self._told["force"]:
+            self._let_go(cycle, f"pulled off with more than {self._told['force']:g} N")
+
+    def _product(self) -> _Product | None:
+        return next((one for one in self._cargo._products if one.held is self), None)
+
+    def _grip(self, cycle: int) -> None:
+        cargo = self._cargo
+        flange, turn = self._tool.pose_in(cargo._data)
+        place = flange + turn.reshape(3, 3) @ self._at
+        near, best = None, self._told["reach"] / PER_M
+        for one in cargo._there():
+            if one.held is not None:
+                continue
+            off = float(np.linalg.norm(cargo._top(one) - place))
+            if off <= best:
+                near, best = one, off
+        if near is None:
+            return
+        near.held, self.holds = self, near.number
+        offset = (cargo._top(near) - place) * PER_M
+        cargo.handled.append(Handled(near.number, self.group, cycle, offset))
+        cargo._weld(self._welds[near.slot], self._body, near)
+
+    def _let_go(self, cycle: int, lost: str) -> None:
+        product = self._product()
+        self.holds = None
+        if product is None:
+            return
+        product.held = None
+        cargo = self._cargo
+        cargo._data.eq_active[self._welds[product.slot]] = 0
+        cargo._released(product, cycle, lost)
+
+    def _pull(self) -> float:
+        """N between cup and product."""
+        product = self._product()
+        if product is None:
+            return 0.0
+        data = self._cargo._data
+        rows = np.flatnonzero(data.efc_id[: data.ne] == self._welds[product.slot])[:3]
+        return float(np.linalg.norm(data.efc_force[rows]))
+
+
+class Cargo:
+    """All that is carried in a twin. `grippers` by group."""
+
+    def __init__(self, mujoco: Any, machine: Mapping[str, Any], built: Model, axes: Sequence[str], period_s: float):
+        twin = machine["twin"]
+        self.period_s = period_s
+        self.cycle = -1
+        self.handled: list[Handled] = []
+        self.fallen: list[tuple[int, int]] = []  # products that fell off: number, cycle
+        self._mujoco, self._model, self._data = mujoco, built.model, built.data
+        model = built.model
+        told = twin.get("products")
+        count = told["count"] if told else 0
+        self._half = np.array([told[edge] / 2000 for edge in ("length", "width", "height")]) if told else np.zeros(3)
+        self._products: list[_Product] = []
+        for slot in range(count):
+            joint = model.joint(made.product(slot))
+            geom = model.geom(made.product(slot)).id
+            self._products.append(_Product(slot, int(joint.qposadr[0]), int(joint.dofadr[0]), int(geom)))
+        self._park = built.data.qpos.copy()
+        self._rgba = model.geom_rgba.copy()
+        self._belts: dict[str, _Belt] = {}
+        for belt in twin["belts"]:
+            params = next(one for one in machine["belts"] if one["name"] == belt["belt"])
+            row = axes.index(params["axis"])
+            joint = built.joints[row]
+            body = model.body(made.belt(belt["belt"]))
+            frame = np.eye(4)
+            frame[:3, :3] = built.data.xmat[body.id].reshape(3, 3)
+            frame[:3, 3] = np.array([params["origin"][k] for k in "xyz"]) / PER_M
+            barrier = belt.get("barrier")
+            self._belts[belt["belt"]] = _Belt(
+                belt["belt"],
+                joint.position,
+                joint.velocity,
+                int(model.geom(made.belt(belt["belt"])).id),
+                row,
+                frame,
+                belt["from"] / PER_M,
+                belt["to"] / PER_M,
+                belt["width"] / 2 / PER_M,
+                belt["surface"] / PER_M,
+                None if barrier is None else barrier / PER_M,
+            )
+        self.grippers: dict[str, Gripper] = {}
+        for mechanism in twin["mechanisms"]:
+            if mechanism.get("gripper"):
+                group = mechanism["group"]
+                tool = next(tool for tool in built.tools if tool.group == group)
+                welds = [int(model.equality(made.grip(group, slot)).id) for slot in range(count)]
+                body = int(model.eq_obj1id[welds[0]])
+                offset = next(one["tool"] for one in machine["groups"] if one["name"] == group)
+                at = np.array([offset[k] for k in "xyz"]) / PER_M
+                self.grippers[group] = Gripper(self, mechanism.get("gripper"), group, tool, at, body, welds)
+        self._last = 0
+        self._rests: list[_Rests] = []
+        for one in self._products:
+            self._wait(one)
+        self.allowed = self._allowed()
+
+    # --- for scenarios ---
+
+    @property
+    def here(self) -> tuple[int, ...]:
+        """Numbers of the products in the machine."""
+        return tuple(sorted(one.number for one in self._there()))
+
+    def put(self, belt: str, x: float = 0.0, y: float = 0.0, c: float = 0.0) -> int:
+        """Puts a product onto a belt, its middle there, mm and deg in the belt's frame, as fast as the belt is. Returns
+        its number. Raises TaktError where all products are in use, or the place is not on the belt."""
+        on = self._belt(belt)
+        if not (on.from_m <= x / PER_M <= on.to_m and abs(y) / PER_M <= on.half_width):
+            raise TaktError(f"belt '{belt}': X {x:g}, Y {y:g} mm is not on it")
+        free = next((one for one in self._products if not one.number), None)
+        if free is None:
+            raise TaktError(
+                f"belt '{belt}': all {len(self._products)} products are in the machine (twin.products.count)"
+            )
+        self._last += 1
+        free.number = self._last
+        self._model.geom_rgba[free.geom] = self._rgba[free.geom]
+        self._place(free, on, x, y, c)
+        return free.number
+
+    def move(self, number: int, dx: float = 0.0, dy: float = 0.0) -> None:
+        """Shifts a product that lies on a belt, in mm of the world, as somebody who pushes it would."""
+        at = self._numbered(number).qpos
+        self._data.qpos[at : at + 2] += np.array([dx, dy]) / PER_M
+
+    def take(self, number: int) -> None:
+        """Takes a product out of the machine."""
+        product = self._numbered(number)
+        if product.held is not None:
+            raise TaktError(f"product {number} cannot be taken: the gripper of {product.held.group} holds it")
+        self._wait(product)
+
+    def position(self, number: int) -> Array:
+        """(3,), mm: of the middle of its top, in the world."""
+        return np.asarray(self._top(self._numbered(number)) * PER_M)
+
+    def camera(self, belt: str, begin: float = -math.inf, end: float = math.inf) -> list[ProductSeen]:
+        """The products that lie on a belt between two places along it, mm, as they lie now."""
+        on = self._belt(belt)
+        seen = []
+        for one in self._there():
+            x, y, z = self._seen_from(on, self._top(one))
+            if one.held is None and self._is_on(on, one) and begin <= x * PER_M <= end:
+                along = on.origin[:3, :3].T @ self._turn(one)[:, 0]
+                c = math.degrees(math.atan2(along[1], along[0]))
+                seen.append(ProductSeen(one.number, x * PER_M, y * PER_M, z * PER_M, c))
+        return sorted(seen, key=lambda one: -one.x)
+
+    # --- for the twin ---
+
+    def before(self, cycle: int) -> None:
+        """Ahead of the steps of a cycle."""
+        if cycle % LOOK:
+            return
+        qpos, qvel = self._data.qpos, self._data.qvel
+        for belt in self._belts.values():
+            middle = (belt.from_m + belt.to_m) / 2
+            self._model.geom_pos[belt.geom, 0] = middle - qpos[belt.joint]
+        for one in self._products:
+            if not one.number:
+                qpos[one.qpos : one.qpos + 7] = self._park[one.qpos : one.qpos + 7]
+                qvel[one.qvel : one.qvel + 6] = 0
+
+    def after(self, cycle: int, measured: Rows) -> None:
+        """Behind them."""
+        self.cycle = cycle
+        for gripper in self.grippers.values():
+            gripper._step(cycle)
+        for rests in [one for one in self._rests if one.due <= cycle]:
+            self._rests.remove(rests)
+            self._judge(rests)
+        if cycle % LOOK == 0:
+            for one in self._there():
+                if one.held is None:
+                    self._leave(one, cycle)
+        for belt in self._belts.values():
+            if belt.barrier is not None:
+                self._sense(belt, measured)
+
+    # --- inside ---
+
+    def _belt(self, name: str) -> _Belt:
+        if name not in self._belts:
+            raise TaktError(f"the twin has no belt '{name}' (it has {', '.join(self._belts) or 'none'})")
+        return self._belts[name]
+
+    def _numbered(self, number: int) -> _Product:
+        for one in self._there():
+            if one.number == number:
+                return one
+        raise TaktError(f"there is no product {number} in the machine")
+
+    def _there(self) -> Iterator[_Product]:
+        return (one for one in self._products if one.number)
+
+    def _turn(self, one: _Product) -> Array:
+        turn = np.zeros(9)
+        self._mujoco.mju_quat2Mat(turn, self._data.qpos[one.qpos + 3 : one.qpos + 7])
+        return turn.reshape(3, 3)
+
+    def _top(self, one: _Product) -> Array:
+        """m: the middle of its top."""
+        return np.asarray(self._data.qpos[one.qpos : one.qpos + 3] + self._turn(one)[:, 2] * self._half[2])
+
+    def _seen_from(self, belt: _Belt, place: Array) -> Array:
+        return np.asarray(belt.origin[:3, :3].T @ (place - belt.origin[:3, 3]))
+
+    def _is_on(self, belt: _Belt, one: _Product) -> bool:
+        x, y, z = self._seen_from(belt, self._data.qpos[one.qpos : one.qpos + 3])
+        beneath = z - self._half[2] - belt.surface
+        return bool(belt.from_m <= x <= belt.to_m and abs(y) <= belt.half_width and abs(beneath) < 0.002)
+
+    def _place(self, one: _Product, belt: _Belt, x: float, y: float, c: float) -> None:
+        data = self._data
+        at = np.array([x / PER_M, y / PER_M, belt.surface + self._half[2]])
+        data.qpos[one.qpos : one.qpos + 3] = belt.origin[:3, 3] + belt.origin[:3, :3] @ at
+        cos, sin = math.cos(math.radians(c)), math.sin(math.radians(c))
+        turn = belt.origin[:3, :3] @ np.array([[cos, -sin, 0], [sin, cos, 0], [0, 0, 1]])
+        quat = np.zeros(4)
+        self._mujoco.mju_mat2Quat(quat, np.ascontiguousarray(turn).ravel())
+        data.qpos[one.qpos + 3 : one.qpos + 7] = quat
+        data.qvel[one.qvel : one.qvel + 6] = 0
+        data.qvel[one.qvel : one.qvel + 3] = belt.origin[:3, 0] * data.qvel[belt.dof]
+
+    def _wait(self, one: _Product) -> None:
+        """Beside the machine, where nobody sees it."""
+        one.number = 0
+        self._model.geom_rgba[one.geom, 3] = 0
+        self._data.qpos[one.qpos : one.qpos + 7] = self._park[one.qpos : one.qpos + 7]
+        self._data.qvel[one.qvel : one.qvel + 6] = 0
+
+    def _leave(self, one: _Product, cycle: int) -> None:
+        """Products at the end of their belt are taken off; others may have fallen."""
+        place = self._data.qpos[one.qpos : one.qpos + 3]
+        for belt in self._belts.values():
+            x, y, z = self._seen_from(belt, place)
+            on = abs(y) <= belt.half_width and abs(z - self._half[2] - belt.surface) < 0.01
+            if on and x > belt.to_m - self._half[0]:
+                self._forget(one)
+                self._wait(one)
+                return
+        if place[2] < min(self._lowest(), default=-math.inf) - GONE_MM / PER_M:
+            self.fallen.append((one.number, cycle))
+            self._forget(one)
+            self._wait(one)
+
+    def _lowest(self) -> Iterator[float]:
+        return (float(belt.origin[2, 3]) + belt.surface for belt in self._belts.values())
+
+    def _forget(self, one: _Product) -> None:
+        self._rests = [rests for rests in self._rests if rests.product is not one]
+
+    def _weld(self, weld: int, body: int, one: _Product) -> None:
+        """Holds a product at a body as it hangs there now."""
+        data, mujoco = self._data, self._mujoco
+        mujoco.mj_kinematics(self._model, data)
+        turn, back, quat = data.xquat[body], np.zeros(4), np.zeros(4)
+        mujoco.mju_negQuat(back, turn)
+        place = np.zeros(3)
+        mujoco.mju_rotVecQuat(place, data.qpos[one.qpos : one.qpos + 3] - data.xpos[body], back)
+        mujoco.mju_mulQuat(quat, back, data.qpos[one.qpos + 3 : one.qpos + 7])
+        self._model.eq_data[weld, 0:3] = 0
+        self._model.eq_data[weld, 3:6] = place
+        self._model.eq_data[weld, 6:10] = quat
+        data.eq_active[weld] = 1
+
+    def _released(self, one: _Product, cycle: int, lost: str) -> None:
+        index = max(i for i, handled in enumerate(self.handled) if handled.number == one.number)
+        handled = self.handled[index]
+        belt = next((belt for belt in self._belts.values() if self._is_on(belt, one)), None)
+        why = lost or ("" if belt else "put onto no belt")
+        on = belt.name if belt else None
+        self.handled[index] = Handled(
+            handled.number, handled.gripper, handled.gripped, handled.offset, cycle, on, lost=why
+        )
+        if belt is not None:
+            due = cycle + max(1, round(REST_S / self.period_s))
+            self._rests.append(_Rests(one, one.number, index, due, belt, self._carried(belt, one)))
+
+    def _carried(self, belt: _Belt, one: _Product) -> Array:
+        """m: X and Y on the belt as if it stood still."""
+        place = self._seen_from(belt, self._data.qpos[one.qpos : one.qpos + 3])[:2]
+        return np.asarray(place - [self._data.qpos[belt.joint], 0])
+
+    def _judge(self, rests: _Rests) -> None:
+        belt = rests.belt
+        assert belt is not None
+        one, handled = rests.product, self.handled[rests.at]
+        moved = float(np.linalg.norm(self._carried(belt, one) - rests.place)) * PER_M
+        upright = float(belt.origin[:3, 2] @ self._turn(one)[:, 2])
+        self.handled[rests.at] = Handled(
+            handled.number,
+            handled.gripper,
+            handled.gripped,
+            handled.offset,
+            handled.put,
+            handled.belt,
+            moved,
+            math.degrees(math.acos(min(1.0, upright))),
+            handled.lost or ("" if self._is_on(belt, one) else "it fell off the belt"),
+        )
+
+    def _sense(self, belt: _Belt, measured: Rows) -> None:
+        """The light barrier: on while any product is in it. Edges come as late as the product is past it."""
+        assert belt.barrier is not None
+        speed = float(self._data.qvel[belt.dof])
+        past = math.inf  # m that the front of the last product to come is past it, or its end
+        blocked = False
+        for one in self._there():
+            x, y, _ = self._seen_from(belt, self._data.qpos[one.qpos : one.qpos + 3])
+            if one.held is not None or abs(y) > belt.half_width:
+                continue
+            half = float(np.abs(belt.origin[:3, 0] @ self._turn(one)) @ self._half)
+            front, end = x + half - belt.barrier, x - half - belt.barrier
+            if front >= 0 >= end:
+                blocked, past = True, min(past, front)
+            elif end > 0 and not blocked:
+                past = min(past, end)
+        if blocked != belt.blocked:
+            age = min(max(past / speed, 0.0), self.period_s) if speed > 0 and past < math.inf else 0.0
+            if blocked:
+                belt.rises += 1
+                measured["probe_rise_age_s"][belt.row] = age
+            else:
+                belt.falls += 1
+                measured["probe_fall_age_s"][belt.row] = age
+            belt.blocked = blocked
+        measured["touch_probe"][belt.row] = blocked
+        measured["probe_rises"][belt.row] = belt.rises
+        measured["probe_falls"][belt.row] = belt.falls
+
+    def _allowed(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
+        """(n, n): shapes that may touch one another: products and belts."""
+        count = self._model.ngeom
+        allowed = np.zeros((count, count), bool)
+        products = [one.geom for one in self._products]
+        for belt in self._belts.values():
+            allowed[belt.geom, products] = allowed[products, belt.geom] = True
+        return allowed

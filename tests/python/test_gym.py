@@ -1,0 +1,62 @@
+"""PY-23: an environment of gymnasium, checked by gymnasium's own checker."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import warnings
+
+import numpy as np
+import pytest
+import takt
+
+MACHINE = """name: two
+axes:
+  - {name: x, unit: mm, limits: {velocity: 300, acceleration: 3000, jerk: 60000, lower: -100, upper: 100}}
+  - {name: y, unit: mm, limits: {velocity: 300, acceleration: 3000, jerk: 60000}}
+"""
+
+
+def test_gymnasium_checks_it() -> None:
+    """Spaces, seeds, the order of calls: as its own checker wants them."""
+    pytest.importorskip("gymnasium")
+    from gymnasium.utils.env_checker import check_env
+    from takt.gym import ReachEnv
+
+    env = ReachEnv(MACHINE, ["x", "y"], ranges={"y": (0, 50)}, episode_s=1.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warnings.filterwarnings("ignore", message=".*not have a `spec`.*|.*render.*|.*infinity.*")
+        check_env(env, skip_render_check=True)
+    observed, info = env.reset(seed=7)
+    total, ended = 0.0, False
+    for _ in range(40):
+        observed, reward, ended, broken_off, _ = env.step(observed[4:])
+        total += reward
+        if ended or broken_off:
+            break
+    assert ended
+    assert env.engine.axis("x").actual_position == pytest.approx(info["goal"][0], abs=1)
+    assert -10 < total < 0
+    again = [env.reset(seed=7)[0].tolist() for _ in range(2)]
+    assert again[0] == again[1]
+    assert not np.allclose(env.reset(seed=8)[0], again[0])
+    env.close()
+    with pytest.raises(takt.TaktError, match=r"axis y: no range: give ranges"):
+        ReachEnv(MACHINE, ["y"])
+    with pytest.raises(takt.TaktError, match="at least one axis"):
+        ReachEnv(MACHINE, [])
+
+
+def test_without_gymnasium() -> None:
+    program = """
+import sys
+sys.modules["gymnasium"] = None
+import takt
+try:
+    import takt.gym
+except takt.TaktError as error:
+    print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert 'environments need gymnasium, which is not installed: pip install "takt-motion[gym]"' in done.stdout

@@ -1,0 +1,84 @@
+"""PY-24: sweeps on a cluster of Dask distributed: the rows of local processes, gone on with, and what is not there."""
+
+from __future__ import annotations
+
+import csv
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from takt.sweep import SweepError, sweep
+
+MACHINE = """name: press
+axes:
+  - {name: ram, unit: mm, limits: {velocity: 400, acceleration: 8000, jerk: 800000}}
+"""
+SCENARIO = '''"""The ram goes down."""
+import os, signal
+from takt import expect
+def scenario(session, velocity=100.0, dies=0):
+    ram = session.axis("ram")
+    ram.power().wait()
+    ram.move_absolute(position=10, velocity=velocity).wait()
+    if dies:
+        os.kill(os.getpid(), signal.SIGKILL)
+def verify(recording):
+    expect.within_limits(recording, "ram")
+'''
+
+
+def rows(table: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(table.open(encoding="utf-8")))
+
+
+def test_on_two_workers_of_a_cluster(tmp_path: Path) -> None:
+    """The same rows as from one process here, in two parts."""
+    distributed = pytest.importorskip("distributed")
+    file = tmp_path / "press.py"
+    file.write_text(SCENARIO)
+    (tmp_path / "machine.yaml").write_text(MACHINE)
+    grid = ["velocity=50:300:12"]
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path / "dask")
+    ) as cluster:
+        there = tmp_path / "there"
+        first = sweep(file, grid, directory=there, scheduler=cluster.scheduler_address, stop_after=5)
+        assert (first.made, first.done) == (5, False)
+        result = sweep(file, grid, directory=there, scheduler=cluster.scheduler_address)
+        assert (result.made, result.done, result.repeats) == (7, True, True)
+    here = sweep(file, grid, directory=tmp_path / "here", workers=1)
+    assert rows(result.table) == rows(here.table)
+    assert all(row["passed"] == "1" for row in rows(result.table))
+    with pytest.raises(SweepError, match="--workers or --scheduler"):
+        sweep(file, grid, directory=tmp_path / "x", workers=1, scheduler="tcp://127.0.0.1:1")
+
+
+def test_schedulers_that_do_not_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("distributed")
+    monkeypatch.setattr("takt.sweep.cluster.CONNECT_S", 0.3)
+    file = tmp_path / "press.py"
+    file.write_text(SCENARIO)
+    (tmp_path / "machine.yaml").write_text(MACHINE)
+    for address in ("tcp://127.0.0.1:1", "nonsense://"):
+        with pytest.raises(SweepError, match="no scheduler of Dask answers at " + address):
+            sweep(file, ["velocity=50:300:3"], directory=tmp_path / "x", scheduler=address)
+
+
+def test_without_dask(tmp_path: Path) -> None:
+    file = tmp_path / "press.py"
+    file.write_text(SCENARIO)
+    (tmp_path / "machine.yaml").write_text(MACHINE)
+    program = f"""
+import sys
+sys.modules["distributed"] = None
+from takt.cli import main
+sys.exit(main(["sweep", {str(file)!r}, "--grid", "velocity=50:300:3", "--scheduler", "tcp://127.0.0.1:1"]))
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode != 0
+    assert (
+        'needs Dask distributed, which is not installed: pip install "takt-motion[cluster]"'
+        in done.stdout + done.stderr
+    )
+    assert not (tmp_path / "sweeps").exists()
