@@ -193,6 +193,35 @@ def test_what_is_wrong_at_start(tmp_path: Path, capsys: pytest.CaptureFixture[st
             )
 
 
+def test_process_data_that_cannot_be_mapped(tmp_path: Path) -> None:
+    """AX-87: what a drive maps by itself will do, if all that is needed is in it; else one line says what is not."""
+    text = machine(new_url(), 1)
+    with emulated(text, tmp_path) as emulation:
+        tell(emulation, "fix 1")
+        served = bus_of(text)
+        assert (served._slaves[0].outputs.text(), served._slaves[0].inputs.size) == ("0x6040:0 0x607A:0", 6)
+        served.close()
+        assert wrong(machine(new_url(), 1, axis_keys="drive: {mode: cyclic_velocity}")) == (
+            f"{BUS}: x1: slave 1: its process data are 0x6040:0 0x607A:0; expected 0x60FF (target velocity) among "
+            f"them; they cannot be changed: 0x1C12:0 cannot be written with 0: SDO abort 0x06010002, the object can only "
+            f"be read"
+        )
+
+
+def test_slaves_that_are_no_drives(tmp_path: Path) -> None:
+    """AX-87: one between the drives does not disturb; on the place of a drive it is refused."""
+    text = machine(new_url(), 2).replace("position: 2", "position: 3")
+    with emulated(text, tmp_path):
+        served = bus_of(text)
+        assert [one.state for one in served._slaves] == [OPERATIONAL] * 2
+        assert len(served._others) == 1
+        served.close()
+        keys = 'product: "0x54414B54"'
+        assert wrong(machine(new_url(), 2, drive_keys=keys)) == (
+            f"{BUS}: x2: slave 2: expected product code 0x54414B54, found 0x1"
+        )
+
+
 def test_distributed_clocks(tmp_path: Path) -> None:
     """AX-87: dc: true; clocks are compared, SYNC0 is set, and all get into operation."""
     text = machine(new_url(), 3, bus_keys="dc: true")
