@@ -395,14 +395,14 @@ class EthercatBus(drive.Bus):
             self._wire.await_frame(within_s)
         counter = master.receive_processdata(max(50, round(1e6 * (end_s - time.monotonic()))))
         self._counter = max(0, counter)
-        if counter <= 0:
+        if counter < 0:
             self.lost_frames += 1
             self._lost_in_a_row += 1
             if self._lost_in_a_row == SILENT:
                 self._look.set()
         else:
             self._lost_in_a_row = 0
-            if self._told_silent:
+            if self._told_silent or not counter:  # 0: it has come back, and nobody has taken part
                 self._look.set()
         return self._counter
 
