@@ -3,6 +3,8 @@ engine; and what goes wrong there."""
 
 from __future__ import annotations
 
+import os
+import random
 import signal
 import struct
 import time
@@ -13,10 +15,11 @@ import pytest
 import takt
 from buses import eventually
 from machines import new_url, running
+from takt import drive
 from takt.cli import main
 from takt.drives.ethercat_link import OPERATIONAL, Wire
 from takt.errors import TaktError
-from wires import BUS, DRIVES, MASTER, bus_of, emulated, machine, own_network, run, tell
+from wires import BUS, DRIVES, MASTER, PERIOD_S, bus_of, emulated, machine, own_network, run, tell
 
 pytest.importorskip("pysoem")
 
@@ -193,6 +196,35 @@ def test_what_is_wrong_at_start(tmp_path: Path, capsys: pytest.CaptureFixture[st
             )
 
 
+def test_process_data_that_cannot_be_mapped(tmp_path: Path) -> None:
+    """AX-87: what a drive maps by itself will do, if all that is needed is in it; else one line says what is not."""
+    text = machine(new_url(), 1)
+    with emulated(text, tmp_path) as emulation:
+        tell(emulation, "fix 1")
+        served = bus_of(text)
+        assert (served._slaves[0].outputs.text(), served._slaves[0].inputs.size) == ("0x6040:0 0x607A:0", 6)
+        served.close()
+        assert wrong(machine(new_url(), 1, axis_keys="drive: {mode: cyclic_velocity}")) == (
+            f"{BUS}: x1: slave 1: its process data are 0x6040:0 0x607A:0; expected 0x60FF (target velocity) among "
+            f"them; they cannot be changed: 0x1C12:0 cannot be written with 0: SDO abort 0x06010002, the object can "
+            f"only be read"
+        )
+
+
+def test_slaves_that_are_no_drives(tmp_path: Path) -> None:
+    """AX-87: one between the drives does not disturb; on the place of a drive it is refused."""
+    text = machine(new_url(), 2).replace("position: 2", "position: 3")
+    with emulated(text, tmp_path):
+        served = bus_of(text)
+        assert [one.state for one in served._slaves] == [OPERATIONAL] * 2
+        assert len(served._others) == 1
+        served.close()
+        keys = 'product: "0x54414B54"'
+        assert wrong(machine(new_url(), 2, drive_keys=keys)) == (
+            f"{BUS}: x2: slave 2: expected product code 0x54414B54, found 0x1"
+        )
+
+
 def test_distributed_clocks(tmp_path: Path) -> None:
     """AX-87: dc: true; clocks are compared, SYNC0 is set, and all get into operation."""
     text = machine(new_url(), 3, bus_keys="dc: true")
@@ -254,3 +286,43 @@ def test_an_empty_wire(capsys: pytest.CaptureFixture[str]) -> None:
     assert capsys.readouterr().err == f"{BUS}: 0 slaves\n"
     assert main(["drives", "emulate", "--bus", f"ethercat:{DRIVES}x"]) == 2
     assert f"there is no interface {DRIVES}x" in capsys.readouterr().err
+
+
+def test_whatever_breaks_it_comes_back(tmp_path: Path) -> None:
+    """AX-87: cables, supplies, faults and losses at random, by the clock; with all mended every drive is in operation
+    and can be switched on. TAKT_LONG: a minute of it."""
+    text = machine(new_url(), 4, bus_keys="heartbeat_s: 0.05")
+    chance = random.Random(11)
+    seconds = 60.0 if os.environ.get("TAKT_LONG") else 2.0
+    said: list[str] = []
+    with emulated(text, tmp_path) as emulation:
+        served = bus_of(text, said.append)
+        point = drive.SetPoint(enable=True, period_s=PERIOD_S)
+
+        def live(seconds: float, point: drive.SetPoint) -> set[str]:
+            """The axes that are ready in the end."""
+            ready: set[str] = set()
+            end_s = time.monotonic() + seconds
+            while time.monotonic() < end_s:
+                found = served.exchange(dict.fromkeys(served.axes, point), real_time=True)
+                ready = {axis for axis, one in found.items() if one and one.drive_ready}
+                time.sleep(0.001)
+            return ready
+
+        end_s = time.monotonic() + seconds
+        while time.monotonic() < end_s:
+            k = chance.randrange(1, 5)
+            verb = chance.choice(
+                [f"cut {k}", "join all", f"power {k} off", f"power {k} on", f"fault {k} 0x3210", "lose 20", "lose 0"]
+            )
+            tell(emulation, verb)
+            live(chance.uniform(0.01, 0.4), chance.choice([point, drive.SetPoint()]))
+        for mend in ("join all", "lose 0", "power all on"):
+            tell(emulation, mend)
+
+        def all_ready() -> bool:
+            live(0.2, drive.SetPoint())
+            return live(0.5, point) == set(served.axes)
+
+        assert eventually(all_ready, 30), (said[-10:], [one.state for one in served._slaves])
+        served.close()

@@ -27,6 +27,7 @@ from takt.drives.ethercat_link import (
     OPERATIONAL,
     PRE_OPERATIONAL,
     SAFE_OPERATIONAL,
+    STATION_ADDRESS,
     Sdo,
     Wire,
     state_text,
@@ -322,7 +323,7 @@ class EthercatBus(drive.Bus):
                     )
             with contextlib.suppress(Exception):
                 one.slave.set_watchdog("processdata", watchdog_ms)
-            for at, length in (FMMUS, MAILBOX_MANAGERS, DATA_MANAGERS, (0x0400, 2), (0x0420, 2)):
+            for at, length in ((STATION_ADDRESS, 2), FMMUS, MAILBOX_MANAGERS, DATA_MANAGERS, (0x0400, 2), (0x0420, 2)):
                 one.registers[at] = self._asked(one, at, length)
         if master.state_check(SAFE_OPERATIONAL, round(1e6 * STATE_WITHIN_S)) != SAFE_OPERATIONAL:
             raise TaktError(self._not_in(SAFE_OPERATIONAL))
@@ -394,14 +395,14 @@ class EthercatBus(drive.Bus):
             self._wire.await_frame(within_s)
         counter = master.receive_processdata(max(50, round(1e6 * (end_s - time.monotonic()))))
         self._counter = max(0, counter)
-        if counter <= 0:
+        if counter < 0:
             self.lost_frames += 1
             self._lost_in_a_row += 1
             if self._lost_in_a_row == SILENT:
                 self._look.set()
         else:
             self._lost_in_a_row = 0
-            if self._told_silent:
+            if self._told_silent or not counter:  # 0: it has come back, and nobody has taken part
                 self._look.set()
         return self._counter
 
@@ -515,8 +516,8 @@ class EthercatBus(drive.Bus):
             if not one.told_lost:
                 one.told_lost = True
                 self._say(f"{one.named} is not heard any more on {self.bus_name}: cable, supply, or the slave itself")
-            if one.slave.recover(REGISTERS_US) <= 0:
-                return
+            self._wire.give_address(one.position, one.registers[STATION_ADDRESS])
+            time.sleep(0.001)
             state = self._state_of(one) or 0
             if state == 0:
                 return
@@ -536,6 +537,12 @@ class EthercatBus(drive.Bus):
             self._to(one, INIT)
             self._write(one, MAILBOX_MANAGERS[0])
             self._to(one, PRE_OPERATIONAL)
+            product = one.sdo.find(0x1018, 2)
+            if product not in (None, one.slave.id):
+                raise TaktError(
+                    f"{self.bus_name}: {one.named}: expected product code 0x{one.slave.id:X} as before, found "
+                    f"0x{product:X}"
+                )
             self._set_up(one)
             for at in (DATA_MANAGERS[0], FMMUS[0], 0x0400, 0x0420):
                 self._write(one, at)

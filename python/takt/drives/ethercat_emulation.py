@@ -317,7 +317,7 @@ class EthercatEmulation(Commanded):
     nodes: by position, from 1."""
 
     called = "slave"
-    help = HELP + " | lose PERCENT"
+    help = HELP + " | lose PERCENT | fix NODE"
 
     def __init__(self, interface: str, slaves: Sequence[EmulatedSlave], say: Callable[[str], None]) -> None:
         super().__init__(dict(enumerate(slaves, start=1)), say)
@@ -399,13 +399,17 @@ class EthercatEmulation(Commanded):
         self.line.changed()
 
     def more(self, verb: str, rest: Sequence[str]) -> str | None:
-        if verb != "lose":
+        if verb == "lose":
+            percent = float(rest[0])
+            if not 0 <= percent <= 100:
+                raise ValueError(percent)
+            self.lost_share = percent / 100
+        elif verb == "fix":
+            for node in self._which(rest[0]):
+                node.fixed_map = True
+        else:
             return None
-        percent = float(rest[0])
-        if not 0 <= percent <= 100:
-            raise ValueError(percent)
-        self.lost_share = percent / 100
-        return f"lose {rest[0]}: done"
+        return f"{verb} {rest[0]}: done"
 
 
 def emulated_slaves(

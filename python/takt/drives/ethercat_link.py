@@ -24,6 +24,8 @@ MISSING: Final = "EtherCAT needs the package pysoem: pip install 'takt-motion[et
 QUESTIONS: Final = 3  # without an answer
 FRAME_US: Final = 20_000  # how long a frame may be under way before there are cycles: busy hosts take their time
 LISTENED_S: Final = 0.05  # for another master
+APWR, STATION_ADDRESS = 2, 0x0010  # a command, and the register that it writes
+OWN_INDEX: Final = 0x7F  # of a frame; the package has 16 of them and takes no notice of others
 GET_FLAGS: Final = 0x8913  # of an interface, by ioctl
 GET_LINK, LINKED_WITH = 18, 5  # of rtnetlink
 ALIAS_WORD: Final = 4  # of the EEPROM
@@ -182,6 +184,16 @@ class Wire:
         except Exception as error:
             raise TaktError(f"{self.bus}: the slaves cannot be set up: {_line(error)}") from None
         return list(self.master.slaves) if count > 0 else []
+
+    def give_address(self, position: int, address: bytes) -> None:
+        """To the slave at a position, which has lost it with its supply. The package does that only for slaves without
+        any address, and leaves another one behind where a frame gets lost; so this is a frame of our own."""
+        datagram = (
+            struct.pack("<BBHHHH", APWR, OWN_INDEX, 1 - position & 0xFFFF, STATION_ADDRESS, 2, 0) + address + b"\0\0"
+        )
+        head = b"\xff" * 6 + b"\x02" + bytes(5) + ETHERTYPE.to_bytes(2, "big")
+        with ethernet_socket(self.interface) as aside:
+            aside.send((head + struct.pack("<H", len(datagram) | 0x1000) + datagram).ljust(60, b"\0"))
 
     def alias(self, slave: Any) -> int:
         """0: none."""
