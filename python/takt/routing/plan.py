@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from takt.session import Session
 
 EFFORT = 20_000  # arrangements looked at before a plan is given up
-ENOUGH = 60_000  # for one mover, where there is a plan by rules already; for more, as much less each ...
+ENOUGH = 20_000  # for one mover, where there is a plan by rules already; for more, as much less each ...
 LEAST_EFFORT = 500  # ... but for all together this
 MOST_REORDERED = 250  # hops in a plan that is looked through for a better order; the time grows with their square
 DYNAMICS = ("velocity", "acceleration", "deceleration", "jerk")
