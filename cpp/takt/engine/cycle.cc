@@ -449,8 +449,14 @@ void StepBelts(World& w, std::span<const std::uint32_t> belts) {
   }
 }
 
+// Whether anything of StepMovers is there.
+bool HasPlanar(const World& w) {
+  return !w.movers.empty() || !w.tracks.states.empty() || !w.planar_groups.states.empty();
+}
+
 // All movers: behind the axes that they follow, before those that follow them.
 void StepMovers(World& w) {
+  if (!HasPlanar(w)) return;
   RefreshStreets(w);
   ShowAxesToMovers(w);
   ShowMovers(w);  // commands have changed some
@@ -497,13 +503,16 @@ void Move(World& w) noexcept {
 }
 
 void Control(World& w) noexcept {
+  const auto publish = [&w](std::size_t i) { axis::Publish(w.axis_params[i], w.axis_states[i], w.axis_outputs[i]); };
+  // An axis publishes while its state is at hand: of a thousand, those of all do not fit into the nearer cache.
   bool sound = true;
   for (std::size_t i = 0; i < w.axis_states.size(); ++i) {
     sound &= axis::Control(ContextOf(w, i), w.axis_states[i], w.servo_outputs[i]);
+    publish(i);
   }
-  if (!sound) OpenAllLoops(w);
-  for (std::size_t i = 0; i < w.axis_states.size(); ++i) {
-    axis::Publish(w.axis_params[i], w.axis_states[i], w.axis_outputs[i]);
+  if (!sound) {
+    OpenAllLoops(w);
+    for (std::size_t i = 0; i < w.axis_states.size(); ++i) publish(i);
   }
   for (const std::uint32_t i : w.simulated) w.axis_outputs[i].true_position = w.servo_states[i].load_position;
   for (const HeardDrive& drive : w.drives) w.axis_outputs[drive.axis].true_position = w.true_positions[drive.axis];

@@ -185,15 +185,16 @@ struct Engine::Impl {
   }
 
   void ApplyFrom(SpscQueue<Command>& queue, std::size_t at_most) noexcept {
-    Command command;
-    for (std::size_t i = 0; i < at_most && queue.TryPop(command); ++i) {
-      if (shutting_down) {
-        world.feedback.Report({command.ticket, world.cycle.count, FeedbackState::kError, false, ErrorId::kShutdown, 0});
-      } else if (command.expires_ns != 0 && now_ns > command.expires_ns && !LetsGo(command)) {
-        world.feedback.Report({command.ticket, world.cycle.count, FeedbackState::kError, false, ErrorId::kTooOld, 0});
-      } else {
-        ApplyOne(command);
-      }
+    for (std::size_t i = 0; i < at_most && queue.TryPop(taken); ++i) Admit(taken);
+  }
+
+  void Admit(const Command& command) noexcept {
+    if (shutting_down) {
+      world.feedback.Report({command.ticket, world.cycle.count, FeedbackState::kError, false, ErrorId::kShutdown, 0});
+    } else if (command.expires_ns != 0 && now_ns > command.expires_ns && !LetsGo(command)) {
+      world.feedback.Report({command.ticket, world.cycle.count, FeedbackState::kError, false, ErrorId::kTooOld, 0});
+    } else {
+      ApplyOne(command);
     }
   }
 
@@ -287,6 +288,8 @@ struct Engine::Impl {
   SpscQueue<DriveSetPoint> set_points;
   SpscQueue<DriveSample> drive_samples;
   SpscQueue<DriveEntry> drive_journal;
+
+  Command taken;  // from a queue, by the cycle: made once, as it is large
 
   std::uint64_t figures_divisor;
   std::uint64_t feedback_dropped = 0;  // by the queue
