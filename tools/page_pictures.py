@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -30,6 +31,8 @@ FLAGS = (
     "--headless --no-sandbox --disable-gpu --disable-background-networking --disable-component-update --disable-sync "
     "--no-first-run"
 ).split()
+
+COMMANDED = "+commands"  # the example with a page that may command
 
 # Name of the picture: example, or page and the folder of its files, dark, what the address says, s of engine time from
 # the beginning of the scenario; what is done on the page before the picture is taken.
@@ -71,6 +74,19 @@ PICTURES: dict[str, tuple[str, bool, str, float, str]] = {
         }""",
     ),
     "view_cams": ("flying_saw", False, "tab=cams", 9.3, ""),
+    "view_cam_edit": (
+        "flying_saw" + COMMANDED,
+        False,
+        "tab=cams",
+        6.5,
+        """() => {
+            const [card] = window.takt.cams.cards;
+            card.buttons.begin.click();
+            const { edit } = card;
+            const [x, y] = edit.knots[3];
+            edit.drag(3, x - 12, y - 25);
+        }""",
+    ),
 }
 
 # Of the report of a run that failed: dark, what is done on the page before the picture is taken.
@@ -109,8 +125,16 @@ SHOWN = """() => {
 def machine_of(name: str) -> Iterator[Path]:
     """The folder with the machine and the scenario of an example, or of a page."""
     page, _, folder = name.partition("/")
-    if not folder:
+    if not folder and not name.endswith(COMMANDED):
         yield ROOT / "python" / "examples" / name
+        return
+    if not folder:
+        with tempfile.TemporaryDirectory() as directory:
+            copy = Path(directory) / "machine"
+            shutil.copytree(ROOT / "python" / "examples" / name.removesuffix(COMMANDED), copy)
+            with (copy / "machine.yaml").open("a", encoding="utf-8") as file:
+                file.write("view: {commands: true}\n")
+            yield copy
         return
     with tempfile.TemporaryDirectory() as directory:
         page_blocks.unpack(ROOT / "docs" / f"{page}.md", Path(directory))

@@ -24,12 +24,13 @@ from hypothesis import strategies as st
 from machines import machine_with, new_url, running
 from pages import Client, served, start_server
 from takt import msgs
+from takt.cam import Table
 from takt.network import open_network
 from takt.tables import KINDS
 from takt.view.feed import Tap
 from takt.view.layout import Layout
 from takt.view.ledger import Ledger
-from takt.view.machine import Machine
+from takt.view.machine import Machine, drawn
 from takt.view.made import MadeCams
 from takt.view.protocol import MOST_SIGNALS, RequestError, frame, parse
 from takt.view.ring import Ring
@@ -309,6 +310,36 @@ def test_a_frame_is_aligned() -> None:
         data = frame({"t": text}, [np.array([1.5, math.nan]), np.arange(3)])
         assert len(data) % 8 == 0
         np.testing.assert_array_equal(np.frombuffer(data[-40:]), [1.5, math.nan, 0, 1, 2])
+
+
+def test_cams_are_edited_at_points_and_ends_of_segments() -> None:  # CAM-88
+    def knots(**cam: Any) -> list[list[float]] | None:
+        known: list[list[float]] | None = drawn(Table.from_dict({"name": "c", **cam}))["knots"]
+        return known
+
+    law = {"law": "modified_sine"}  # three pieces
+    segments = [
+        {"to": {"x": 90, "y": 40}, **law},
+        {"to": {"x": 120, "y": 40}, "law": "dwell"},
+        {"to": {"x": 360, "y": 0}, **law},
+    ]
+    found = knots(cyclic=True, segments=segments)
+    assert found is not None
+    assert [knot[:2] for knot in found] == [[0, 0], [90, 40], [120, 40], [360, 0]]
+    np.testing.assert_allclose([knot[2:] for knot in found], 0, atol=1e-12)
+    points = [{"x": x, "y": y} for x, y in ((0, 0), (90, 10), (200, 5), (360, 0))]
+    found = knots(cyclic=True, points=points)
+    assert found is not None
+    assert found[0][1:] == found[-1][1:]
+    again = Table.from_dict(
+        {"name": "c", "cyclic": True, "points": [dict(zip("xyva", one, strict=True)) for one in found]}
+    )
+    x = np.linspace(0, 360, 200)
+    np.testing.assert_allclose(
+        again.at(x).y, Table.from_dict({"name": "c", "cyclic": True, "points": points}).at(x).y, atol=1e-9
+    )
+    assert knots(interpolation="linear", points=points) is None
+    assert knots(points=[{"x": i, "y": i * i} for i in range(61)]) is None
 
 
 @pytest.mark.parametrize("example", sorted(path.parent.name for path in EXAMPLES.glob("*/machine.yaml")))

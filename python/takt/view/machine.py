@@ -30,6 +30,7 @@ from takt.view.status import LIVE
 CAM_POINTS = 400
 MOST_JOINTS = 4000
 MOST_KNOTS = 60  # of a cam that can be edited
+MOST_PIECES = 9  # of a law, and more
 SLOPE_STEP = 1e-6  # of the largest slope, what rounding leaves
 TRACK_STEP = 10.0  # mm
 
@@ -252,9 +253,15 @@ def drawn(table: Any) -> dict[str, Any]:
 
 
 def _knots(table: Any) -> list[list[float]] | None:
-    """Where the page lets a cam be dragged: [x, y, y', y''] at each joint and at both ends; None: they are too many,
-    or the slope has steps, as that of straight lines between points has."""
-    x = np.unique([table.begin, *table.joints, table.end])
+    """Where the page lets a cam be dragged: [x, y, y', y''] at each point, or at both ends of each segment, not where
+    pieces of one law meet; None: they are too many, or the slope has steps, as that of straight lines between points
+    has."""
+    if len(table.joints) > MOST_PIECES * MOST_KNOTS:
+        return None
+    source = json.loads(table.source) if isinstance(table.source, str) else table.source
+    ends = [point["x"] for point in source.get("points") or []]
+    ends += [segment["to"]["x"] for segment in source.get("segments") or []]
+    x = np.unique([table.begin, *ends])
     if len(x) > MOST_KNOTS:
         return None
     y, v, a, _ = (values.copy() for values in table.at(x))

@@ -130,12 +130,14 @@ export class Cams {
 
   draw() {
     const { model } = this;
-    const busy = new Set();
+    // Before anything is drawn: what is hidden leaves its room to the others.
+    const modules = this.cards.filter((card) => card.module).map((card) => this.numbersOf(card.of));
+    const busy = new Set(modules.flatMap(({ running, next }) => [this.cam(running), this.cam(next)]));
+    for (const card of this.cards) if (!card.module) card.node.hidden = busy.has(card.of);
     for (const card of this.cards) {
       if (card.module) {
         const numbers = this.numbersOf(card.of);
         const [cam, next] = [this.cam(numbers.running), this.cam(numbers.next)];
-        busy.add(cam).add(next);
         const row = model.rows[card.of.index];
         const then = numbers.next ? `next: ${this.nameOf(numbers.next)}` : "";
         put(card.words, [this.nameOf(numbers.running), then, row?.state, row?.more, row?.waits].filter(Boolean).join("  ·  "));
@@ -148,7 +150,6 @@ export class Cams {
         if (card.edit) this.putIntoForce(card);
         this.curves(card, cam, x, y, card.edit?.cam ?? next, measured);
       } else {
-        card.node.hidden = busy.has(card.of);
         if (card.node.hidden) continue;
         put(card.words, card.of.cyclic ? "cyclic" : "");
         this.curves(card, card.of, NaN, NaN, null, NaN);
