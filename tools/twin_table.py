@@ -22,7 +22,7 @@ HEAD = (
     "| machine | takes | tool: twin, kinematics | tool: off its set pose, twin | servo | following error, twin | servo "
     "| torque | products: beside the tool, moved | verdicts |\n|---|---|---|---|---|---|---|---|---|---|\n"
 )
-BEGIN, END = "torques in Nm, as rms / largest.\n", "\nThe twin has found"
+BEGIN, END = "how far they moved afterwards, at most.\n", "\nThe twin has found"
 
 
 def pair(values: tuple[float, float] | None) -> str:
