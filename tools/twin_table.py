@@ -15,17 +15,22 @@ from takt import _core, read_machine
 from takt.ready import ready_machines
 from takt.scenario import load_scenario
 from takt.twin import command
+from takt.twin.judging import ProductFigures
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "twin.md"
 HEAD = (
     "| machine | takes | tool: twin, kinematics | tool: off its set pose, twin | servo | following error, twin | servo "
-    "| torque | verdicts |\n|---|---|---|---|---|---|---|---|---|\n"
+    "| torque | products: beside the tool, moved | verdicts |\n|---|---|---|---|---|---|---|---|---|---|\n"
 )
-BEGIN, END = "torques in Nm, as rms / largest.\n", "\nThe twin has found"
+BEGIN, END = "how far they moved afterwards, at most.\n", "\nThe twin has found"
 
 
 def pair(values: tuple[float, float] | None) -> str:
     return "" if values is None else f"{values[0]:.2g} / {values[1]:.2g}"
+
+
+def products(figures: ProductFigures | None) -> str:
+    return "" if figures is None else f"{figures.put}: {figures.beside[1]:.2g}, {figures.moved[1]:.2g}"
 
 
 def worst(pairs: list[tuple[float, float] | None]) -> tuple[float, float] | None:
@@ -40,16 +45,18 @@ def row(name: str, file: Path) -> str:
     failed = sorted((v for v in ran.outcome.verdicts if not v.passed), key=lambda v: v.when_s or 0.0)
     count = len(failed) + (ran.outcome.assertion is not None)
     said = f"{count} failed, first {failed[0].title}: {failed[0].sentence}" if failed else ran.outcome.complaint
-    peak = max(judged.axes, key=lambda axis: axis.torque[1] / axis.max_torque)
+    judged_axes = [axis for axis in judged.axes if axis.unit == "deg"]  # those of the mechanisms
+    peak = max(judged_axes, key=lambda axis: axis.torque[1] / axis.max_torque)
     cells = [
         name,
         f"{ran.outcome.recording.duration_s:.1f} s",
         pair(worst([tool.agreement for tool in judged.tools])),
         pair(worst([tool.off for tool in judged.tools])),
         pair(worst([tool.servo_off for tool in judged.tools])),
-        pair(worst([axis.following for axis in judged.axes])),
-        pair(worst([axis.servo for axis in judged.axes])),
+        pair(worst([axis.following for axis in judged_axes])),
+        pair(worst([axis.servo for axis in judged_axes])),
         f"{pair(peak.torque)} of {peak.max_torque:g}",
+        products(judged.products),
         said or "all passed",
     ]
     return f"| {' | '.join(cells)} |\n"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -52,6 +53,28 @@ def test_on_two_workers_of_a_cluster(tmp_path: Path) -> None:
     assert all(row["passed"] == "1" for row in rows(result.table))
     with pytest.raises(SweepError, match="--workers or --scheduler"):
         sweep(file, grid, directory=tmp_path / "x", workers=1, scheduler="tcp://127.0.0.1:1")
+
+
+@pytest.mark.skipif(not os.environ.get("TAKT_LONG"), reason="workers are started again and again: TAKT_LONG=1")
+def test_runs_in_which_workers_die(tmp_path: Path) -> None:
+    """They have the reason in their rows; the others are made."""
+    distributed = pytest.importorskip("distributed")
+    file = tmp_path / "press.py"
+    file.write_text(SCENARIO)
+    (tmp_path / "machine.yaml").write_text(MACHINE)
+    import dask
+
+    with (
+        dask.config.set({"distributed.scheduler.allowed-failures": 0}),
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path / "dask")
+        ) as cluster,
+    ):
+        grid = ["velocity=50,300", "dies=0,1"]
+        result = sweep(file, grid, directory=tmp_path / "there", scheduler=cluster.scheduler_address)
+    for row in rows(result.table):
+        assert row["passed"] == str(1 - int(row["dies"])), row
+        assert ("no result: its worker ended again and again" in row["failed"]) == (row["dies"] == "1")
 
 
 def test_schedulers_that_do_not_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

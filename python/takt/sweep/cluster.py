@@ -86,6 +86,11 @@ class Cluster:
                 done = [min(pending, key=lambda future: pending[future])]
             for future in done:
                 span = pending.pop(future)
+                if future.status == "error" and span[1] - span[0] > 1:  # which of them it was is not known
+                    for number in range(*span):
+                        one = client.submit(make, self._job, self._design, number, number + 1, pure=False)
+                        pending[one] = (number, number + 1)
+                    continue
                 for row in self._rows(future, span, time.monotonic() - heard > self._timeout_s * each):
                     rows[row["run"]] = row
             while (found := rows.pop(oldest, None)) is not None:

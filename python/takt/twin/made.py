@@ -19,6 +19,7 @@ PRODUCTS = 1 << 29  # and that of products
 GROUPS = 29
 PARK_M = (0.0, 50.0, 0.0)  # where products wait that are not in the machine, and one from another
 PARK_STEP_M = 1.0
+UNSEEN = 'rgba="0 0 0 0" contype="0" conaffinity="0"'  # what is there for its mass alone
 TIP = 1.0  # mm between a cup and what it hangs from
 SLIDES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
 TURNS = {"a": (1, 0, 0), "b": (0, 1, 0), "c": (0, 0, 1)}
@@ -158,9 +159,13 @@ def _cup(made: Made, group: Mapping[str, Any], told: Mapping[str, Any]) -> str:
     at = _metres((tool["x"], tool["y"], tool["z"] + back * gripper["length"] / 2))
     name = f"{group['name']}.gripper"
     made.solids.append(name)
-    return (
+    load = ""
+    if payload := told.get("payload", 0):
+        point = _metres((tool["x"], tool["y"], tool["z"]))
+        load = f'<geom type="sphere" size="0.015" pos="{point}" mass="{payload!r}" {UNSEEN}/>'
+    return load + (
         f'<geom name={quoteattr(name)} type="cylinder" size="{gripper["radius"] / 1000!r} {gripper["length"] / 2000!r}"'
-        f' pos="{at}" mass="{told["payload"] or 0.001!r}" rgba=".9 .6 .1 1" contype="0" conaffinity="{ENVIRONMENT}"/>'
+        f' pos="{at}" mass="0" rgba=".9 .6 .1 1" contype="0" conaffinity="{ENVIRONMENT}"/>'
     )
 
 
@@ -288,10 +293,13 @@ def _delta(
     # Moved onto the world by its free joint, which MuJoCo allows there only: see Twin, which assembles the chain.
     body = f"{name}.platform"
     made.solids.append(body)
+    disc = f'type="cylinder" size="{max(platform, 0.01)!r} {thick!r}"'
+    # Its mass is where the rods are, wherever its shape is.
     made.world.append(
         f"<body name={quoteattr(body)}><freejoint name={quoteattr(body)}/>"
-        f'<geom name={quoteattr(body)} type="cylinder" size="{max(platform, 0.01)!r} {thick!r}" pos="0 0 {height!r}"'
-        f' mass="{told["platform_mass"]!r}" rgba=".8 .2 .2 1" {_contacts(number)}/>{sites}{tool}</body>\n'
+        f'<geom {disc} mass="{told["platform_mass"]!r}" {UNSEEN}/>'
+        f'<geom name={quoteattr(body)} {disc} pos="0 0 {height!r}" mass="0" rgba=".8 .2 .2 1" {_contacts(number)}/>'
+        f"{sites}{tool}</body>\n"
     )
     return arms
 
