@@ -9,7 +9,7 @@ gymnasium is an extra: pip install "takt-motion[gym]".
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -28,7 +28,7 @@ Floats = npt.NDArray[np.float32]
 MOST = 2.0  # of a position or a speed, as shares of range and limit: what is observed stays within
 
 
-class ReachEnv(gymnasium.Env):  # type: ignore[misc]
+class ReachEnv(gymnasium.Env[Floats, Floats]):
     """Axes that are to reach places.
 
     An action says where each axis is to go until the next one, as a share of its range from -1 to 1. Observed are, for
@@ -43,7 +43,7 @@ class ReachEnv(gymnasium.Env):  # type: ignore[misc]
     within: share of the range at which a place is reached.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": []}
+    metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012 (as gymnasium declares it)
 
     def __init__(
         self,

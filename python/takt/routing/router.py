@@ -584,7 +584,7 @@ def router_for(
         raise RoutingError("movers are on their way: other options can be given when they are there")
     made = SurfaceRouter(session, **options)
     if known is not None:
-        session._programs.remove(known.scan)
+        session._programs[:] = [program for program in session._programs if program.scan != known.scan]
     session._routers[number] = made
     return made
 
