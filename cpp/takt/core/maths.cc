@@ -220,6 +220,7 @@ std::pair<int, double> Split(double x) {
 }  // namespace
 
 SineCosine SinCos(double x) noexcept {
+  if (x == 0) return {x, 1};  // most poses are not turned about all axes
   const Reduced r = Reduce(x);
   const double s = Sine(r), c = Cosine(r);
   switch (r.quadrant & 3) {

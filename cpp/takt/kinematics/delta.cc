@@ -17,19 +17,24 @@ struct Arm {
   double lever = 0;  // lower · along, mm²: 0 where upper and lower arm are in line
 };
 
-Vector Knee(const Delta& delta, std::size_t i, double angle) {
-  const DeltaLengths& l = delta.lengths;
-  const auto [sine, cosine] = maths::SinCos(angle);
-  const double radius = l.base_radius - l.platform_radius + l.upper_arm * cosine;
-  return delta.outward[i] * radius + Vector(0, 0, -l.upper_arm * sine);
+// Sine and cosine of the angle of each arm, which knees and axes of arms share.
+using Turns = std::array<maths::SineCosine, 3>;
+
+Turns TurnsOf(const Joints& joints) {
+  return {maths::SinCos(joints[0]), maths::SinCos(joints[1]), maths::SinCos(joints[2])};
 }
 
-Arm ArmAt(const Delta& delta, std::size_t i, double angle, const Vector& tool) {
-  const auto [sine, cosine] = maths::SinCos(angle);
-  const double s = sine * delta.lengths.upper_arm;
-  const double c = cosine * delta.lengths.upper_arm;
+Vector Knee(const Delta& delta, std::size_t i, const maths::SineCosine& turn) {
+  const DeltaLengths& l = delta.lengths;
+  const double radius = l.base_radius - l.platform_radius + l.upper_arm * turn.cosine;
+  return delta.outward[i] * radius + Vector(0, 0, -l.upper_arm * turn.sine);
+}
+
+Arm ArmAt(const Delta& delta, std::size_t i, const maths::SineCosine& turn, const Vector& tool) {
+  const double s = turn.sine * delta.lengths.upper_arm;
+  const double c = turn.cosine * delta.lengths.upper_arm;
   Arm arm;
-  arm.lower = tool - Knee(delta, i, angle);
+  arm.lower = tool - Knee(delta, i, turn);
   arm.along = delta.outward[i] * -s + Vector(0, 0, -c);
   arm.inward = delta.outward[i] * -c + Vector(0, 0, s);
   arm.lever = dot(arm.lower, arm.along);
@@ -38,8 +43,8 @@ Arm ArmAt(const Delta& delta, std::size_t i, double angle, const Vector& tool) {
 
 using Arms = std::array<Arm, 3>;
 
-Arms ArmsAt(const Delta& delta, const Joints& joints, const Vector& tool) {
-  return {ArmAt(delta, 0, joints[0], tool), ArmAt(delta, 1, joints[1], tool), ArmAt(delta, 2, joints[2], tool)};
+Arms ArmsAt(const Delta& delta, const Turns& turns, const Vector& tool) {
+  return {ArmAt(delta, 0, turns[0], tool), ArmAt(delta, 1, turns[1], tool), ArmAt(delta, 2, turns[2], tool)};
 }
 
 // The volume that the lower arms span, of that of a cube: below 0 with the platform hanging under the knees, 0 where
@@ -57,10 +62,10 @@ Vector Meet(const Arms& arms, const std::array<double, 3>& rates) {
   return (a * rates[0] + b * rates[1] + c * rates[2]) / dot(arms[0].lower, a);
 }
 
-Reason ForwardPlace(const Delta& delta, const Joints& joints, Vector& tool) {
-  const Vector third = Knee(delta, 2, joints[2]);
-  const Vector a = Knee(delta, 0, joints[0]) - third;
-  const Vector b = Knee(delta, 1, joints[1]) - third;
+Reason ForwardPlace(const Delta& delta, const Turns& turns, Vector& tool) {
+  const Vector third = Knee(delta, 2, turns[2]);
+  const Vector a = Knee(delta, 0, turns[0]) - third;
+  const Vector b = Knee(delta, 1, turns[1]) - third;
   const Vector normal = a * b;
   const double area = dot(normal, normal);
   const double length = delta.lengths.lower_arm;
@@ -88,15 +93,16 @@ Delta MakeDelta(const DeltaLengths& lengths, double first_arm, bool rotary) {
 
 Reason Forward(const Delta& delta, const Joints& joints, Frame& tool) noexcept {
   Vector place;
-  if (const Reason reason = ForwardPlace(delta, joints, place); reason != Reason::kNone) return reason;
+  if (const Reason reason = ForwardPlace(delta, TurnsOf(joints), place); reason != Reason::kNone) return reason;
   tool = Frame(AboutZ(joints[3]), place);
   return Reason::kNone;
 }
 
 Reason Forward(const Delta& delta, const JointMotion& motion, MovingFrame& tool) noexcept {
-  Frame place;
-  if (const Reason reason = Forward(delta, motion.position, place); reason != Reason::kNone) return reason;
-  const Arms arms = ArmsAt(delta, motion.position, place.p);
+  Vector place;
+  const Turns turns = TurnsOf(motion.position);
+  if (const Reason reason = ForwardPlace(delta, turns, place); reason != Reason::kNone) return reason;
+  const Arms arms = ArmsAt(delta, turns, place);
   std::array<double, 3> rates{};
   for (std::size_t i = 0; i < 3; ++i) rates[i] = arms[i].lever * motion.velocity[i];
   const Vector velocity = Meet(arms, rates);
@@ -105,16 +111,18 @@ Reason Forward(const Delta& delta, const JointMotion& motion, MovingFrame& tool)
     rates[i] = arms[i].lever * motion.acceleration[i] +
                dot(arms[i].lower, arms[i].inward) * motion.velocity[i] * motion.velocity[i] - dot(slip, slip);
   }
-  tool = MovingFrame(KDL::RotationAcc(place.M, {0, 0, motion.velocity[3]}, {0, 0, motion.acceleration[3]}),
-                     KDL::VectorAcc(place.p, velocity, Meet(arms, rates)));
+  tool = MovingFrame(
+      KDL::RotationAcc(AboutZ(motion.position[3]), {0, 0, motion.velocity[3]}, {0, 0, motion.acceleration[3]}),
+      KDL::VectorAcc(place, velocity, Meet(arms, rates)));
   return Reason::kNone;
 }
 
 Reason JacobianAt(const Delta& delta, const Joints& joints, Jacobian& columns) noexcept {
   columns = {};
   Vector tool;
-  if (const Reason reason = ForwardPlace(delta, joints, tool); reason != Reason::kNone) return reason;
-  const Arms arms = ArmsAt(delta, joints, tool);
+  const Turns turns = TurnsOf(joints);
+  if (const Reason reason = ForwardPlace(delta, turns, tool); reason != Reason::kNone) return reason;
+  const Arms arms = ArmsAt(delta, turns, tool);
   for (std::size_t i = 0; i < 3; ++i) {
     std::array<double, 3> rates{};
     rates[i] = arms[i].lever;
@@ -140,7 +148,7 @@ Reason Inverse(const Delta& delta, const Frame& tool, const Configuration&, cons
     const Reason reason = Reach(l.upper_arm, std::sqrt(reach), out, down, true, links);
     if (reason != Reason::kNone) return reason;
     joints[i] = NearestTurn(links.first, near[i]);
-    lower[i] = tool.p - Knee(delta, i, links.first);
+    lower[i] = tool.p - Knee(delta, i, maths::SinCos(links.first));
   }
   const double spread = Spread(delta, lower[0], lower[1], lower[2]);
   if (std::abs(spread) < kSingularSine) return Reason::kSingular;
@@ -151,7 +159,7 @@ Reason Inverse(const Delta& delta, const Frame& tool, const Configuration&, cons
 
 Reason SolveMotion(const Delta& delta, const MovingFrame& tool, JointMotion& motion) noexcept {
   if (!UprightMotion(tool)) return Reason::kOrientation;
-  const Arms arms = ArmsAt(delta, motion.position, tool.p.p);
+  const Arms arms = ArmsAt(delta, TurnsOf(motion.position), tool.p.p);
   const double smallest = kSingularSine * delta.lengths.upper_arm * delta.lengths.lower_arm;
   for (std::size_t i = 0; i < 3; ++i) {
     const Arm& arm = arms[i];
