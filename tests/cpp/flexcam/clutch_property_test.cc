@@ -102,6 +102,7 @@ class ClutchWatch {
     }
     web_ = b_.TheWeb();
     knife_ = b_.Knife();
+    distance_before_ = module_.clutch_distance;
     module_ = m;
   }
   void Expect() const {
@@ -147,6 +148,11 @@ class ClutchWatch {
     const bool closes = module_.clutch == ClutchPhase::kClosing && m.clutch == ClutchPhase::kClosed;
     if (!closes || !Exact() || !trial_.wide || settings_.sync_mode != ClutchMode::kRampPos) return;
     if (module_.clutch_distance == 0) return;  // over time: what a change on the way had left
+    // The master has gone back behind where the closing began: that is undone, and it is in step as before.
+    if (module_.clutch_distance > distance_before_) {
+      off_place = std::max(off_place, Apart(b_.Knife().set_position, m.mp06_y_to_slave_position));
+      return;
+    }
     ++places;
     const double step = Moved(b_.TheWeb(), web_, Bench::kWeb);
     const double beyond = std::abs(step) - module_.clutch_distance;
@@ -159,6 +165,7 @@ class ClutchWatch {
   Settings settings_;
   Watch smooth_;
   axis::Outputs web_, knife_;
+  double distance_before_ = 0;
   Outputs module_;
 };
 

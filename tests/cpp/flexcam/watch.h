@@ -20,7 +20,7 @@ class Watch {
       const double away = k.set_position - before_.set_position - t * 0.5 * (k.set_velocity + before_.set_velocity);
       const double turn = b_.machine.axes[Bench::kKnife].turn();
       const double wrapped = turn == 0 ? away : away - turn * std::round(away / turn);
-      jump = std::max(jump, std::abs(wrapped) - l.jerk * t * t * t / 12);
+      jump = std::max(jump, std::abs(wrapped) - l.jerk * (1 + 1e-5) * t * t * t / 12);
     }
     velocity = std::max(velocity, std::abs(k.set_velocity));
     acceleration = std::max(acceleration, std::abs(k.set_acceleration));
