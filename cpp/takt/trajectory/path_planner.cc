@@ -10,11 +10,13 @@ namespace takt::trajectory {
 namespace {
 
 constexpr double kPlanShare = 0.99;  // of the limits that rows leave: the rest is for what lies between knots
-constexpr int kFadeIntervals = 8;    // behind a given pace, which may use all of a limit, the share comes down to that
-constexpr int kVerifyRounds = 8;     // of checking and tightening
-constexpr double kTighter = 1.002;   // than what a check found
-constexpr int kStubborn = 2;         // rounds
-constexpr double kNearly = 1.5;      // a plan that uses less of a limit is good at a lower rate
+constexpr std::size_t kFadeIntervals =
+    8;                                // behind a given pace, which may use all of a limit, the share comes down to that
+constexpr int kVerifyRounds = 8;      // of checking and tightening
+constexpr int kRoundsFromMotion = 6;  // the same: tightened more often a plan is slower than the one that goes on
+constexpr double kTighter = 1.002;    // than what a check found
+constexpr int kStubborn = 2;          // rounds
+constexpr double kNearly = 1.5;       // a plan that uses less of a limit is good at a lower rate
 constexpr double kLowerRounding = 1e-9;
 constexpr double kBeginRounding = 1e-6;
 constexpr double kPrecision = 1e-3;
@@ -534,10 +536,13 @@ bool PathPlanner::Verify(int round) noexcept {
   }
   if (most_use_ <= 1) return true;
   for (std::size_t k = 0; k < n_; ++k) {
+    // What is given at an end is as it is: what is too much near it is asked of its own kind of limit only. Elsewhere
+    // plans are found the sooner if all are tightened.
+    const bool apart = (request_->begin && k < kFadeIntervals) || (request_->end && n_ - k <= kFadeIntervals);
     for (std::size_t order = 0; order < 3; ++order) {
-      double use = use_[k][order];
-      for (const std::size_t near : {k > 0 ? k - 1 : k, k + 1 < n_ ? k + 1 : k}) {
-        if (use_[near][order] > 1) use = std::max(use, use_[near][order]);
+      double use = 0;
+      for (const std::size_t near : {k > 0 ? k - 1 : k, k, k + 1 < n_ ? k + 1 : k}) {
+        use = std::max(use, apart ? use_[near][order] : std::ranges::max(use_[near]));
       }
       // What is found again lies between the ends of an interval, where rows say less about it.
       if (round >= kStubborn) use *= use;
@@ -546,6 +551,15 @@ bool PathPlanner::Verify(int round) noexcept {
     }
   }
   return false;
+}
+
+double PathPlanner::TimeOf() const noexcept {
+  double time = 0;
+  for (std::size_t k = 0; k < n_; ++k) {
+    const Shape shape = ShapeOf(k);
+    time += Duration(request_->lengths[k], shape.square[0].value, shape.square[1].value, shape.bend.value);
+  }
+  return time;
 }
 
 void PathPlanner::Publish(PathPlan& out) const noexcept {
@@ -609,9 +623,10 @@ void PathPlanner::HoldSpeed(PathPlan& out) noexcept {
       if (most_use_ > kNearly) break;
     }
     std::copy_n(kept_tighten_.begin(), n_, tighten_.begin());
-    if (good) Publish(out);
+    const bool faster = good && TimeOf() < out.duration();
+    if (faster) Publish(out);
     std::ranges::fill(held_, std::uint8_t{0});
-    if (good) return;
+    if (faster) return;
     std::copy_n(kept_.begin(), n_, ordinates_.begin());
   }
   most_use_ = use;
@@ -667,7 +682,8 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
   SettleEnds();
   if (ordinates_[0] > 0 && ordinates_[n_ - 1] > 0) {
     double start_share = 0.1;
-    for (int round = 0; round < kVerifyRounds && steps_ < kMostSteps; ++round) {
+    const int rounds = request.begin ? kRoundsFromMotion : kVerifyRounds;
+    for (int round = 0; round < rounds && steps_ < kMostSteps; ++round) {
       Solve(start_share, kStepsPerRound);
       if (Verify(round)) {
         Publish(out);

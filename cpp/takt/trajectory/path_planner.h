@@ -171,6 +171,7 @@ class PathPlanner {
   bool SolveLinear() noexcept;
   Shares UseOf(std::size_t k) noexcept;
   bool Verify(int round) noexcept;
+  double TimeOf() const noexcept;
   void Publish(PathPlan& out) const noexcept;
   void SetShares() noexcept;
   bool Hold(std::size_t space) noexcept;

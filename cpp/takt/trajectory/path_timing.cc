@@ -59,6 +59,12 @@ void PathTiming::DropPlan() noexcept {
   ready_ = false;
 }
 
+// A plan that does not get further than a place stays.
+void PathTiming::KeepPlanTo(double place) noexcept {
+  known_to_ = std::min(known_to_, place);
+  if (ready_ && next_.EndPlace() > known_to_ + kSamePosition) ready_ = false;
+}
+
 void PathTiming::Begin(const PathPace& pace) noexcept {
   Clear();
   active_ = true;
@@ -246,6 +252,7 @@ bool PathTiming::Order(const PathWindow& window, double factor, const PathPace& 
   maker_->order.store(OrderState::kOrdered, std::memory_order_release);
   planning_ = true;
   dropped_ = no_plan_ = false;
+  known_to_ = std::numeric_limits<double>::infinity();
   ordered_ = tick_;
   return true;
 }
@@ -291,6 +298,7 @@ void PathTiming::TakePlan(std::uint64_t number) noexcept {
   if (dropped_) return;
   const PathPlanStatus status = maker_->status;
   const bool found = status == PathPlanStatus::kPlanned || status == PathPlanStatus::kScaled;
+  if (found && next_.EndPlace() > known_to_ + kSamePosition) return;  // that is no longer the path
   if (found && from_rest_) {
     const auto rests = current_.begin + static_cast<std::uint64_t>(std::ceil(current_.Duration() / period_s_ - 1e-9));
     next_.begin = std::max(tick_, rests);
@@ -309,7 +317,7 @@ void PathTiming::TakePlan(std::uint64_t number) noexcept {
 
 bool PathTiming::StopBefore(const PathWindow& window, double place, const PathPace& pace) noexcept {
   if (rest_place() <= place + kSamePosition) {
-    DropPlan();
+    KeepPlanTo(place);
     return true;
   }
   // When it gets there, to the cycle.

@@ -81,6 +81,7 @@ class PathTiming {
   void Go(const PathWindow& window, PathPace& pace) noexcept;
   bool Order(const PathWindow& window, double factor, const PathPace& pace) noexcept;
   void DropPlan() noexcept;
+  void KeepPlanTo(double place) noexcept;
 
   double period_s_;
   Planner planner_;
@@ -105,6 +106,7 @@ class PathTiming {
   bool ready_ = false;            // next_ takes over at its begin
   bool from_rest_ = false;        // next_ begins at rest
   bool no_plan_ = false;          // from the present rest
+  double known_to_ = 0;           // arc length up to which the path is as it was when the plan was ordered [mm]
   std::uint64_t ordered_ = 0;     // tick
   std::uint64_t late_ = 0;        // lead of the next order [ticks], as the last plan came too late; 0: the usual one
   std::uint64_t wait_until_ = 0;  // tick of the next order
