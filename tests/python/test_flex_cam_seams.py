@@ -104,6 +104,24 @@ def test_without_reversing_a_clutch_goes_with_its_master_in_both_directions(slav
             assert feedback.error_id == WOULD_REVERSE
 
 
+@pytest.mark.parametrize("again", [False, True], ids=["opened", "opened and closed"])
+def test_a_gentle_ramp_does_not_run_away_with_the_cams_acceleration(again: bool) -> None:  # CAM-39, CAM-81
+    ramp = {"sync_velocity": 500, "sync_acceleration": 2000, "sync_deceleration": 2000, "sync_jerk": 20_000}
+    with Rig(hill("hill", 60, 100), settings={**AT_ONCE, "sync_mode": "ramp_vel_acc", **ramp}) as rig:
+        rig.run(1000)
+        rig.engine.run(1)
+        rig.module.control(sync_cam=True)
+        rig.engine.wait(lambda: rig.module.clutch.name == "CLOSED" and rig.knife.set_acceleration > 1e5, 10)
+        fast = abs(rig.knife.set_velocity) + 2 * 1e5 * 0.001  # a cycle until it is given, and one until it acts
+        rig.module.control(sync_cam=False)
+        if again:
+            rig.engine.run(0.003)
+            rig.module.control(sync_cam=True)
+        recording = rig.seconds(2)
+        cam = np.abs(recording["web"]["set_velocity"]).max() * 60 / 50 * 1.875 if again else 0
+        assert np.abs(recording["knife"]["set_velocity"]).max() <= fast + cam
+
+
 def test_a_rotary_slave_comes_back_onto_the_cam_in_the_turn_that_it_left():  # CAM-39, CAM-81
     settings = {"master_sync_in_distance": 30, "sync_in_passed": "here", "master_sync_out_distance": 200}
     with Rig(LINE, settings={**ON_CURVE, **settings}, slave="rotary") as rig:

@@ -305,12 +305,16 @@ KinematicState Shift(const KinematicState& own, const KinematicState& wanted) {
   return {own.position - wanted.position, own.velocity - wanted.velocity, own.acceleration - wanted.acceleration};
 }
 
-trajectory::Limits ClutchLimits(const ClutchContext& c) {
+// Limits of a ramp from a shift to none. One that speeds up more than ramps may is brought to that as fast as the slave
+// can: in the time that a gentle jerk takes for it, it would run away.
+trajectory::Limits ClutchLimits(const ClutchContext& c, const KinematicState& shift) {
   const trajectory::Limits own = c.slave.planner_limits();
   const Settings& s = c.settings;
-  return {std::min(s.sync_velocity, own.velocity), std::min(s.sync_acceleration, own.acceleration),
-          std::min(s.sync_deceleration, own.deceleration),
-          own.jerk > 0 ? std::min(s.sync_jerk, own.jerk) : s.sync_jerk};
+  const trajectory::Limits limits = {
+      std::min(s.sync_velocity, own.velocity), std::min(s.sync_acceleration, own.acceleration),
+      std::min(s.sync_deceleration, own.deceleration), own.jerk > 0 ? std::min(s.sync_jerk, own.jerk) : s.sync_jerk};
+  if (std::abs(shift.acceleration) <= std::max(limits.acceleration, limits.deceleration)) return limits;
+  return {limits.velocity, limits.acceleration, limits.deceleration, own.jerk > 0 ? own.jerk : limits.jerk};
 }
 
 constexpr double kStretch = 1.05;
@@ -319,7 +323,7 @@ constexpr int kStretches = 200;
 // Begins to bring what lies between the slave and Y to zero.
 void BeginShift(const ClutchContext& c, const KinematicState& shift, double time_s, ClutchState& s) {
   if (s.mode == ClutchMode::kRampVelAcc) {
-    if (!BeginProfile(shift, ClutchLimits(c), c.cycle, c.planner, s.ramp)) s.mode = ClutchMode::kAbsolute;
+    if (!BeginProfile(shift, ClutchLimits(c, shift), c.cycle, c.planner, s.ramp)) s.mode = ClutchMode::kAbsolute;
     return;
   }
   const trajectory::Limits own = c.slave.planner_limits();
