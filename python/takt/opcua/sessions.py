@@ -1,0 +1,71 @@
+"""Sessions of OPC UA clients: which of them calls a method, and when each was heard last."""
+
+from __future__ import annotations
+
+import contextvars
+import time
+from typing import Any
+
+from asyncua import ua
+from asyncua.crypto.permission_rules import User, UserRole
+from asyncua.server.internal_server import InternalServer
+from asyncua.server.internal_session import InternalSession, SessionState
+
+from takt.opcua.users import Person
+
+CALLER: contextvars.ContextVar[Session] = contextvars.ContextVar("caller")
+SHORTEST_MS = 10.0  # between two notifications of a subscription
+
+
+class Session(InternalSession):  # type: ignore[misc]
+    """What `asyncua` has, and what a dead man needs."""
+
+    heard_at = 0.0  # when its last request came
+    calls = 0  # methods that have not returned yet
+
+    @property
+    def is_closed(self) -> bool:
+        return self.state is SessionState.Closed
+
+    @property
+    def client(self) -> str:
+        """For people: the user's name, or the address."""
+        if isinstance(self.user, Person) and self.user.name:
+            return str(self.user.name)
+        return ":".join(map(str, self.name[:2])) if isinstance(self.name, tuple) else str(self.name)
+
+    @property
+    def may_command(self) -> bool:
+        return isinstance(self.user, Person) and self.user.commands
+
+    def touch(self) -> None:
+        super().touch()
+        self.heard_at = time.monotonic()
+
+    async def call(self, params: list[ua.CallMethodRequest]) -> list[ua.CallMethodResult]:
+        before = CALLER.set(self)
+        self.calls += 1
+        try:
+            results: list[ua.CallMethodResult] = await super().call(params)
+            return results
+        finally:
+            self.calls -= 1
+            CALLER.reset(before)
+
+    async def create_subscription(self, params: Any, callback: Any, request_callback: Any = None) -> Any:
+        if not params.RequestedPublishingInterval >= SHORTEST_MS:
+            params.RequestedPublishingInterval = SHORTEST_MS
+        return await super().create_subscription(params, callback, request_callback)
+
+    def modify_subscription(self, params: Any) -> Any:
+        if not params.RequestedPublishingInterval >= SHORTEST_MS:
+            params.RequestedPublishingInterval = SHORTEST_MS
+        return super().modify_subscription(params)
+
+
+class Sessions(InternalServer):  # type: ignore[misc]
+    """The server behind the wire, with sessions of ours."""
+
+    def create_session(self, name: str, user: User | None = None, external: bool = False) -> InternalSession:
+        user = user or User(role=UserRole.Anonymous)
+        return Session(self, self.aspace, self.subscription_service, name, user=user, external=external)
