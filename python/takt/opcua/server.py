@@ -104,11 +104,11 @@ class Service:
         if options.commands and not feed.may_command:
             raise ConnectionError(no_key(feed.url))
         self._epoch = feed.epoch
+        port = _free_port(options.host, options.port)  # before much is made in vain
         self._server = Server(iserver=Sessions(user_manager=Users(self._known, options.commands)))
         self._server.iserver.allow_remote_admin = False
         self._server.set_server_name(f"Takt: {machine.name}")
         await self._server.init()
-        port = options.port or _free_port(options.host)
         host = f"[{options.host}]" if ":" in options.host else options.host
         address = f"opc.tcp://{host}:{port}/takt/"
         self._server.set_endpoint(address)
@@ -123,8 +123,7 @@ class Service:
         try:
             await self._server.start()
         except OSError as error:
-            reason = error.strerror if error.errno and error.errno > 0 else str(error)
-            raise TaktError(f"port {port} of {options.host} cannot be used for OPC UA: {reason}") from None
+            raise _not_usable(options.host, port, error) from None
         return address
 
     async def _wait_for_engine(self) -> None:
@@ -244,6 +243,8 @@ class Service:
     async def stop(self) -> None:
         """Lets go of everything and closes all connections."""
         self._commands.release()
+        clock, self._server.iserver.time_task = self._server.iserver.time_task, None
+        clock.cancel()  # it would sleep on for up to a second
         await self._server.stop()
 
 
@@ -300,13 +301,19 @@ def _is_local(host: str) -> bool:
         return False
 
 
-def _free_port(host: str) -> int:
+def _free_port(host: str, port: int) -> int:
+    """This port, or any for 0. Raises TaktError where it cannot be used."""
     with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
-            probe.bind((host, 0))
+            probe.bind((host, port))
         except OSError as error:
-            raise TaktError(f"{host} cannot be used for OPC UA: {error.strerror}") from None
+            raise _not_usable(host, port, error) from None
         return int(probe.getsockname()[1])
+
+
+def _not_usable(host: str, port: int, error: OSError) -> TaktError:
+    return TaktError(f"port {port} of {host} cannot be used for OPC UA: {error.strerror or error}")
 
 
 def _uri_of(certificate: Any) -> str:
