@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import math
 import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
 from asyncua import ua
+from asyncua.common.utils import ServiceError
+from asyncua.crypto.cert_gen import setup_self_signed_certificate
 from asyncua.sync import Client, ThreadLoop
+from cryptography import x509
+from cryptography.x509.oid import ExtendedKeyUsageOID
 from every_kind import FULL, text_of
 from machines import machine_with, new_url, running
 from takt.cli import main
@@ -21,8 +27,9 @@ from takt.errors import ConnectionError, TaktError
 from takt.opcua.arguments import RefusedError, values_of
 from takt.opcua.descriptions import enumerations, fields_of, verbs_of
 from takt.opcua.server import Options, serving
+from takt.opcua.sessions import Sessions
 from takt.opcua.units import number_of
-from takt.opcua.users import add_user, read_users
+from takt.opcua.users import Users, add_user, read_users
 from takt.tables import KINDS
 
 MACHINE = machine_with("{dead_man_s: 0.4}")
@@ -374,6 +381,68 @@ def test_users_have_rights(plant: Plant, tmp_path: Path, loop: ThreadLoop) -> No
                     with pytest.raises(ua.UaStatusCodeError) as refused:
                         call(client, "x", "power", True)
                     assert refused.value.code == ua.StatusCodes.BadUserAccessDenied
+
+
+def certified(folder: Path, name: str, uri: str, use: x509.ObjectIdentifier) -> tuple[Path, Path]:
+    """A new certificate, and its key."""
+    key, certificate = folder / f"{name}.pem", folder / f"{name}.der"
+    asyncio.run(setup_self_signed_certificate(key, certificate, uri, "localhost", [use], {"commonName": name}))
+    return certificate, key
+
+
+async def claimed(certificate: bytes | None, channel: bytes) -> None:
+    """A session of a client that names this certificate, over a channel that was made with another one."""
+
+    async def anybody(*_: object) -> None:
+        pass
+
+    server = Sessions(user_manager=Users(None, True))
+    server.certificate_validator = anybody
+    session = server.create_session("client", external=True)
+    await session.create_session(ua.CreateSessionParameters(ClientCertificate=certificate))
+    session.activate_session(ua.ActivateSessionParameters(), channel)
+
+
+def test_certificates_keep_strangers_out(plant: Plant, loop: ThreadLoop, tmp_path: Path) -> None:
+    """Encrypted connections alone, of those clients whose certificate is in a folder."""
+    certificate, key = certified(tmp_path, "server", "urn:takt:test", ExtendedKeyUsageOID.SERVER_AUTH)
+    known, known_key = certified(tmp_path, "plc", "urn:plc", ExtendedKeyUsageOID.CLIENT_AUTH)
+    unknown, unknown_key = certified(tmp_path, "stranger", "urn:plc", ExtendedKeyUsageOID.CLIENT_AUTH)
+    trust = tmp_path / "trusted"
+    trust.mkdir()
+    (trust / "plc.der").write_bytes(known.read_bytes())
+    options = Options("127.0.0.1", 0, 10.0, True, None, certificate, key, trust, WAIT_S)
+    with serving(plant.url, options, None, _quiet) as (address, _):
+
+        def connect(certificate: Path, key: Path) -> str:
+            client = Client(address, tloop=loop)
+            client.application_uri = "urn:plc"
+            client.set_security_string(f"Basic256Sha256,SignAndEncrypt,{certificate},{key}")
+            with client:
+                return str(call(client, "x", "power", False)["sentence"])
+
+        assert connect(known, known_key) == ""
+        with pytest.raises(ua.UaStatusCodeError) as refused:
+            connect(unknown, unknown_key)
+        assert refused.value.code == ua.StatusCodes.BadCertificateUntrusted
+        with pytest.raises(ua.UaError):
+            Client(address, tloop=loop).connect()  # unencrypted
+        shown = known.read_bytes()  # anybody has seen it
+        with pytest.raises(ServiceError) as refused:
+            asyncio.run(claimed(None, unknown.read_bytes()))
+        assert refused.value.code == ua.StatusCodes.BadCertificateInvalid
+        with pytest.raises(ServiceError) as refused:
+            asyncio.run(claimed(shown, unknown.read_bytes()))
+        assert refused.value.code == ua.StatusCodes.BadCertificateInvalid
+    for wrong, sentence in (
+        ({"certificate": known_key}, "not a certificate that can be used"),
+        ({"private_key": certificate}, "not a private key that can be used"),
+    ):
+        with (
+            pytest.raises(TaktError, match=sentence),
+            serving(plant.url, replace(options, **wrong), None, _quiet),  # type: ignore[arg-type]
+        ):
+            pass
 
 
 def test_users_files_say_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -108,11 +108,12 @@ class Service:
         self._server = Server(iserver=Sessions(user_manager=Users(self._known, options.commands)))
         self._server.iserver.allow_remote_admin = False
         self._server.set_server_name(f"Takt: {machine.name}")
+        uri = await self._secure(f"urn:{socket.gethostname()}:takt:{machine.name}")
         await self._server.init()
+        await self._server.set_application_uri(uri)
         host = f"[{options.host}]" if ":" in options.host else options.host
         address = f"opc.tcp://{host}:{port}/takt/"
         self._server.set_endpoint(address)
-        await self._secure(f"urn:{socket.gethostname()}:takt:{machine.name}")
         await self._server.set_build_info(
             "urn:takt:opcua", "Takt", "Takt", _core.__version__, _core.__version__, datetime.now()
         )
@@ -141,19 +142,19 @@ class Service:
             feed.tick()
             await asyncio.sleep(TICK_S)
 
-    async def _secure(self, uri: str) -> None:
+    async def _secure(self, uri: str) -> str:
+        """Takes certificates and rights up. Returns the name of the application: this one, or that of its certificate."""
         server, options = self._server, self.options
         tokens: list[type] = [ua.UserNameIdentityToken if self._known is not None else ua.AnonymousIdentityToken]
         server.set_identity_tokens(tokens)
         if options.certificate is None or options.private_key is None:
             server.set_security_policy([ua.SecurityPolicyType.NoSecurity])
-            await server.set_application_uri(uri)
             if self._known is not None and not _is_local(options.host):
                 self._say("passwords come unencrypted: give --certificate and --private-key")
-            return
+            return uri
         try:
             await server.load_certificate(options.certificate)
-            await server.set_application_uri(_uri_of(await load_certificate(options.certificate)) or uri)
+            uri = _uri_of(await load_certificate(options.certificate)) or uri
         except Exception as error:
             raise TaktError(f"{options.certificate}: not a certificate that can be used: {error}") from None
         try:
@@ -168,6 +169,7 @@ class Service:
             except Exception as error:
                 raise TaktError(f"{options.trust}: a certificate there cannot be used: {error}") from None
             server.iserver.certificate_validator = CertificateValidator(TRUSTED, store)
+        return uri
 
     def _target_of(self, node: ua.NodeId) -> tuple[str, str] | None:
         machine = self._feed.machine

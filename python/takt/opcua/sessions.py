@@ -7,6 +7,7 @@ import time
 from typing import Any
 
 from asyncua import ua
+from asyncua.common.utils import ServiceError
 from asyncua.crypto.permission_rules import User, UserRole
 from asyncua.server.internal_server import InternalServer
 from asyncua.server.internal_session import InternalSession, SessionState
@@ -21,6 +22,7 @@ class Session(InternalSession):  # type: ignore[misc]
     """What `asyncua` has, and what a dead man needs."""
 
     heard_at = 0.0  # when its last request came
+    certificate: bytes | None = None  # of the client, as it named it
     calls = 0  # methods that have not returned yet
 
     @property
@@ -37,6 +39,18 @@ class Session(InternalSession):  # type: ignore[misc]
     @property
     def may_command(self) -> bool:
         return isinstance(self.user, Person) and self.user.commands
+
+    async def create_session(self, params: Any, sockname: Any = None) -> Any:
+        # asyncua looks at the certificate that the client names here; whether it is that of the channel, nobody does.
+        self.certificate = params.ClientCertificate
+        if self.iserver.certificate_validator is not None and not self.certificate:
+            raise ServiceError(ua.StatusCodes.BadCertificateInvalid)
+        return await super().create_session(params, sockname)
+
+    def activate_session(self, params: Any, peer_certificate: bytes | None) -> Any:
+        if self.iserver.certificate_validator is not None and peer_certificate != self.certificate:
+            raise ServiceError(ua.StatusCodes.BadCertificateInvalid)
+        return super().activate_session(params, peer_certificate)
 
     def touch(self) -> None:
         super().touch()
