@@ -143,7 +143,7 @@ class Service:
             await asyncio.sleep(TICK_S)
 
     async def _secure(self, uri: str) -> str:
-        """Takes certificates and rights up. Returns the name of the application: this one, or that of its certificate."""
+        """Takes up certificates and rights. Returns the name of the application: that of its certificate, else this."""
         server, options = self._server, self.options
         tokens: list[type] = [ua.UserNameIdentityToken if self._known is not None else ua.AnonymousIdentityToken]
         server.set_identity_tokens(tokens)
