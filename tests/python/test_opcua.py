@@ -5,7 +5,11 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import math
+import re
+import signal
 import socket
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -24,6 +28,7 @@ from every_kind import FULL, text_of
 from machines import machine_with, new_url, running
 from takt.cli import main
 from takt.errors import ConnectionError, TaktError
+from takt.keys import new_key, read_key
 from takt.opcua.arguments import RefusedError, values_of
 from takt.opcua.descriptions import enumerations, fields_of, verbs_of
 from takt.opcua.server import Options, serving
@@ -541,6 +546,39 @@ def test_an_engine_that_ends_and_comes_again(tmp_path: Path, loop: ThreadLoop) -
             until(why)
         assert why() == (f"the engine on {url} was started with another machine, other: start the server again")
     assert said == [f"the engine on {url} is {what}" for what in ("heard", "silent", "heard", "silent")][: len(said)]
+
+
+def test_an_engine_with_a_key_is_commanded_with_it_alone(tmp_path: Path, loop: ThreadLoop) -> None:
+    """EN-31."""
+    url, file = new_url(), tmp_path / "takt.key"
+    new_key(file)
+    options = Options(port=0, commands=True, timeout_s=WAIT_S)
+    with running(tmp_path, url, "--key", str(file), machine=MACHINE):
+        with (
+            pytest.raises(ConnectionError, match="has a key and hears only holders of it"),
+            serving(url, options, None, _quiet),
+        ):
+            pass
+        with serving(url, options, read_key(file), _quiet) as (address, _), Client(address, tloop=loop) as client:
+            powered(client)
+
+
+def test_the_command_runs_a_machine_of_its_own(tmp_path: Path, loop: ThreadLoop) -> None:
+    """PY-07: it says where it is, and ends in order."""
+    file = tmp_path / "machine.yaml"
+    file.write_text(MACHINE)
+    command = [sys.executable, "-m", "takt", "opcua", str(file), "--port", "0"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stderr is not None
+            line = next(line for line in process.stderr if "Ctrl-C" in line)
+            address = re.findall(r"opc.tcp://[^ ]+", line)[0]
+            assert line.endswith(f"{address} (values, read-only; Ctrl-C ends it)\n")
+            with Client(address, tloop=loop) as client:
+                until(lambda: _is_good(client, "x.state"))
+        finally:
+            process.send_signal(signal.SIGINT)
+        assert process.wait(WAIT_S) == 130
 
 
 def test_every_kind_of_component_has_its_object(tmp_path: Path, loop: ThreadLoop) -> None:
