@@ -29,6 +29,7 @@ from takt.figures import in_words
 from takt.lcmlog import open_log, to_recording, write_log
 from takt.missing import all_missing, troubles
 from takt.network import usual_url
+from takt.opcua.command import opcua, opcua_user
 from takt.plant import PlantError
 from takt.recording import Recording, RecordingError
 from takt.remote import connect
@@ -399,6 +400,8 @@ def plant(machine: Path, url: str | None, axes: tuple[str, ...], watchdog: int, 
 
 
 cli.add_command(drives)
+cli.add_command(opcua)
+cli.add_command(opcua_user)
 
 
 @cli.command("twin")

@@ -279,12 +279,7 @@ class Session(SessionWithCams):
             raise TypeError(f"the arguments of a command are a mapping or a text, not {arguments!r}")
         asked = (self._kind(target), verb)
         text = arguments if isinstance(arguments, str) else to_text(arguments, DEFAULTS.get(asked))
-        level = False
-        if not isinstance(arguments, str) and asked in LEVEL_SENSITIVE:
-            held = any(value is True for value in arguments.values())
-            level = held or (
-                verb == "jog" and not _core.lets_go(*asked, _clean(text))
-            )  # without a direction it lets go
+        level = not isinstance(arguments, str) and is_held(*asked, arguments, _clean(text))
         feedback = Feedback(self, _clean(target), _clean(verb), _clean(text), level_sensitive=level)
         feedback.given_at = _places()
         self._give(feedback)
@@ -606,6 +601,15 @@ def _named(components: Mapping[str, C], name: str, what: str) -> C:
         hint = f"; did you mean '{near[0]}'?" if near else ""
         has = f" (it has {', '.join(components)})" if components else ""
         raise TaktError(f"the machine has no {what} '{name}'{hint}{has}") from None
+
+
+def is_held(kind: str, verb: str, arguments: Mapping[str, Any], text: str) -> bool:
+    """Whether this command acts until it is released; text: the arguments as the engine reads them."""
+    if (kind, verb) not in LEVEL_SENSITIVE:
+        return False
+    if any(value is True for value in arguments.values()):
+        return True
+    return verb == "jog" and not _core.lets_go(kind, verb, text)  # without a direction it lets go
 
 
 def release_of(feedback: Feedback) -> Feedback:

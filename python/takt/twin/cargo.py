@@ -94,8 +94,8 @@ class _Rests:
 
 
 class Gripper:
-    """A vacuum gripper at the tool of a group. `close` and `open` act after the time that the machine file says; `closed`
-    tells whether it is, `holds` the number of its product, or None."""
+    """A vacuum gripper at the tool of a group. `close` and `open` act after the time that the machine file says;
+    `closed` tells whether it is, `holds` the number of its product, or None."""
 
     def __init__(
         self, cargo: Cargo, told: Mapping[str, Any], group: str, tool: Any, at: Array, body: int, welds: Sequence[int]

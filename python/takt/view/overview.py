@@ -84,6 +84,11 @@ class Overview:
         batch, i = self._place[self.machine.by_name[name].index]
         return float(batch.rows[field][i]) if batch.heard[i] else float("nan")
 
+    def heard(self, index: int) -> bool:
+        """Whether the component has said anything yet."""
+        batch, i = self._place[index]
+        return bool(batch.heard[i])
+
     def values(self, index: int, fields: Mapping[str, Any]) -> Floats:
         """All that a component publishes, in the order of its fields; NaN before it was heard."""
         batch, i = self._place[index]

@@ -1,0 +1,1 @@
+"""An engine as an OPC UA server, for PLCs and plants (`takt opcua`; needs `takt-motion[opcua]`)."""

@@ -1,0 +1,120 @@
+"""One of several clients of an engine in one process: the commands that it gives, what becomes of them, and the
+heartbeats that keep up what it holds (EN-23).
+
+Each is a client of the engine by itself, and its heartbeats go out only while `hold` was called within the dead man's
+time. Whether the far end hangs, is closed or is cut off, or this process dies: the engine hears no heartbeat and lets
+go."""
+
+from __future__ import annotations
+
+import random
+import time
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Any
+
+from takt import msgs
+from takt.arguments import to_text
+from takt.view.machine import Machine
+
+RESEND_S = 0.2  # between two tries of a command that is not answered
+REFRESH_S = 2.0  # after which a command that is not finished is asked about: its last answer may have been lost
+GIVEN_UP_S = 2.0
+FINAL = 2  # from this state on a feedback is the last one
+
+
+@dataclass
+class Given:
+    message: msgs.command
+    began: float
+    sent: float
+    answered: bool = False
+    ticket: int = 0
+    held: bool = False  # goes on until it is let go of
+    let_go: bool = False  # it is to be let go of as soon as it has a ticket
+
+
+class Client(ABC):
+    def __init__(self, network: Any, machine: Machine, kind: str) -> None:
+        """kind: what its name begins with."""
+        self._network = network
+        self._machine = machine
+        self.name = f"{kind}-{random.SystemRandom().getrandbits(40):010x}"
+        self._session = random.SystemRandom().getrandbits(62) + 1
+        self._dead_man_s = float(machine.parameters["lcm"]["dead_man_s"])
+        self._last_id = 0
+        self._given: dict[int, Given] = {}
+        self._held_at = 0.0  # when it was said last that something is held
+        self._beat_at = 0.0
+
+    @abstractmethod
+    def _became(self, message: msgs.command, feedback: msgs.feedback) -> None:
+        """What became of a command so far."""
+
+    @abstractmethod
+    def _unanswered(self, message: msgs.command) -> None:
+        """The engine does not answer a command, which is given up."""
+
+    def hold(self, now: float) -> None:
+        """What is held is still meant to be."""
+        self._held_at = now
+
+    def release(self) -> None:
+        """Lets go of what is held."""
+        now = time.monotonic()
+        for given in [one for one in self._given.values() if one.held]:
+            given.held, given.let_go = False, True
+            self._let_go(given, now)
+
+    def tick(self, now: float) -> None:
+        """Beats while something is held and is meant to be; asks again what was not answered."""
+        holding = any(one.held for one in self._given.values())
+        if holding and now - self._held_at > self._dead_man_s:
+            self.release()
+        elif holding and now - self._beat_at >= self._dead_man_s / 4:
+            self._beat(now)
+        for number, given in list(self._given.items()):
+            if not given.answered and now - given.began > GIVEN_UP_S:
+                del self._given[number]
+                self._unanswered(given.message)
+            elif now - given.sent > (REFRESH_S if given.answered else RESEND_S):
+                given.sent = now
+                self._network.publish("takt/command", given.message.encode())
+
+    def take(self, message: msgs.feedback) -> None:
+        """A feedback that passed by."""
+        if message.client != self.name or message.session != self._session:
+            return
+        given = self._given.get(message.id)
+        if given is None:
+            return
+        given.answered = True
+        given.ticket = message.ticket
+        if message.state >= FINAL:
+            del self._given[message.id]
+        else:
+            self._let_go(given, time.monotonic())
+        self._became(given.message, message)
+
+    def _let_go(self, given: Given, now: float) -> None:
+        if given.let_go and given.ticket:
+            given.let_go = False
+            self._send("machine", "release", to_text({"ticket": given.ticket}), now)
+
+    def _send(self, target: str, verb: str, arguments: str, now: float, held: bool = False) -> int:
+        """Gives a command, and returns its number."""
+        message = msgs.command()
+        message.utime = time.time_ns() // 1000
+        message.run_id, message.client, message.session = self._machine.run_id, self.name, self._session
+        self._last_id += 1
+        message.id, message.target, message.verb, message.arguments = self._last_id, target, verb, arguments
+        self._given[message.id] = Given(message, now, now, held=held)
+        self._network.publish("takt/command", message.encode())
+        return self._last_id
+
+    def _beat(self, now: float) -> None:
+        beat = msgs.heartbeat()
+        beat.utime = time.time_ns() // 1000
+        beat.run_id, beat.client, beat.session = self._machine.run_id, self.name, self._session
+        self._beat_at = now
+        self._network.publish("takt/heartbeat", beat.encode())
