@@ -11,8 +11,8 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, TypeVar
 
 from takt import _core, drive
 from takt.drives.canopen_bus import CanopenBus
@@ -28,7 +28,16 @@ def new_bus() -> str:
     return f"canopen:virtual:{os.getpid()}-{next(_channels)}"
 
 
-def machine(url: str, bus: str, axes: int = 2, *, drive_keys: str = "", bus_keys: str = "", axis_keys: str = "") -> str:
+def machine(
+    url: str,
+    bus: str,
+    axes: int = 2,
+    *,
+    place: str = "node",
+    drive_keys: str = "",
+    bus_keys: str = "",
+    axis_keys: str = "",
+) -> str:
     lines = ["name: bus", f"cycle: {{period_s: {PERIOD_S}, overruns_in_a_row: 0}}", f'lcm: {{url: "{url}"}}', "axes:"]
     for k in range(1, axes + 1):
         lines += [
@@ -41,7 +50,7 @@ def machine(url: str, bus: str, axes: int = 2, *, drive_keys: str = "", bus_keys
     lines += [f"      {bus_keys}"] if bus_keys else []
     lines += ["      drives:"]
     for k in range(1, axes + 1):
-        lines += [f"        - {{axis: x{k}, node: {k}{', ' + drive_keys if drive_keys else ''}}}"]
+        lines += [f"        - {{axis: x{k}, {place}: {k}{', ' + drive_keys if drive_keys else ''}}}"]
     return "\n".join(lines) + "\n"
 
 
@@ -68,12 +77,15 @@ def emulated(text: str, leave_out: Sequence[int] = (), product: int | None = Non
             thread.join(LONG_S)
 
 
+AnyBus = TypeVar("AnyBus", bound=drive.Bus)
+
+
 @contextlib.contextmanager
-def run(text: str, url: str, watchdog: int = drive.WATCHDOG) -> Iterator[tuple[CanopenBus, list[str]]]:
+def run_on(kind: Callable[..., AnyBus], text: str, url: str, watchdog: int) -> Iterator[tuple[AnyBus, list[str]]]:
     """What `takt drives run` is, on a thread; what it says."""
     said: list[str] = []
     whole = described(text)
-    bus = CanopenBus(whole["external"]["buses"][0], whole, said.append)
+    bus = kind(whole["external"]["buses"][0], whole, said.append)
     plant = drive.Plant({}, url, buses=[bus], watchdog=watchdog, say=said.append)
     thread = threading.Thread(target=plant.run)
     thread.start()
@@ -84,6 +96,12 @@ def run(text: str, url: str, watchdog: int = drive.WATCHDOG) -> Iterator[tuple[C
         plant.stop()
         thread.join(LONG_S)
         bus.close()
+
+
+def run(
+    text: str, url: str, watchdog: int = drive.WATCHDOG
+) -> contextlib.AbstractContextManager[tuple[CanopenBus, list[str]]]:
+    return run_on(CanopenBus, text, url, watchdog)
 
 
 def eventually(condition: Any, within_s: float = LONG_S) -> bool:

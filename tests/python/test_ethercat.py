@@ -97,16 +97,15 @@ def test_cables_supply_and_lost_frames_in_motion(tmp_path: Path) -> None:
                 axis.move_velocity(velocity=20.0)
             session.wait(lambda: all(axis.actual_velocity > 15 for axis in axes), timeout=20)
 
-        def heard(text: str, since: int, other: str = "") -> None:
-            assert eventually(lambda: any(text in x or (other and other in x) for x in said[since:]), 20), said
+        def heard(text: str, since: int) -> None:
+            assert eventually(lambda: any(text in line for line in said[since:]), 20), said
 
         back()
         tell(emulation, "cut 2")
         session.wait(lambda: [axis.error for axis in axes] == [0, 3002, 3002], timeout=20)
         heard(f"x2: slave 2 is not heard any more on {BUS}: cable, supply, or the slave itself", 0)
         tell(emulation, "join 2")
-        # As long as it was gone: it goes on, or its watchdog had taken it out of operation.
-        heard("x3: slave 3 is heard again", 0, "x3: slave 3 is set up again")
+        heard("x3: slave 3 is heard again", 0)  # within its watchdog: it is not set up anew
         assert axes[0].actual_velocity > 15
         back()
 
@@ -289,27 +288,26 @@ def test_an_empty_wire(capsys: pytest.CaptureFixture[str]) -> None:
     assert f"there is no interface {DRIVES}x" in capsys.readouterr().err
 
 
-@pytest.mark.skipif(not os.environ.get("TAKT_LONG"), reason="by the clock, at random: with TAKT_LONG=1")
 def test_whatever_breaks_it_comes_back(tmp_path: Path) -> None:
     """AX-87: cables, supplies, faults and losses at random, by the clock; with all mended every drive is in operation
-    and can be switched on."""
+    and can be switched on. TAKT_LONG: a minute of it."""
     text = machine(new_url(), 4, bus_keys="heartbeat_s: 0.05")
     chance = random.Random(11)
-    seconds = 60.0
+    seconds = 60.0 if os.environ.get("TAKT_LONG") else 2.0
     said: list[str] = []
     with emulated(text, tmp_path) as emulation:
         served = bus_of(text, said.append)
         point = drive.SetPoint(enable=True, period_s=PERIOD_S)
 
         def live(seconds: float, point: drive.SetPoint) -> set[str]:
-            """The axes that are ready in the end."""
-            ready: set[str] = set()
+            """The axes whose last answer was that they are ready: on a busy host single ones come late."""
+            ready: dict[str, bool] = {}
             end_s = time.monotonic() + seconds
             while time.monotonic() < end_s:
                 found = served.exchange(dict.fromkeys(served.axes, point), real_time=True)
-                ready = {axis for axis, one in found.items() if one and one.drive_ready}
+                ready |= {axis: one.drive_ready for axis, one in found.items() if one}
                 time.sleep(0.001)
-            return ready
+            return {axis for axis, last in ready.items() if last}
 
         end_s = time.monotonic() + seconds
         while time.monotonic() < end_s:

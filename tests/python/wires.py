@@ -6,19 +6,19 @@ import contextlib
 import ctypes
 import os
 import subprocess
-import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import buses
 import pytest
-from buses import LONG_S, Said, described, drives, eventually
+from buses import PERIOD_S, Said, described, drives, eventually
 from takt import drive
 from takt.drives.ethercat_bus import EthercatBus
 
 MASTER, DRIVES = "ec0", "ec1"  # the ends of the wire
 BUS = f"ethercat:{MASTER}"
-PERIOD_S = 0.004
+
 _NEW_NETWORK = 0x4000_0000
 
 _LOOPBACK = """
@@ -51,21 +51,8 @@ def own_network(*, wire: bool = True) -> Iterator[None]:
         os.close(before)
 
 
-def machine(url: str, axes: int = 2, *, drive_keys: str = "", bus_keys: str = "", axis_keys: str = "") -> str:
-    lines = ["name: bus", f"cycle: {{period_s: {PERIOD_S}, overruns_in_a_row: 0}}", f'lcm: {{url: "{url}"}}', "axes:"]
-    for k in range(1, axes + 1):
-        lines += [
-            f"  - name: x{k}",
-            "    limits: {velocity: 500, acceleration: 5000, jerk: 100000}",
-            "    encoder: {increments_per_unit: 1000}",
-        ]
-        lines += [f"    {axis_keys}"] if axis_keys else []
-    lines += ["external:", "  answer_within_s: 20", "  buses:", f"    - bus: {BUS}"]
-    lines += [f"      {bus_keys}"] if bus_keys else []
-    lines += ["      drives:"]
-    for k in range(1, axes + 1):
-        lines += [f"        - {{axis: x{k}, position: {k}{', ' + drive_keys if drive_keys else ''}}}"]
-    return "\n".join(lines) + "\n"
+def machine(url: str, axes: int = 2, **keys: str) -> str:
+    return buses.machine(url, BUS, axes, place="position", **keys)
 
 
 @contextlib.contextmanager
@@ -78,22 +65,10 @@ def emulated(text: str, folder: Path) -> Iterator[Said]:
         yield emulation
 
 
-@contextlib.contextmanager
-def run(text: str, url: str, watchdog: int = drive.WATCHDOG) -> Iterator[tuple[EthercatBus, list[str]]]:
-    """What `takt drives run` is, on a thread; what it says."""
-    said: list[str] = []
-    whole = described(text)
-    bus = EthercatBus(whole["external"]["buses"][0], whole, said.append)
-    plant = drive.Plant({}, url, buses=[bus], watchdog=watchdog, say=said.append)
-    thread = threading.Thread(target=plant.run)
-    thread.start()
-    eventually(lambda: plant._running)
-    try:
-        yield bus, said
-    finally:
-        plant.stop()
-        thread.join(LONG_S)
-        bus.close()
+def run(
+    text: str, url: str, watchdog: int = drive.WATCHDOG
+) -> contextlib.AbstractContextManager[tuple[EthercatBus, list[str]]]:
+    return buses.run_on(EthercatBus, text, url, watchdog)
 
 
 def tell(emulation: Said, command: str) -> str:

@@ -10,7 +10,6 @@ import contextlib
 import struct
 import threading
 import time
-from collections import deque
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, Final
 
@@ -38,6 +37,7 @@ from takt.drives.can_link import (
 from takt.drives.cia402 import MODE_NAMES, Mode
 from takt.drives.emulation_commands import CLOCK, CLOCK_IS_SYNC
 from takt.drives.error_texts import error_text
+from takt.drives.field_bus import ANSWERS_WITHIN, FieldBus
 from takt.drives.scaling import scaling_of
 from takt.drives.sdo import SdoError
 from takt.errors import TaktError
@@ -45,8 +45,6 @@ from takt.errors import TaktError
 OPERATIONAL: Final = 5
 HEARTBEATS_MISSING: Final = 3
 STARTS_WITHIN_S: Final = 0.5  # until a node says that it is operational
-ANSWERS_WITHIN: Final = 0.9  # of a period, in real time
-ANSWERS_WITHIN_S: Final = 1.0  # in simulated time
 INPUTS_AGAIN_MS: Final = 100  # inputs come when they change, and that often, as one message may be lost
 BUSY: Final = 0.8  # of the bit rate
 NOT_MAPPED: Final = 1 << 31
@@ -87,10 +85,12 @@ class _Node:
         return f"{self.axis}: node {self.id}"
 
 
-class CanopenBus(drive.Bus):
+class CanopenBus(FieldBus):
     """The drives of one bus of a machine file.
 
     Raises TaktError where something is not as the machine file says."""
+
+    rhythm = "SYNC"
 
     def __init__(
         self,
@@ -100,20 +100,13 @@ class CanopenBus(drive.Bus):
         *,
         link: CanLink | None = None,
     ) -> None:
-        self.described = described
-        self.period_s = float(machine["cycle"]["period_s"])
-        self._say = say
+        super().__init__(described, machine, say)
         axes = {axis["name"]: axis for axis in machine["axes"]}
         self._nodes = [_Node(one, axes[one["axis"]]) for one in described["drives"]]
         self.axes: Sequence[str] = [node.axis for node in self._nodes]
         self._by_axis = {node.axis: node for node in self._nodes}
         self._heartbeat_s = float(described["heartbeat_s"])
         self._own_beat_s = 0.0
-        self._simulated = False
-        self.cycles = 0
-        self.late = 0  # drives' answers that did not come in time
-        self.syncs_s: deque[float] = deque(maxlen=200_000)  # in real time: when SYNC was sent
-        self.round_trips_s: deque[float] = deque(maxlen=200_000)  # from the first message to the last answer
         name = parse(described["bus"])
         self._check_load(name.has_wire)
         self._link = link or CanLink(name, described.get("bitrate"))
@@ -125,8 +118,8 @@ class CanopenBus(drive.Bus):
             raise
 
     @property
-    def bus_name(self) -> str:
-        return str(self.described["bus"])
+    def members(self) -> Sequence[_Node]:
+        return self._nodes
 
     # --- before motion ---
 
@@ -345,26 +338,13 @@ class CanopenBus(drive.Bus):
 
     # --- cycles ---
 
-    def start(self, axis: str, *, real_time: bool, period_s: float) -> None:
-        if abs(period_s - self.period_s) > 1e-9:
-            raise TaktError(
-                f"the engine's cycle is {1000 * period_s:g} ms, the machine file's {1000 * self.period_s:g} ms"
-            )
-        if real_time is not self._simulated:
-            return
-        metal = [node for node in self._nodes if not node.emulated]
-        if not real_time and metal:
-            raise TaktError(
-                f"{metal[0].named} is no emulated drive and has a clock of its own, but the engine runs in simulated "
-                f"time; run taktd --pace real"
-            )
+    def _tell_clock(self, simulated: bool) -> None:
         with self._link.background():
             for node in self._nodes:
                 if node.setting_up is not None:
                     node.setting_up.join()
                 if node.emulated:
-                    self._sdos[node.id].patience(1.0).write(*CLOCK, 0 if real_time else CLOCK_IS_SYNC, 8)
-        self._simulated = not real_time
+                    self._sdos[node.id].patience(1.0).write(*CLOCK, CLOCK_IS_SYNC if simulated else 0, 8)
 
     def exchange(self, told: Mapping[str, drive.SetPoint], *, real_time: bool) -> Mapping[str, drive.Measured | None]:
         self._link.drain()
@@ -378,12 +358,11 @@ class CanopenBus(drive.Bus):
                 self._send(node, node.drive.words(point, now_s))
         asked = [node for node in self._nodes if node.operational]
         sync_s = self._sync(asked)
-        limit_s = ANSWERS_WITHIN * self.period_s if real_time else ANSWERS_WITHIN_S
-        self._take_in(asked, begin_s + limit_s)
+        self._take_in(asked, begin_s + self._answers_within_s(real_time))
         end_s = time.monotonic()
         self.cycles += 1
         if real_time:
-            self.syncs_s.append(sync_s)
+            self.sent_s.append(sync_s)
             self.round_trips_s.append(end_s - begin_s)
         self.late += sum(not node.fresh for node in asked)
         return {node.axis: self._measured(node) if node.fresh else None for node in self._nodes}
@@ -448,20 +427,6 @@ class CanopenBus(drive.Bus):
             for node in self._nodes:
                 self._link.send(NMT_COMMAND, bytes((PRE_OPERATIONAL, node.id)))
         self._link.close()
-
-    def summary(self) -> str:
-        """What the cycles were like, in a line."""
-        said = f"{self.bus_name}: {counted(self.cycles, 'cycle')}, {counted(self.late, 'answer')} late or lost"
-        if len(self.syncs_s) > 2:
-            periods = sorted(b - a for a, b in zip(list(self.syncs_s)[:-1], list(self.syncs_s)[1:], strict=True))
-            trips = sorted(self.round_trips_s)
-            low, middle, high = (1000 * periods[int(q * (len(periods) - 1))] for q in (0.01, 0.5, 0.99))
-            trip, worst = (1000 * trips[int(q * (len(trips) - 1))] for q in (0.5, 0.99))
-            said += (
-                f"; SYNC every {middle:.3f} ms (1 % below {low:.3f}, 1 % above {high:.3f}); from set points to answers "
-                f"{trip:.3f} ms, 1 % above {worst:.3f}"
-            )
-        return said
 
 
 def _map_one(sdo: Sdo, index: int, cob_id: int, transmission: int, entries: Sequence[od.Object]) -> None:

@@ -32,12 +32,11 @@ from takt.drives.ethercat_link import (
     Wire,
     state_text,
 )
+from takt.drives.field_bus import ANSWERS_WITHIN, ANSWERS_WITHIN_S, FieldBus
 from takt.drives.scaling import scaling_of
 from takt.drives.sdo import SdoError
 from takt.errors import TaktError
 
-ANSWERS_WITHIN: Final = 0.9  # of a period, in real time
-ANSWERS_WITHIN_S: Final = 1.0  # in simulated time
 SIGNS_MISSING: Final = 3  # of heartbeat_s: the watchdog of a slave's outputs
 OPERATIONAL_WITHIN_S: Final = 5.0
 STATE_WITHIN_S: Final = 2.0
@@ -114,30 +113,25 @@ class _Slave:
         return self.state == OPERATIONAL
 
 
-class EthercatBus(drive.Bus):
+class EthercatBus(FieldBus):
     """The drives of one bus of a machine file.
 
     Raises TaktError where something is not as the machine file says."""
 
+    rhythm = "frames"
+
     def __init__(self, described: Mapping[str, Any], machine: Mapping[str, Any], say: Callable[[str], None]) -> None:
-        self.described = described
-        self.period_s = float(machine["cycle"]["period_s"])
-        self._say = say
+        super().__init__(described, machine, say)
         axes = {axis["name"]: axis for axis in machine["axes"]}
         self._slaves = [_Slave(one, axes[one["axis"]]) for one in described["drives"]]
         self.axes: Sequence[str] = [one.axis for one in self._slaves]
         self._by_axis = {one.axis: one for one in self._slaves}
-        self._simulated = False
-        self.cycles = 0
-        self.late = 0  # drives' answers that did not come in time
         self.lost_frames = 0
         self._lost_in_a_row = 0
         self._counter = 0  # of the last frame
         self._others_count = 0  # what slaves that are no axis' may add to it
         self._told_silent = False
         self._said: set[str] = set()
-        self.sent_s: deque[float] = deque(maxlen=200_000)  # in real time: when frames were sent
-        self.round_trips_s: deque[float] = deque(maxlen=200_000)
         self._look = threading.Event()
         self._ended = False
         self._watcher: threading.Thread | None = None
@@ -152,8 +146,8 @@ class EthercatBus(drive.Bus):
         self._watcher.start()
 
     @property
-    def bus_name(self) -> str:
-        return str(self.described["bus"])
+    def members(self) -> Sequence[_Slave]:
+        return self._slaves
 
     # --- before motion ---
 
@@ -503,11 +497,7 @@ class EthercatBus(drive.Bus):
 
     def _judge(self, one: _Slave, state: int) -> None:
         if state == OPERATIONAL:
-            one.state = state
-            if one.told_lost:
-                one.told_lost = False
-                self._say(f"{one.named} is heard again")
-            return
+            return self._goes_on(one)
         fell = one.state == OPERATIONAL
         one.state = state
         with contextlib.suppress(Exception):
@@ -521,6 +511,8 @@ class EthercatBus(drive.Bus):
             state = self._state_of(one) or 0
             if state == 0:
                 return
+            if state == OPERATIONAL:  # it came back meanwhile, as it was
+                return self._goes_on(one)
         elif fell:
             code = int.from_bytes(self._asked(one, 0x0134, 2), "little")
             text = self._wire.pysoem.al_status_code_to_string(code)
@@ -529,6 +521,12 @@ class EthercatBus(drive.Bus):
             self._bring_back(one, state)
         except (TaktError, SdoError) as error:
             self._say_once(f"{error}: tried again")
+
+    def _goes_on(self, one: _Slave) -> None:
+        one.state = OPERATIONAL
+        if one.told_lost:
+            one.told_lost = False
+            self._say(f"{one.named} is heard again")
 
     def _bring_back(self, one: _Slave, state: int) -> None:
         """Into operation again. Raises TaktError."""
@@ -584,24 +582,12 @@ class EthercatBus(drive.Bus):
 
     # --- cycles ---
 
-    def start(self, axis: str, *, real_time: bool, period_s: float) -> None:
-        if abs(period_s - self.period_s) > 1e-9:
-            raise TaktError(
-                f"the engine's cycle is {1000 * period_s:g} ms, the machine file's {1000 * self.period_s:g} ms"
-            )
-        if real_time is not self._simulated:
-            return
-        metal = [one for one in self._slaves if not one.emulated]
-        if not real_time and metal:
-            raise TaktError(
-                f"{metal[0].named} is no emulated drive and has a clock of its own, but the engine runs in simulated "
-                f"time; run taktd --pace real"
-            )
+    def _tell_clock(self, simulated: bool) -> None:
         with self._wire.lock:
             for one in self._slaves:
                 if one.emulated and one.operational:
-                    one.sdo.write(*CLOCK, 0 if real_time else CLOCK_IS_SYNC, 8)
-            self._simulated = not real_time
+                    one.sdo.write(*CLOCK, CLOCK_IS_SYNC if simulated else 0, 8)
+            self._simulated = simulated  # the watcher, which waits for the lock, goes by it
 
     def exchange(self, told: Mapping[str, drive.SetPoint], *, real_time: bool) -> Mapping[str, drive.Measured | None]:
         begin_s = time.monotonic()
@@ -610,7 +596,7 @@ class EthercatBus(drive.Bus):
             one = self._by_axis[axis]
             if one.operational and one.drive is not None:
                 self._put(one, one.drive.words(point, now_s))
-        self._frame(ANSWERS_WITHIN * self.period_s if real_time else ANSWERS_WITHIN_S)
+        self._frame(self._answers_within_s(real_time))
         if real_time:
             self.sent_s.append(begin_s)
             self.round_trips_s.append(time.monotonic() - begin_s)
@@ -650,19 +636,5 @@ class EthercatBus(drive.Bus):
             self._wire.master.write_state()
         self._wire.close()
 
-    def summary(self) -> str:
-        """What the cycles were like, in a line."""
-        said = (
-            f"{self.bus_name}: {counted(self.cycles, 'cycle')}, {counted(self.late, 'answer')} late or lost, "
-            f"{counted(self.lost_frames, 'frame')} lost"
-        )
-        if len(self.sent_s) > 2:
-            periods = sorted(b - a for a, b in zip(list(self.sent_s)[:-1], list(self.sent_s)[1:], strict=True))
-            trips = sorted(self.round_trips_s)
-            low, middle, high = (1000 * periods[int(q * (len(periods) - 1))] for q in (0.01, 0.5, 0.99))
-            trip, worst = (1000 * trips[int(q * (len(trips) - 1))] for q in (0.5, 0.99))
-            said += (
-                f"; frames every {middle:.3f} ms (1 % below {low:.3f}, 1 % above {high:.3f}); from set points to "
-                f"answers {trip:.3f} ms, 1 % above {worst:.3f}"
-            )
-        return said
+    def _also_lost(self) -> str:
+        return f", {counted(self.lost_frames, 'frame')} lost"

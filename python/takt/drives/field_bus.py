@@ -1,0 +1,91 @@
+"""What the drives of every field bus have in common for an engine: its pace, its clock, what its cycles were like."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Final, Protocol
+
+from takt import drive
+from takt.counted import counted
+from takt.errors import TaktError
+
+ANSWERS_WITHIN: Final = 0.9  # of a period, in real time
+ANSWERS_WITHIN_S: Final = 1.0  # in simulated time
+
+
+class Member(Protocol):
+    """A drive on a bus."""
+
+    emulated: bool
+
+    @property
+    def named(self) -> str: ...
+
+
+class FieldBus(drive.Bus):
+    """The drives of one bus of a machine file."""
+
+    rhythm: str  # what is sent once a cycle
+
+    def __init__(self, described: Mapping[str, Any], machine: Mapping[str, Any], say: Callable[[str], None]) -> None:
+        self.described = described
+        self.period_s = float(machine["cycle"]["period_s"])
+        self._say = say
+        self._simulated = False
+        self.cycles = 0
+        self.late = 0  # drives' answers that did not come in time
+        self.sent_s: deque[float] = deque(maxlen=200_000)  # in real time: when that was sent
+        self.round_trips_s: deque[float] = deque(maxlen=200_000)  # from the first message to the last answer
+
+    @property
+    def bus_name(self) -> str:
+        return str(self.described["bus"])
+
+    @property
+    @abstractmethod
+    def members(self) -> Sequence[Member]:
+        """All drives."""
+
+    @abstractmethod
+    def _tell_clock(self, simulated: bool) -> None:
+        """Emulated drives go by the engine's time, or by the clock."""
+
+    def start(self, axis: str, *, real_time: bool, period_s: float) -> None:
+        if abs(period_s - self.period_s) > 1e-9:
+            raise TaktError(
+                f"the engine's cycle is {1000 * period_s:g} ms, the machine file's {1000 * self.period_s:g} ms"
+            )
+        if real_time is not self._simulated:
+            return
+        metal = [one for one in self.members if not one.emulated]
+        if not real_time and metal:
+            raise TaktError(
+                f"{metal[0].named} is no emulated drive and has a clock of its own, but the engine runs in simulated "
+                f"time; run taktd --pace real"
+            )
+        self._tell_clock(not real_time)
+        self._simulated = not real_time
+
+    def _answers_within_s(self, real_time: bool) -> float:
+        return ANSWERS_WITHIN * self.period_s if real_time else ANSWERS_WITHIN_S
+
+    def summary(self) -> str:
+        """What the cycles were like, in a line."""
+        said = f"{self.bus_name}: {counted(self.cycles, 'cycle')}, {counted(self.late, 'answer')} late or lost"
+        said += self._also_lost()
+        if len(self.sent_s) > 2:
+            sent = list(self.sent_s)
+            periods = sorted(b - a for a, b in zip(sent[:-1], sent[1:], strict=True))
+            trips = sorted(self.round_trips_s)
+            low, middle, high = (1000 * periods[int(q * (len(periods) - 1))] for q in (0.01, 0.5, 0.99))
+            trip, worst = (1000 * trips[int(q * (len(trips) - 1))] for q in (0.5, 0.99))
+            said += (
+                f"; {self.rhythm} every {middle:.3f} ms (1 % below {low:.3f}, 1 % above {high:.3f}); from set points "
+                f"to answers {trip:.3f} ms, 1 % above {worst:.3f}"
+            )
+        return said
+
+    def _also_lost(self) -> str:
+        return ""
