@@ -38,7 +38,8 @@ class PathCourse {
             double factor) noexcept;
   // Computes the reference; in another thread than Take if that has returned. If the intervals do not suffice it ends
   // at rest at an earlier node. Returns false if there is none.
-  // `share`: of the limits, used by the reference; a plan from a motion is found the sooner the less it is.
+  // `share`: of the limits of acceleration and jerk, used by the reference, above 0 to 1. A plan from a motion is found
+  // more often with a small one.
   bool Make(Planner& planner, double share = 1) noexcept;
 
   // Returns what to plan; refers to this course.

@@ -9,90 +9,39 @@ namespace takt::trajectory {
 
 namespace {
 
-constexpr double kPlanShare = 0.99;  // of the limits that rows leave: the rest is for what lies between knots
-constexpr std::size_t kFadeIntervals =
-    8;                                // behind a given pace, which may use all of a limit, the share comes down to that
-constexpr int kVerifyRounds = 8;      // of checking and tightening
-constexpr int kRoundsFromMotion = 6;  // the same: tightened more often a plan is slower than the one that goes on
-constexpr double kTighter = 1.002;    // than what a check found
-constexpr int kStubborn = 2;          // rounds
-constexpr double kNearly = 1.5;       // a plan that uses less of a limit is good at a lower rate
-constexpr double kLowerRounding = 1e-9;
-constexpr double kBeginRounding = 1e-6;
-constexpr double kPrecision = 1e-3;
-constexpr double kToBoundary = 0.99;
-constexpr double kLeastLeft = 0.2;  // of an ordinate after a step
-constexpr int kStepsPerRound = 80;
-constexpr int kPolishingSteps = 30;
-constexpr int kPolishingRounds = 4;
-constexpr std::size_t kRampSpace[] = {3, 12};  // intervals between what is held at a limit of speed and what is not
-constexpr double kNearlyAtSpeed = 0.97;        // of the square
-constexpr double kAtSpeed = 1 - 1e-9;          // the same, where it is held
-constexpr double kNearStart = 1e-5;            // of rows: slack at a start that is nearly the plan
+constexpr double kPlanShare = 0.99;            // of each limit, used by the rows: the rest is for values between knots
+constexpr std::size_t kFadeIntervals = 8;      // after a given pace, which may use all of a limit, down to that share
+constexpr int kVerifyRounds = 8;               // of verifying and tightening
+constexpr int kRoundsFromMotion = 6;           // with a given pace; after more the law in force is usually faster
+constexpr double kTighter = 1.002;             // factor of the use that was found
+constexpr int kStubborn = 2;                   // rounds after which tightening is squared
+constexpr double kNearly = 1.5;                // use of a limit below which a plan is feasible at a lower rate
+constexpr double kLowerRounding = 1e-9;        // share of R
+constexpr double kBeginRounding = 1e-6;        // share of a limit, in the first interval after a given pace
+constexpr double kPrecision = 1e-3;            // of gap and residual
+constexpr double kToBoundary = 0.99;           // of the step to where a slack or a multiplier is 0
+constexpr double kLeastLeft = 0.2;             // of an ordinate, after a step
+constexpr double kFarSlack = 0.1;              // initial slack of rows, share of their terms: from a uniform rate
+constexpr double kTightenedSlack = 0.02;       // from a plan whose rows were tightened
+constexpr double kNearSlack = 1e-5;            // from a feasible plan
+constexpr int kStepsPerRound = 80;             // Newton steps
+constexpr int kHoldingSteps = 30;              // Newton steps
+constexpr int kHoldingRounds = 4;              // of verifying and tightening
+constexpr std::size_t kRampSpace[] = {3, 12};  // intervals left free on both sides of a held run, tried in turn
+constexpr double kNearlyAtSpeed = 0.97;        // of the squared velocity limit: such intervals are held at it
+constexpr double kAtSpeed = 1 - 1e-9;          // of R where the reference cruises
 constexpr double kCruises = 1e-9;              // share of a limit that is rounding
-constexpr double kSameSpeed = 1e-6;            // of the square
-constexpr double kLost = 1e6;                  // of the time: steps that lead nowhere
-constexpr double kBetween = 0.2;    // of a second difference: more than a parabola through three samples rises (1/8)
-constexpr double kSmall = 1e-3;     // share of a limit that asks for no rows: the check looks at it all the same
-constexpr double kOfUniform = 0.7;  // of the fastest uniform rate: where steps begin
-
-double Series(double x) {  // (cosh √x - 1) / x and its like for x < 0, for small x
-  return 0.5 + x * (1.0 / 24 + x * (1.0 / 720));
-}
-
-// Position and rate after `t` of a motion with acceleration slope + bend * (position - begin).
-ReferenceState Move(double root, double slope, double bend, double t) {
-  const double x = bend * t * t;
-  double c = 0, s = 0, integral = 0;  // cosh, sinh / w, (cosh - 1) / w²
-  if (std::abs(x) < 1e-3) {
-    integral = t * t * Series(x);
-    c = 1 + bend * integral;
-    s = t * (1 + x * (1.0 / 6 + x * (1.0 / 120 + x * (1.0 / 5040))));
-  } else {
-    const double w = std::sqrt(std::abs(bend));
-    c = bend > 0 ? maths::Cosh(w * t) : maths::Cos(w * t);
-    s = (bend > 0 ? maths::Sinh(w * t) : maths::Sin(w * t)) / w;
-    integral = (c - 1) / bend;
-  }
-  const double way = root * s + slope * integral;
-  const double rate = root * c + slope * s;
-  return {way, rate, slope + bend * way, bend * rate};
-}
-
-// Time over an interval: with x = length / (sum of both rates) it is 2/w atanh(w x), w² the bend.
-double Duration(double length, double before, double after, double bend) {
-  const double x = length / (std::sqrt(before) + std::sqrt(after));
-  const double y = bend * x * x;
-  if (std::abs(y) < 1e-3) return 2 * x * (1 + y * (1.0 / 3 + y * (1.0 / 5 + y * (1.0 / 7))));
-  const double w = std::sqrt(std::abs(bend));
-  return 2 / w * (bend > 0 ? maths::Atanh(w * x) : maths::Atan(w * x));
-}
+constexpr double kSamePace = 1e-6;             // of R and its slope
+constexpr double kLost = 1e6;                  // of the duration: gap or residual of a diverged solution
+constexpr double kBetween = 0.2;               // of a second difference: more than a parabola rises (1/8)
+constexpr double kSmall = 1e-3;                // share of a limit that needs no rows; Verify looks at it all the same
+constexpr double kOfUniform = 0.7;             // of the fastest uniform R: where the steps begin
 
 bool Above0(double number) {
   return number > 0 && std::isfinite(number);
 }
 
 }  // namespace
-
-ReferenceState PathPlan::Within(std::size_t interval, double share) const noexcept {
-  const Knot& knot = knots_[interval];
-  const double way = share * (knots_[interval + 1].reference_s - knot.reference_s);
-  const double slope = knot.slope + knot.bend * way;
-  const double rate = std::sqrt(knot.square + way * (knot.slope + slope));
-  return {knot.reference_s + way, rate, slope, knot.bend * rate};
-}
-
-ReferenceState PathPlan::At(double time_s) const noexcept {
-  if (count_ == 0) return {};
-  const auto end = knots_.begin() + static_cast<std::ptrdiff_t>(count_);
-  if (!(time_s > 0)) return Within(0, 0);
-  if (time_s >= duration()) return Within(count_ - 2, 1);
-  const auto behind = std::upper_bound(knots_.begin(), end, time_s, [](double t, const Knot& k) { return t < k.at_s; });
-  const Knot& knot = *(behind - 1);
-  ReferenceState state = Move(std::sqrt(knot.square), knot.slope, knot.bend, time_s - knot.at_s);
-  state.time = std::min(knot.reference_s + state.time, behind->reference_s);
-  return state;
-}
 
 PathPlanner::PathPlanner(std::size_t intervals, std::size_t coordinates)
     : most_intervals_(intervals),
@@ -263,7 +212,7 @@ void PathPlanner::MakeRows() noexcept {
   row_count_ = 0;
   const auto is_held = [&](std::size_t k) { return k < n_ && held_[k] != 0; };
   for (std::size_t k = 0; k < n_; ++k) {
-    if (k > 0 && is_held(k - 1) && is_held(k) && is_held(k + 1)) continue;  // nothing to say: the check sees it
+    if (k > 0 && is_held(k - 1) && is_held(k) && is_held(k + 1)) continue;  // no unknown in it; Verify checks it
     const Shape shape = ShapeOf(k);
     const Shares& f = tighten_[k];
     for (std::size_t e = 0; e < 2; ++e) {
@@ -341,7 +290,7 @@ bool PathPlanner::SolveLinear() noexcept {
 }
 
 // One primal-dual step. False, with the ordinates as they were: rounding has spoilt it.
-bool PathPlanner::Step(double centring, double start_share, bool first) noexcept {
+bool PathPlanner::Step(double centring, double start_slack, bool first) noexcept {
   MakeRows();
   const auto rows = std::span(rows_).first(row_count_);
   for (auto* vector : {&diagonal_, &next_, &second_next_, &right_}) {
@@ -378,8 +327,8 @@ bool PathPlanner::Step(double centring, double start_share, bool first) noexcept
     if (first) {
       double scale = std::abs(row.value);
       of_row(row, [&](std::size_t at, std::size_t i) { scale += std::abs(row.gradient[i] * ordinates_[at]); });
-      row.slack = std::max(row.value, start_share * scale + 1e-9);
-      row.multiplier = (start_share < 0.1 ? 0.02 : 1.0) * per_row / row.slack;
+      row.slack = std::max(row.value, start_slack * scale + 1e-9);
+      row.multiplier = (start_slack < kFarSlack ? 0.02 : 1.0) * per_row / row.slack;
     } else {
       row.slack = std::max(row.slack, row.value);
     }
@@ -454,11 +403,11 @@ bool PathPlanner::Step(double centring, double start_share, bool first) noexcept
 }
 
 // Towards the least time from where the ordinates are, as far as steps lead.
-void PathPlanner::Solve(double start_share, int most) noexcept {
+void PathPlanner::Solve(double start_slack, int most) noexcept {
   double centring = 0.2;
   for (int i = 0; i < most && steps_ < kMostSteps; ++i) {
     ++steps_;
-    if (!Step(centring, start_share, i == 0)) return;
+    if (!Step(centring, start_slack, i == 0)) return;
     if (!(gap_ < kLost && residual_ < kLost)) return;
     if (gap_ < kPrecision && residual_ < kPrecision && infeasible_ < 1e-6) return;
     const double share = std::min(primal_, dual_);
@@ -466,7 +415,8 @@ void PathPlanner::Solve(double start_share, int most) noexcept {
   }
 }
 
-// The largest shares of limits that an interval uses; infinite where R is not above 0 or something is not finite.
+// Returns the largest shares of the limits that an interval uses; infinite where R is not above 0 or something is not
+// finite.
 PathPlanner::Shares PathPlanner::UseOf(std::size_t k) noexcept {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   const Shape shape = ShapeOf(k);
@@ -515,7 +465,8 @@ PathPlanner::Shares PathPlanner::UseOf(std::size_t k) noexcept {
       }
     }
   }
-  if (cruises_[k] != 0) {  // its speed goes as the root of R, a parabola with the ordinate as its control point
+  if (cruises_[k] !=
+      0) {  // the velocity is proportional to sqrt(R), and R a parabola with its ordinate as control point
     const double after = shape.square[1].value, control = b + a * request_->lengths[k];
     double square = std::max(b, after);
     if (control > square) square = (control * control - b * after) / (2 * control - b - after);
@@ -530,21 +481,21 @@ bool PathPlanner::Verify(int round) noexcept {
   most_use_ = 0;
   for (std::size_t k = 0; k < n_; ++k) {
     use_[k] = UseOf(k);
-    // A given pace may use all of a limit.
+    // A given pace may already use all of a limit.
     const double rounding = k == 0 && request_->begin ? kBeginRounding : 0;
     for (const double use : use_[k]) most_use_ = std::max(most_use_, use - rounding);
   }
   if (most_use_ <= 1) return true;
   for (std::size_t k = 0; k < n_; ++k) {
-    // What is given at an end is as it is: what is too much near it is asked of its own kind of limit only. Elsewhere
-    // plans are found the sooner if all are tightened.
+    // Near a given pace only the kind of limit that is exceeded is tightened: the pace may use all of the others.
+    // Elsewhere tightening all three kinds converges sooner.
     const bool apart = (request_->begin && k < kFadeIntervals) || (request_->end && n_ - k <= kFadeIntervals);
     for (std::size_t order = 0; order < 3; ++order) {
       double use = 0;
       for (const std::size_t near : {k > 0 ? k - 1 : k, k, k + 1 < n_ ? k + 1 : k}) {
         use = std::max(use, apart ? use_[near][order] : std::ranges::max(use_[near]));
       }
-      // What is found again lies between the ends of an interval, where rows say less about it.
+      // Found again, it lies between the knots, where rows constrain it less.
       if (round >= kStubborn) use *= use;
       if (round >= 2 * kStubborn) use *= use;
       if (use > 1) tighten_[k][order] *= kTighter * std::min(use, 2.0);
@@ -553,11 +504,12 @@ bool PathPlanner::Verify(int round) noexcept {
   return false;
 }
 
+// Returns the duration of the plan that the ordinates are [s].
 double PathPlanner::TimeOf() const noexcept {
   double time = 0;
   for (std::size_t k = 0; k < n_; ++k) {
     const Shape shape = ShapeOf(k);
-    time += Duration(request_->lengths[k], shape.square[0].value, shape.square[1].value, shape.bend.value);
+    time += IntervalDuration(request_->lengths[k], shape.square[0].value, shape.square[1].value, shape.bend.value);
   }
   return time;
 }
@@ -569,16 +521,16 @@ void PathPlanner::Publish(PathPlan& out) const noexcept {
     const Shape shape = ShapeOf(k);
     out.knots_[k] = {reference, time, shape.square[0].value, shape.slope[0].value, shape.bend.value};
     reference += request_->lengths[k];
-    time += Duration(request_->lengths[k], shape.square[0].value, shape.square[1].value, shape.bend.value);
+    time += IntervalDuration(request_->lengths[k], shape.square[0].value, shape.square[1].value, shape.bend.value);
     if (k + 1 == n_) out.knots_[n_] = {reference, time, shape.square[1].value, shape.slope[1].value, shape.bend.value};
   }
 }
 
-// Holds the ordinates of intervals that cruise, from the first to the last one of each run, but for `space` of them
-// where the speed comes from, or goes to, another one. Returns whether there are such.
+// Fixes the ordinates of runs of cruising intervals at the velocity limit, with `space` intervals free at both ends of
+// a run for the ramps. Returns whether there is any such run.
 bool PathPlanner::Hold(std::size_t space) noexcept {
   const auto goes_on = [](const std::optional<ReferencePace>& pace) {
-    return pace && std::abs(pace->square - 1) <= kSameSpeed && std::abs(pace->slope) <= kSameSpeed;
+    return pace && std::abs(pace->square - 1) <= kSamePace && std::abs(pace->slope) <= kSamePace;
   };
   bool any = false;
   for (std::size_t first = 0, behind = 0; first < n_; first = behind + 1) {
@@ -587,7 +539,7 @@ bool PathPlanner::Hold(std::size_t space) noexcept {
     const std::size_t after = behind == n_ && goes_on(request_->end) ? 1 : space;
     if (behind - first <= before + after) continue;
     any = true;
-    // What has come from the given pace about as the reference does goes on like it.
+    // A plan that follows the reference from the given pace to the run starts as the reference itself.
     const auto like_reference = [](double c) { return c > kNearlyAtSpeed && c * kNearlyAtSpeed < 1; };
     const auto head = std::span(ordinates_).first(first + 1);
     const bool all = request_->begin && std::ranges::all_of(head, like_reference);
@@ -603,8 +555,8 @@ bool PathPlanner::Hold(std::size_t space) noexcept {
   return any;
 }
 
-// Rows leave a share of the limits, and so of the speed, too. Of a plan that is good, what nearly goes at the largest
-// speed of the first coordinate is held there, and the rest planned again.
+// Rows use kPlanShare of the velocity limit, too. In a feasible plan this fixes what cruises near the limit at the
+// limit and plans the rest again; `out` changes if that is faster.
 void PathPlanner::HoldSpeed(PathPlan& out) noexcept {
   for (std::size_t k = 0; k < n_; ++k) {
     const Shape shape = ShapeOf(k);
@@ -617,8 +569,8 @@ void PathPlanner::HoldSpeed(PathPlan& out) noexcept {
     SettleEnds();
     std::copy_n(tighten_.begin(), n_, kept_tighten_.begin());
     bool good = false;
-    for (int round = 0; round < kPolishingRounds && !good; ++round) {
-      Solve(kNearStart, kPolishingSteps);
+    for (int round = 0; round < kHoldingRounds && !good; ++round) {
+      Solve(kNearSlack, kHoldingSteps);
       good = Verify(round);
       if (most_use_ > kNearly) break;
     }
@@ -632,8 +584,8 @@ void PathPlanner::HoldSpeed(PathPlan& out) noexcept {
   most_use_ = use;
 }
 
-// What rows leave of the limits, before any check. Behind a given pace that comes down to its share in as many
-// intervals, and in as much time, as it takes to lose so much speed.
+// Sets the shares of the limits that rows use before the first check: after a given pace they fall to kPlanShare within
+// the time that the first coordinate needs to lose that share of its velocity.
 void PathPlanner::SetShares() noexcept {
   const auto fade_s = [&](std::size_t end) {
     const RateLimits& l = merged_[end];
@@ -681,22 +633,16 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
   std::fill_n(ordinates_.begin(), n_, start);
   SettleEnds();
   if (ordinates_[0] > 0 && ordinates_[n_ - 1] > 0) {
-    double start_share = 0.1;
+    double slack = kFarSlack;
     const int rounds = request.begin ? kRoundsFromMotion : kVerifyRounds;
     for (int round = 0; round < rounds && steps_ < kMostSteps; ++round) {
-      Solve(start_share, kStepsPerRound);
+      Solve(slack, kStepsPerRound);
       if (Verify(round)) {
         Publish(out);
         HoldSpeed(out);
         return PathPlanStatus::kPlanned;
       }
-      start_share = 0.02;
-      if (round == 0 && request.begin && !(gap_ < 1 && residual_ < 1)) {  // again, with the reference as a plan
-        std::fill_n(ordinates_.begin(), n_, start);
-        SettleEnds();
-        SetShares();
-        start_share = kNearStart;
-      }
+      slack = kTightenedSlack;
     }
   }
   if (request.begin || request.end) return PathPlanStatus::kNoPlan;

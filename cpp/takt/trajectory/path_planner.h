@@ -23,6 +23,8 @@
 #include <span>
 #include <vector>
 
+#include "takt/trajectory/path_plan.h"
+
 namespace takt::trajectory {
 
 // Derivatives of one coordinate of the reference motion by the reference time.
@@ -48,12 +50,6 @@ struct ReferenceMotion {
   const void* owner = nullptr;
 };
 
-// How fast the reference time passes at an end of a plan.
-struct ReferencePace {
-  double square = 1;  // R > 0
-  double slope = 0;   // R' / 2 [1/s]
-};
-
 struct PathPlanRequest {
   std::span<const double> lengths;     // of the intervals of the reference time [s], > 0
   std::span<const RateLimits> limits;  // of each coordinate
@@ -71,42 +67,6 @@ enum class PathPlanStatus : std::uint8_t {
   kInvalid,   // a number is not finite, a length or a limit is not above 0, or there are fewer than 4 intervals
   kTooLarge,  // more intervals or coordinates than the planner has room for
   kNoPlan,    // from or to the given pace no plan was found within the limits
-};
-
-// A place on a plan: the reference time and its derivatives by time.
-struct ReferenceState {
-  double time = 0;          // reference time [s]
-  double rate = 0;          // 1
-  double acceleration = 0;  // 1/s
-  double jerk = 0;          // 1/s²
-};
-
-// A plan: R at the knots, quadratic between them. Evaluation is pure.
-class PathPlan {
- public:
-  explicit PathPlan(std::size_t intervals) : knots_(intervals + 1) {}
-
-  double duration() const noexcept { return count_ > 0 ? knots_[count_ - 1].at_s : 0; }  // s
-  std::size_t intervals() const noexcept { return count_ > 0 ? count_ - 1 : 0; }
-  // The pace at a knot, to go on from there with another plan.
-  ReferencePace pace(std::size_t knot) const noexcept { return {knots_[knot].square, knots_[knot].slope}; }
-  double knot_time(std::size_t knot) const noexcept { return knots_[knot].at_s; }  // s from the beginning
-  // At `time_s` from the beginning; before it and behind the end what is there, at the ends exactly.
-  ReferenceState At(double time_s) const noexcept;
-  // Of an interval at `share` (0 to 1) of its length.
-  ReferenceState Within(std::size_t interval, double share) const noexcept;
-
- private:
-  friend class PathPlanner;
-  struct Knot {
-    double reference_s = 0;
-    double at_s = 0;
-    double square = 0;
-    double slope = 0;
-    double bend = 0;  // of the slope, up to the next knot
-  };
-  std::vector<Knot> knots_;
-  std::size_t count_ = 0;
 };
 
 // What holds for every plan handed out (kPlanned, kScaled), whatever was asked:
@@ -166,8 +126,8 @@ class PathPlanner {
   void SettleEnds() noexcept;
   void Add(std::size_t k, double value, const std::array<double, 3>& gradient) noexcept;
   void MakeRows() noexcept;
-  void Solve(double start_share, int most) noexcept;
-  bool Step(double centring, double start_share, bool first) noexcept;
+  void Solve(double start_slack, int most) noexcept;
+  bool Step(double centring, double start_slack, bool first) noexcept;
   bool SolveLinear() noexcept;
   Shares UseOf(std::size_t k) noexcept;
   bool Verify(int round) noexcept;
@@ -180,18 +140,18 @@ class PathPlanner {
   const PathPlanRequest* request_ = nullptr;
   std::size_t n_ = 0, count_ = 0;  // intervals, coordinates
   std::size_t most_intervals_, most_coordinates_;
-  std::vector<ReferenceRate> ends_;   // of all coordinates at the beginning and at the end of each interval
-  std::vector<RateLimits> merged_;    // of the first one there, those of coordinates that go like it included
-  std::vector<std::uint64_t> apart_;  // coordinates that do not, a mask
-  std::vector<ReferenceRate> at_;     // of all coordinates
-  std::vector<double> ordinates_;     // c: R's control ordinate above the middle of each interval
-  std::vector<Shares> tighten_;       // factors of the rates of each interval
-  std::vector<Shares> use_;           // of the limits in each interval
-  std::vector<double> kept_;          // ordinates of a plan that is good ...
-  std::vector<Shares> kept_tighten_;  // ... and its factors
-  // Of each interval: its ordinate is held; its reference goes as fast as the first coordinate may.
-  std::vector<std::uint8_t> held_, cruises_;
-  std::vector<double> signed_;  // velocity, acceleration and jerk of all coordinates at three samples
+  std::vector<ReferenceRate> ends_;    // of all coordinates at the beginning and at the end of each interval
+  std::vector<RateLimits> merged_;     // of the first one there, those of coordinates that go like it included
+  std::vector<std::uint64_t> apart_;   // coordinates that do not, a mask
+  std::vector<ReferenceRate> at_;      // of all coordinates
+  std::vector<double> ordinates_;      // c: R's control ordinate above the middle of each interval
+  std::vector<Shares> tighten_;        // factors of the rates of each interval
+  std::vector<Shares> use_;            // of the limits in each interval
+  std::vector<double> kept_;           // ordinates of a feasible plan ...
+  std::vector<Shares> kept_tighten_;   // ... and its factors
+  std::vector<std::uint8_t> held_;     // of each interval: its ordinate is fixed
+  std::vector<std::uint8_t> cruises_;  // its reference moves at the velocity limit of the first coordinate
+  std::vector<double> signed_;         // velocity, acceleration and jerk of all coordinates at three samples
   std::vector<Row> rows_;
   std::vector<double> diagonal_, next_, second_next_, right_, step_;
   std::size_t row_count_ = 0;

@@ -11,12 +11,12 @@ constexpr double kLead_s = 0.012;         // from the order of a plan to its sta
 constexpr std::uint64_t kMostLead = 400;  // cycles
 constexpr std::uint64_t kOrderAgain = 8;  // cycles after one that failed
 constexpr double kRenew_s = 0.4;          // before a law ends, if the path does not
-constexpr double kUrgent_s = 0.15;        // before a law ends, a slower plan is better than none
+constexpr double kUrgent_s = 0.15;        // before the law in force ends: a slower plan is accepted
 constexpr double kWithin = 1 + 1e-7;      // of a limit
 constexpr int kSamples = 12;              // of a piece of a profile that is verified, besides the nodes it passes
 constexpr double kShares[] = {1, 0.8, 0.6, 0.45, 0.3, 0.2, 0.1};  // of limits, tried for braking and for bridges
 constexpr double kReferenceShares[] = {1, 0.8, 0.5};              // of limits, tried for the reference of a plan
-constexpr double kRoomForPlans = 0.999;                           // share of limits
+constexpr double kRoomForPlans = 0.999;                           // of limits: a plan can start from such a motion
 constexpr double kSamePosition = 1e-9;                            // mm
 constexpr double kCoordinatesShare = 0.979;                       // of the coordinates' limits; plans use 0.98
 constexpr int kTails = 8;                                         // starts tried for a tail
@@ -59,7 +59,7 @@ void PathTiming::DropPlan() noexcept {
   ready_ = false;
 }
 
-// A plan that does not get further than a place stays.
+// The path behind an arc length changes: a plan that ends there or before stays.
 void PathTiming::KeepPlanTo(double place) noexcept {
   known_to_ = std::min(known_to_, place);
   if (ready_ && next_.EndPlace() > known_to_ + kSamePosition) ready_ = false;
@@ -163,7 +163,6 @@ bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, co
     if (!(velocity > 0)) continue;
     const bool last = to == end && straight && StopBehind(window, to) == to;
     for (double share : kShares) {
-      // A plan that is to begin from it needs room.
       if (share == 1 && !last) share = kRoomForPlans;
       const Limits limits{velocity, share * least.acceleration, share * least.deceleration, share * least.jerk};
       Profile profile{};
@@ -298,7 +297,7 @@ void PathTiming::TakePlan(std::uint64_t number) noexcept {
   if (dropped_) return;
   const PathPlanStatus status = maker_->status;
   const bool found = status == PathPlanStatus::kPlanned || status == PathPlanStatus::kScaled;
-  if (found && next_.EndPlace() > known_to_ + kSamePosition) return;  // that is no longer the path
+  if (found && next_.EndPlace() > known_to_ + kSamePosition) return;  // the path has changed there
   if (found && from_rest_) {
     const auto rests = current_.begin + static_cast<std::uint64_t>(std::ceil(current_.Duration() / period_s_ - 1e-9));
     next_.begin = std::max(tick_, rests);

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "path_courses.h"
+#include "takt/trajectory/path_timing.h"
 
 namespace takt::trajectory {
 namespace {
@@ -215,6 +216,42 @@ TEST(PathTiming, ComesToRestFromAnywhere) {
     ASSERT_TRUE(motion.ToRest(kFast)) << seed;  // and goes on
     EXPECT_EQ(motion.pace.now.position, course.length) << seed;
   }
+}
+
+// GR-40: a path of which the end changes in every cycle, as where chords are joined one after another, is gone without
+// a stop: plans that do not reach that end stay. It is too long for one plan.
+TEST(PathTiming, KeepsPlansThatEndBeforeAChange) {
+  Course course;
+  course.length = 700;
+  course.along = {300, 15000, 15000, 2e6};
+  course.limits.count = 1;
+  course.limits.of[0] = {2000, 15000, 2e6};
+  course.formulas.push_back({.slope = 0.5, .waves = {{0.5, 0.2, 0}, {0.05, 1.3, 1}}});
+  Motion motion(course);
+  motion.Plan();
+  PathTiming timing(kPeriod);
+  timing.Begin(motion.pace);
+  int cycles = 0, stops = 0, ends = 0;
+  double before = 0, slowest = 1e9;
+  for (; motion.pace.now.position < course.length && cycles < 20000; ++cycles) {
+    timing.Advance(motion.window, 1, motion.pace);
+    if (motion.pace.now.position < course.length / 2) {
+      ASSERT_TRUE(timing.StopBefore(motion.window, course.length - 1e-3, motion.pace)) << cycles;
+    }
+    timing.Ask(motion.window, 1, motion.pace);
+    if (const auto number = timing.MakePlan()) timing.TakePlan(*number);
+    if (timing.rest_place() != before) ++ends;
+    before = timing.rest_place();
+    const double s = motion.pace.now.position;
+    if (s > 10 && s < course.length - 10) {
+      slowest = std::min(slowest, motion.pace.now.velocity);
+      stops += motion.pace.now.velocity == 0 ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(motion.pace.now.position, course.length);
+  EXPECT_GE(ends, 3) << "one plan is enough: this says nothing";
+  EXPECT_EQ(stops, 0);
+  EXPECT_GT(slowest, 50);
 }
 
 }  // namespace
