@@ -71,6 +71,11 @@ def test_all_that_may_be_given() -> None:
             "nodes: 2",
             "m.yaml:17:22: external.buses[0].drives[1]: expected a known key, found 'nodes'; did you mean node?",
         ),
+        (
+            "  - name: x2\n",
+            "  - name: x2\n    drive: {torque_offset: {inertia: 0.1}}\n",
+            "drives[1].axis: expected an axis without drive: torque_offset, which is not sent to drives on a bus",
+        ),
         ("node: 2", 'node: 2, vendor: "2E1"', 'vendor: expected a number of 32 bits like "0x2E1", found'),
         (
             "node: 2",

@@ -131,6 +131,10 @@ def test_what_does_not_fit() -> None:
     text = yaml.safe_dump(with_offset(SERVO, {**IDENTIFIED, "inertia": -1}))
     with pytest.raises(takt.ConfigError, match=r"axes\[0\]\.drive\.torque_offset\.inertia: expected"):
         takt.Engine(text)
+    analog = with_offset(SERVO, IDENTIFIED)
+    analog["axes"][0]["drive"]["mode"] = "analog"
+    with pytest.raises(takt.ConfigError, match=r"drive\.torque_offset: needs a mode other than analog"):
+        takt.Engine(analog)
     with takt.Engine(SERVO) as engine:
         record = engine.record()
         engine.step(50)

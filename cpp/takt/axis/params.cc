@@ -68,6 +68,9 @@ void describe(Description<Drive>& d) {
   d.defaulted<&Drive::brake_closes_s>(
       unit::s, between(0, 10), "How long it takes to close: at power off the loop stays closed as long as that.");
   d.defaulted<&Drive::torque_offset>("Torque that the drive adds, from the set point; unset: none.");
+  d.rule<&Drive::torque_offset>("needs a mode other than analog: a voltage tells no torque", [](const Drive& drive) {
+    return !drive.torque_offset || drive.mode != DriveMode::kAnalog;
+  });
 }
 
 void describe(Description<InputSense>& d) {

@@ -123,6 +123,10 @@ class BusChecker {
       Add(at + ".axis", "expected an axis whose drive: mode is cyclic_position or cyclic_velocity, found " +
                             Quoted(drive.axis) + ", which is analog");
     }
+    if (axis.drive.torque_offset) {
+      Add(at + ".axis", "expected an axis without drive: torque_offset, which is not sent to drives on a bus, found " +
+                            Quoted(drive.axis));
+    }
     const axis::Encoder& encoder = axis.encoder;
     if (encoder.type != axis::EncoderType::kIncremental &&
         (encoder.ssi_bits != 32 || encoder.coding != axis::SsiCoding::kBinary)) {
