@@ -6,6 +6,7 @@ import json
 import math
 import os
 import warnings
+from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -125,6 +126,7 @@ class Engine(Session):
         self._origin = (text, file_name, period)
         self._journal: list[JournalEntry] | None = [] if journal else None  # all of it, for states that are kept
         self._taken = 0  # entries of it that `take_journal` has given
+        self._waiting: deque[tuple[int, float, str, str, str]] = deque()  # of a journal, what no cycle had applied
         if period is not None:
             period = seconds(period, "a period")
         described = json.loads(_core.load_machine(text, file_name))
@@ -187,15 +189,21 @@ class Engine(Session):
         """Commands applied since the last call: (cycle, ticket, lease in s, target, verb, arguments)."""
         if self._journal is None:
             return []
-        self._journal += self._core.take_journal()
+        self._hear_journal(self._journal)
         begin, self._taken = self._taken, len(self._journal)
         return self._journal[begin:]
 
+    def _hear_journal(self, journal: list[JournalEntry]) -> None:
+        for entry in self._core.take_journal():
+            journal.append(entry)
+            while self._waiting and self._waiting[0][0] <= entry[1]:
+                self._waiting.popleft()
+
     def save(self) -> Saved:
         """The state as it is now. `Engine.restore` makes an engine that stands there, and goes on in the same way. What
-        led there is kept, and is made again, so restoring takes as long as bare cycles do. Needs `journal=True`; there
-        must be no plant and no external drives, whose states are not the engine's, and no command that no cycle has
-        applied yet."""
+        led there is kept, and is made again, so restoring takes as long as bare cycles do. Commands that no cycle has
+        applied yet are kept, too. Needs `journal=True`; there must be no plant and no external drives, whose states are
+        not the engine's."""
         self._check_open()
         if self._journal is None:
             raise TaktError("only an engine with a journal can be saved: takt.Engine(machine, journal=True)")
@@ -203,9 +211,9 @@ class Engine(Session):
             raise TaktError(
                 "an engine whose axes a plant or external drives move cannot be saved: it lacks their state"
             )
-        self._journal += self._core.take_journal()
+        self._hear_journal(self._journal)
         text, file_name, period = self._origin
-        journal = tuple(self._journal)
+        journal = (*self._journal, *((self.cycle, *given) for given in self._waiting))
         return Saved(text, file_name, period, self.cycle, self.state_hash, journal, _core.__version__)
 
     @classmethod
@@ -222,23 +230,38 @@ class Engine(Session):
         return Engine.restore(self.save())
 
     def _go_to(self, saved: Saved) -> None:
-        for cycle, ticket, lease_s, target, verb, arguments in saved.journal:
-            if ticket == 0:
-                continue  # what the engine gave itself, it gives itself again
-            self._core.step(cycle - self.cycle)
-            _, error_id, sentence = self._core.resubmit(target, verb, arguments, ticket, lease_s)
-            if error_id:
-                raise TaktError(f"the saved command {target}.{verb} {arguments} cannot be given again: {sentence}")
+        waiting: list[JournalEntry] = []
+        for entry in saved.journal:
+            cycle, ticket, lease_s, target, verb, arguments = entry
+            if cycle == saved.cycle:
+                waiting.append(entry)
+            elif ticket:
+                self._core.step(cycle - self.cycle)
+                self._expect_given(entry, self._core.resubmit(target, verb, arguments, ticket, lease_s))
+            elif verb == "stop_all":
+                self._core.step(cycle - self.cycle)
+                self._core.request_shutdown()
+            # All else that the engine gave itself, it gives itself again.
         self._core.step(saved.cycle - self.cycle)
         self._core.take_feedback()
         self._core.take_hashes()
         self._journal = self._core.take_journal()
         self._taken = len(self._journal)
+        for entry in waiting:
+            self._expect_given(entry, self._core.submit(*entry[3:]))
+            self._waiting.append(entry[1:])
         if self.state_hash != saved.hash:
             raise TaktError(
                 f"the state after {saved.cycle} cycles is not the one that was saved (by version {saved.version}, "
                 f"this is {_core.__version__})"
             )
+
+    def _expect_given(self, entry: JournalEntry, answer: tuple[int, int, str]) -> None:
+        given, error_id, sentence = answer
+        _, ticket, _, target, verb, arguments = entry
+        if error_id or given != ticket:
+            why = sentence or f"expected ticket {ticket} for it, found {given}"
+            raise TaktError(f"the saved command {target}.{verb} {arguments} cannot be given again: {why}")
 
     def take_drive_journal(self) -> list[tuple[int, int, int, dict[str, Any]]]:
         """What external drives had measured, as it was taken since the last call: (cycle, number of the axis from 0,
@@ -257,6 +280,8 @@ class Engine(Session):
             self._report(feedback, 4, False, error_id, sentence, -1)
         else:
             self._unfinished[ticket] = feedback
+            if self._journal is not None:
+                self._waiting.append((ticket, 0.0, feedback.target, feedback.verb, text))
 
     def _release(self, feedback: Feedback) -> Feedback:
         release = super()._release(feedback)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import pickle
+import random
 from pathlib import Path
 
 import pytest
 import takt
 from takt.ready import EXAMPLES
+from test_walks import MACHINES, walk
 
 MACHINE = (EXAMPLES / "one_axis" / "machine.yaml").read_text(encoding="utf-8")
 CELL = EXAMPLES / "delta_cell" / "machine.yaml"
@@ -43,6 +46,49 @@ def test_a_clone_goes_on_as_the_engine_does() -> None:
             with clone.clone() as third:
                 assert third.state_hash == clone.state_hash
         assert before
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_clones_of_random_walks_go_on_as_they_did(machine: str) -> None:
+    """All kinds of component in whatever state, with what no cycle has applied yet."""
+    for seed in range(200 if os.environ.get("TAKT_LONG") else 2):
+        with takt.Engine(MACHINES[machine], journal=True) as engine:
+            rnd = random.Random(seed)
+            for _ in range(3):
+                walk(engine, rnd, 25)
+                with engine.clone() as clone:
+                    assert states(clone, 40) == states(engine, 40), (seed, engine.cycle)
+
+
+def test_what_no_cycle_has_applied_yet_is_kept() -> None:
+    """More commands than one cycle applies, of which a clone of a clone knows, too."""
+    with takt.Engine(MACHINE, journal=True) as engine:
+        axis = next(iter(engine.axes.values()))
+        axis.power().wait()
+        for distance in range(40):
+            axis.move_relative(distance=0.01 * (distance + 1), buffer_mode="aborting")
+        with engine.clone() as clone, clone.clone() as third:
+            expected = states(engine, 100)
+            assert states(clone, 100) == expected
+            assert states(third, 60) == expected[:60]
+            assert engine.take_journal()[1:] == clone.take_journal() == third.take_journal()
+            assert axis.set_position == clone.axis(axis.name).set_position > 0
+
+
+def test_an_engine_that_shuts_down_is_saved() -> None:
+    with takt.Engine(MACHINE, journal=True) as engine:
+        axis = next(iter(engine.axes.values()))
+        axis.power().wait()
+        axis.move_velocity(velocity=2)
+        engine.run(0.5)
+        engine.shut_down()
+        refused = axis.power()
+        engine.step(3)
+        with engine.clone() as clone:
+            assert states(clone, 10) == states(engine, 10)
+            again = clone.axis(axis.name).power()
+            clone.step(2)
+            assert str(again.error) == str(refused.error) != "None"
 
 
 def test_what_is_saved_can_be_kept_and_gone_back_to() -> None:
