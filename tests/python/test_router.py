@@ -161,6 +161,48 @@ def test_movers_that_fail_are_gone_round() -> None:
     assert not watch.overlaps
 
 
+@pytest.mark.parametrize(
+    ("verb", "arguments"),
+    [
+        ("emergency_stop", {"hold": True}),
+        ("emergency_stop", {"hold": False}),
+        ("stop_all", {"open_loops": False}),
+        ("stop_all", {"open_loops": True}),
+        ("fail_all_axes", {}),
+    ],
+)
+def test_stops_of_the_machine_end_the_orders(verb: str, arguments: dict[str, bool]) -> None:
+    """PL-72, AX-100: nobody goes on by itself; once the movers are ready again, new orders are carried out."""
+    engine = engine_of({"a": (0, 0), "b": (5, 5), "c": (0, 5)}, square(3))
+    watch = Watch(engine)
+    order = engine.route({"a": at((5, 0)), "b": at((0, 1))})
+    engine.run(0.15)
+    assert engine.mover("a").velocity_x > 100
+    engine.command("machine", verb, arguments)
+    engine.run(1.0)
+    stopped = [(m.x, m.y, m.velocity_x, m.velocity_y) for m in engine.movers.values()]
+    assert order.done
+    with pytest.raises(takt.RoutingError, match="mover [ab]"):
+        order.wait()
+    if arguments.get("hold"):
+        with pytest.raises(
+            takt.RoutingError, match=r"mover c cannot be moved on the surface: it is (ErrorStop|Disabled)"
+        ):
+            engine.route({"c": at((0, 3))})
+        engine.command("machine", "release_emergency_stop").wait()
+    engine.run(1.0)
+    assert [(m.x, m.y, m.velocity_x, m.velocity_y) for m in engine.movers.values()] == stopped
+    assert all(vx == vy == 0 for _, _, vx, vy in stopped)
+    for mover in engine.movers.values():
+        if mover.error:
+            mover.reset().wait()
+        mover.enable().wait()
+    engine.route({"a": at((5, 0)), "b": at((0, 1)), "c": at((0, 3))}).wait()
+    assert is_at(engine.mover("a"), (5, 0))
+    assert is_at(engine.mover("b"), (0, 1))
+    assert not watch.overlaps
+
+
 def test_those_behind_it_go_back_and_round() -> None:
     """A leader in a lane, and three behind it that were granted places beyond it: none waits for ever."""
     starts = {name: (x, 0) for x, name in enumerate("dcba")}
