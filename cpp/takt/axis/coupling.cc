@@ -109,7 +109,7 @@ double SlaveSync(const AxisParams& p, double position, double expected, SyncMode
   }
 }
 
-// The greatest velocity of a master, in its unit.
+// Returns the velocity limit of a master, in its unit per second.
 double Fastest(const Context& c, std::uint32_t master) {
   const OutsideMaster* outside = Outside(c, master);
   return outside ? outside->velocity : c.machine.params[master].limits.velocity;
@@ -360,17 +360,17 @@ void EndPhase(const Context& c, FeedbackState feedback, State& s) {
   s.coupling.phase_ticket = 0;
 }
 
-// How far a master may move away from the only position at which getting into step begins. Of a gear, which has no
-// cycle: as far as a master that turns round goes.
+// Returns how far a master may move away from the only position at which synchronisation begins: for a cam by one
+// cycle of it, for a gear as far as a master that reverses may overshoot.
 double Excursion(const Context& c, const State& s) {
   const CouplingState& k = s.coupling;
   if (s.active.kind == RequestKind::kCamIn) return std::abs(CamOf(c, s.active).way());
-  constexpr double kTurningRound = 1;  // s at the greatest velocity
-  return std::max(k.law.master_start_distance, kTurningRound * Fastest(c, k.law.terms[0].master));
+  constexpr double kReversal = 1;  // s at the largest velocity
+  return std::max(k.law.master_start_distance, kReversal * Fastest(c, k.law.terms[0].master));
 }
 
-// The axis waits for the only position of its master at which it could get into step, and the master has moved away
-// from it by more than it may since the waiting began (CAM-82).
+// Returns whether the axis waits for the only position of its master at which synchronisation can begin, and the master
+// has moved away from it by more than Excursion since the wait began (CAM-82).
 bool LeavesSyncPosition(const Context& c, const KinematicState& phase, const State& s) {
   const CouplingState& k = s.coupling;
   if (!Joins(s.active.kind) || k.joining != Joining::kWaiting || k.turn != 0) return false;
