@@ -402,17 +402,18 @@ bool PathPlanner::Step(double centring, double start_slack, bool first) noexcept
   return true;
 }
 
-// Towards the least time from where the ordinates are, as far as steps lead.
-void PathPlanner::Solve(double start_slack, int most) noexcept {
+// Towards the least time from where the ordinates are, as far as steps lead. False: they diverge.
+bool PathPlanner::Solve(double start_slack, int most) noexcept {
   double centring = 0.2;
   for (int i = 0; i < most && steps_ < kMostSteps; ++i) {
     ++steps_;
-    if (!Step(centring, start_slack, i == 0)) return;
-    if (!(gap_ < kLost && residual_ < kLost)) return;
-    if (gap_ < kPrecision && residual_ < kPrecision && infeasible_ < 1e-6) return;
+    if (!Step(centring, start_slack, i == 0)) return false;
+    if (!(gap_ < kLost && residual_ < kLost)) return false;
+    if (gap_ < kPrecision && residual_ < kPrecision && infeasible_ < 1e-6) return true;
     const double share = std::min(primal_, dual_);
     centring = share > 0.9 ? 0.1 : share > 0.5 ? 0.25 : share > 0.2 ? 0.5 : 0.8;
   }
+  return true;
 }
 
 // Returns the largest shares of the limits that an interval uses; infinite where R is not above 0 or something is not
@@ -441,6 +442,8 @@ PathPlanner::Shares PathPlanner::UseOf(std::size_t k) noexcept {
     }
     return true;
   };
+  const double slowest = std::min(b, shape.square[1].value);
+  const double step_s = slowest > 0 ? request_->lengths[k] / kSamples / std::sqrt(slowest) : kInfinite;
   for (int i = 0; i <= kSamples; ++i) {
     if (!shares(i)) return {kInfinite, kInfinite, kInfinite};
     if (i < 2) continue;
@@ -449,11 +452,20 @@ PathPlanner::Shares PathPlanner::UseOf(std::size_t k) noexcept {
       for (std::size_t order = 0; order < 3; ++order) {
         const std::size_t at = 3 * q + order;
         const auto value = [&](int j) { return signed_[static_cast<std::size_t>(j % 3) * width + at]; };
-        const double bent = kBetween * std::abs(value(i) - 2 * value(i - 1) + value(i - 2));
+        double bent = kBetween * std::abs(value(i) - 2 * value(i - 1) + value(i - 2));
         double high = std::max({value(i), value(i - 1), value(i - 2)});
         double low = std::min({value(i), value(i - 1), value(i - 2)});
-        // What lies between samples counts where there may be an extreme: not where they rise or fall steadily.
+        // What lies between samples counts where there may be an extreme: not where they rise or fall steadily. At an
+        // end they do so if the derivative there, which is the next order, has the same sign.
         const bool steady = (value(i) - value(i - 1)) * (value(i - 1) - value(i - 2)) > 0;
+        if (steady && (i == 2 || i == kSamples)) {
+          const int end = i == 2 ? 0 : i;
+          const double rise = i == 2 ? value(1) - value(0) : value(i) - value(i - 1);
+          if (order < 2) {
+            const double slope = signed_[static_cast<std::size_t>(end % 3) * width + at + 1];
+            bent = slope * rise < 0 ? std::min(bent, std::abs(slope) * step_s) : 0;
+          }
+        }
         if (!steady || i == 2 || i == kSamples) {
           high += bent;
           low -= bent;
@@ -596,8 +608,7 @@ void PathPlanner::SetShares() noexcept {
     if (!given) return;
     const double by_count = static_cast<double>(intervals) / kFadeIntervals;
     const double share = std::min({1.0, by_count, most_s > 0 ? at_s / most_s : 1.0});
-    const double factor = 1 + (1 / kPlanShare - 1) * share;
-    for (double& f : tighten_[k]) f = std::min(f, factor);
+    for (double& f : tighten_[k]) f = std::min(f, 1 + (f - 1) * share);
   };
   const double begin_s = fade_s(0), end_s = fade_s(2 * n_ - 1);
   double at_s = 0;
@@ -636,12 +647,13 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
     double slack = kFarSlack;
     const int rounds = request.begin ? kRoundsFromMotion : kVerifyRounds;
     for (int round = 0; round < rounds && steps_ < kMostSteps; ++round) {
-      Solve(slack, kStepsPerRound);
+      const bool converges = Solve(slack, kStepsPerRound);
       if (Verify(round)) {
         Publish(out);
         HoldSpeed(out);
         return PathPlanStatus::kPlanned;
       }
+      if (!converges && request.begin) break;
       slack = kTightenedSlack;
     }
   }

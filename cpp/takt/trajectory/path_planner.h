@@ -126,7 +126,7 @@ class PathPlanner {
   void SettleEnds() noexcept;
   void Add(std::size_t k, double value, const std::array<double, 3>& gradient) noexcept;
   void MakeRows() noexcept;
-  void Solve(double start_slack, int most) noexcept;
+  bool Solve(double start_slack, int most) noexcept;
   bool Step(double centring, double start_slack, bool first) noexcept;
   bool SolveLinear() noexcept;
   Shares UseOf(std::size_t k) noexcept;

@@ -10,7 +10,9 @@ namespace {
 constexpr double kLead_s = 0.012;         // from the order of a plan to its start
 constexpr std::uint64_t kMostLead = 400;  // cycles
 constexpr std::uint64_t kOrderAgain = 8;  // cycles after one that failed
-constexpr double kRenew_s = 0.4;          // before a law ends, if the path does not
+constexpr double kRenew_s = 0.4;          // before a law ends, if the path does not ...
+constexpr double kRenewShare = 0.75;      // ... and this share of its duration
+constexpr double kAgainShare = 0.1;       // of the time before it ends: the wait after a plan that failed, at least
 constexpr double kUrgent_s = 0.15;        // before the law in force ends: a slower plan is accepted
 constexpr double kWithin = 1 + 1e-7;      // of a limit
 constexpr int kSamples = 12;              // of a piece of a profile that is verified, besides the nodes it passes
@@ -264,8 +266,8 @@ void PathTiming::Ask(const PathWindow& window, double factor, const PathPace& pa
   }
   const std::uint64_t end = StopBehind(window, pace.node);
   const bool further = window[end].at.s > rest_place() + kSamePosition;
-  const bool wanted =
-      (further && rest_s() < kRenew_s) || braking_ || (!current_.planned && !final_) || current_.factor != factor;
+  const bool wanted = (further && rest_s() < std::min(kRenew_s, kRenewShare * current_.Duration())) || braking_ ||
+                      (!current_.planned && !final_) || current_.factor != factor;
   if (!wanted || tick_ < wait_until_ || !(window[end].at.s > pace.now.position + kSamePosition)) return;
   if (Order(window, factor, pace)) return;
   wait_until_ = tick_ + kOrderAgain;
@@ -308,7 +310,7 @@ void PathTiming::TakePlan(std::uint64_t number) noexcept {
     late_ = std::min(2 * (next_.begin - ordered_), kMostLead);
     return;
   } else {
-    wait_until_ = tick_ + kOrderAgain;
+    wait_until_ = tick_ + std::max(kOrderAgain, static_cast<std::uint64_t>(kAgainShare * rest_s() / period_s_));
     no_plan_ = from_rest_;
   }
   late_ = 0;

@@ -254,5 +254,32 @@ TEST(PathTiming, KeepsPlansThatEndBeforeAChange) {
   EXPECT_GT(slowest, 50);
 }
 
+// GR-40: where plans reach only a little way, since the path winds, each serves for a share of its time: plans cost
+// processor time.
+TEST(PathTiming, MakesFewPlans) {
+  Course course;
+  course.length = 600;
+  course.along = {300, 8000, 8000, 4e5};
+  course.limits.count = 1;
+  course.limits.of[0] = {2000, 8000, 4e5};
+  course.formulas.push_back({.slope = 0.5, .waves = {{0.4, 1.0, 0}, {0.12, 3.1, 1}}});
+  Motion motion(course);
+  motion.Plan();
+  PathTiming timing(kPeriod);
+  timing.Begin(motion.pace);
+  int cycles = 0, plans = 0;
+  for (; motion.pace.now.position < course.length && cycles < 20000; ++cycles) {
+    timing.Advance(motion.window, 1, motion.pace);
+    timing.Ask(motion.window, 1, motion.pace);
+    if (const auto number = timing.MakePlan()) {
+      timing.TakePlan(*number);
+      ++plans;
+    }
+  }
+  EXPECT_EQ(motion.pace.now.position, course.length);
+  EXPECT_GE(plans, 10) << "one plan is enough: this says nothing";
+  EXPECT_LE(plans, 3 + 16 * cycles * kPeriod);
+}
+
 }  // namespace
 }  // namespace takt::trajectory
