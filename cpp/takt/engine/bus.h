@@ -27,6 +27,15 @@ struct BusInputs {
   std::int32_t touch_probe = -1;
 };
 
+// Homing by the drive itself (mode hm), before its axis is switched on for the first time.
+struct BusHoming {
+  std::int32_t method = 0;                  // 0x6098
+  std::optional<double> velocity_switch{};  // u/s, 0x6099:1; unset: as the drive has it
+  std::optional<double> velocity_pulse{};   // u/s, 0x6099:2
+  std::optional<double> acceleration{};     // u/s^2, 0x609A
+  double within_s = 60;                     // s from its begin to the reference
+};
+
 // Written to an object of a drive at start.
 struct BusObject {
   std::string object;  // "0x6098:0"
@@ -45,6 +54,8 @@ struct BusDrive {
   double velocity_factor = 1;               // units of velocity objects in 1 increment/s
   std::optional<double> rated_torque{};     // Nm or N; unset: the drive says it
   BusInputs inputs;
+  std::uint8_t probe_latch = 0;  // touch probe of the drive (0x60B8) whose latches are used; 0: none
+  std::optional<BusHoming> homing{};
   std::vector<BusObject> start_up;
   double ready_within_s = 10;  // s from the start of the process to a drive that has answered
 };
@@ -61,6 +72,7 @@ struct Bus {
 
 void describe(Description<BusScaling>&);
 void describe(Description<BusInputs>&);
+void describe(Description<BusHoming>&);
 void describe(Description<BusObject>&);
 void describe(Description<BusDrive>&);
 void describe(Description<Bus>&);
