@@ -54,6 +54,9 @@ void describe(Description<BusDrive>& d) {
                          "EtherCAT: configured station alias of the drive, instead of its position.");
   d.defaulted<&B::vendor>("Vendor of the drive (0x1018:1), \"0x2E1\": another one is refused.");
   d.defaulted<&B::product>("Product code of the drive (0x1018:2): another one is refused.");
+  d.defaulted<&B::device_file>(
+      "The maker's description of the drive, EDS (CANopen) or ESI (EtherCAT), from the folder of the machine file on: "
+      "vendor and product are those of the file unless they are given, and what is mapped and written is checked.");
   d.defaulted<&B::scaling>("Unset: an increment of the drive is a count of the axis' encoder.");
   d.defaulted<&B::velocity_factor>(positive, "Units of the drive's velocities (0x60FF) in 1 increment/s.");
   d.defaulted<&B::rated_torque>(unit::nm, positive,

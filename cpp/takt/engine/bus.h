@@ -44,15 +44,16 @@ struct BusObject {
 };
 
 struct BusDrive {
-  std::string axis;                         // name of the axis
-  std::optional<std::uint8_t> node{};       // CANopen: address on the bus
-  std::optional<std::uint16_t> position{};  // EtherCAT: place on the wire, from 1
-  std::optional<std::uint16_t> alias{};     // EtherCAT: instead of the position
-  std::optional<std::string> vendor{};      // "0x2E1": that of the drive, else it is the wrong one
-  std::optional<std::string> product{};     // the same of its product code
-  std::optional<BusScaling> scaling{};      // unset: an increment of the drive is a count of the axis' encoder
-  double velocity_factor = 1;               // units of velocity objects in 1 increment/s
-  std::optional<double> rated_torque{};     // Nm or N; unset: the drive says it
+  std::string axis;                          // name of the axis
+  std::optional<std::uint8_t> node{};        // CANopen: address on the bus
+  std::optional<std::uint16_t> position{};   // EtherCAT: place on the wire, from 1
+  std::optional<std::uint16_t> alias{};      // EtherCAT: instead of the position
+  std::optional<std::string> vendor{};       // "0x2E1": that of the drive, else it is the wrong one
+  std::optional<std::string> product{};      // the same of its product code
+  std::optional<std::string> device_file{};  // EDS or ESI, from the folder of the machine file on
+  std::optional<BusScaling> scaling{};       // unset: an increment of the drive is a count of the axis' encoder
+  double velocity_factor = 1;                // units of velocity objects in 1 increment/s
+  std::optional<double> rated_torque{};      // Nm or N; unset: the drive says it
   BusInputs inputs;
   std::uint8_t probe_latch = 0;  // touch probe of the drive (0x60B8) whose latches are used; 0: none
   std::optional<BusHoming> homing{};
