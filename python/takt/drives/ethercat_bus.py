@@ -11,6 +11,7 @@ import contextlib
 import struct
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, Final
 
@@ -133,6 +134,7 @@ class EthercatBus(FieldBus):
         self._lost_in_a_row = 0
         self._counter = 0  # of the last frame
         self._others_count = 0  # what slaves that are no axis' may add to it
+        self._clocks: deque[tuple[float, float]] = deque(maxlen=200_000)  # s: of this host, and of the slaves
         self._told_silent = False
         self._said: set[str] = set()
         self._look = threading.Event()
@@ -626,6 +628,8 @@ class EthercatBus(FieldBus):
         self._frame(self._answers_within_s(real_time))
         if real_time:
             self.sent_s.append(begin_s)
+            if self.described["dc"] and self._counter:
+                self._clocks.append((begin_s, 1e-9 * self._wire.master.dc_time))
             self.round_trips_s.append(time.monotonic() - begin_s)
         measured = self._take_in()
         self.cycles += 1
@@ -664,4 +668,27 @@ class EthercatBus(FieldBus):
         self._wire.close()
 
     def _also_lost(self) -> str:
-        return f", {counted(self.lost_frames, 'frame')} lost"
+        return f", {counted(self.lost_frames, 'frame')} lost{self._drift_text()}"
+
+    def _drift_text(self) -> str:
+        drift = drift_of(self._clocks)
+        if drift is None:
+            return ""
+        said = f"; the clocks of the slaves gain {1e6 * drift:.1f} ppm on that of this host"
+        return said + (f", so SYNC0 passes the frames every {self.period_s / abs(drift):.3g} s" if drift else "")
+
+
+def drift_of(clocks: Sequence[tuple[float, float]]) -> float | None:
+    """How much faster a second clock runs than the first one, from readings of both in s; None: too few.
+
+    The second one is read later by whatever a frame needs; the quickest frames of the first and the last fifth count.
+    """
+    fifth = len(clocks) // 5
+    if fifth < 4:
+        return None
+    read = list(clocks)
+    (begin, first), (end, last) = (
+        min(((own, other - own) for own, other in part), key=lambda one: one[1])
+        for part in (read[:fifth], read[-fifth:])
+    )
+    return (last - first) / (end - begin)

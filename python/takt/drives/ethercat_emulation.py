@@ -328,7 +328,7 @@ class EthercatEmulation(Commanded):
     nodes: by position, from 1."""
 
     called = "slave"
-    help = HELP + " | lose PERCENT | fix NODE"
+    help = HELP + " | lose PERCENT | fix NODE | drift PPM"
 
     def __init__(self, interface: str, slaves: Sequence[EmulatedSlave], say: Callable[[str], None]) -> None:
         super().__init__(dict(enumerate(slaves, start=1)), say)
@@ -415,6 +415,9 @@ class EthercatEmulation(Commanded):
             if not 0 <= percent <= 100:
                 raise ValueError(percent)
             self.lost_share = percent / 100
+        elif verb == "drift":
+            for node in self._slaves:  # their clocks run together
+                node.esc.drift(float(rest[0]))
         elif verb == "fix":
             for node in self._which(rest[0]):
                 node.fixed_map = True
