@@ -10,7 +10,7 @@ from typing import Any
 import buses
 import pytest
 import takt
-from machines import new_url
+from machines import new_url, running
 from takt.drives.canopen_bus import CanopenBus
 from takt.drives.cia402 import FOLLOWING_ERROR_BIT, FOLLOWS_BIT, HOMING_START_BIT, TARGET_REACHED_BIT, Mode
 from takt.drives.homing import DriveHoming, homing_objects
@@ -75,7 +75,8 @@ def test_a_drive_homes_itself_when_it_is_switched_on(bus: str, tmp_path: Path) -
         assert x.actual_position == pytest.approx(-8.0, abs=0.2)  # it stops some way behind the edge of the switch
         assert stands == pytest.approx(-8.0, abs=0.2)  # the encoder began at 0, and has not jumped
         x.move_absolute(position=20.0).wait()
-        x.home(position=-8.0).wait()  # with the index pulse that the drive's reference is
+        x.home(position=-8.0).wait()  # by the index pulse that the drive's reference is: found at once
+        assert x.actual_position == pytest.approx(20.0, abs=0.1)
         x.power(enable=False).wait()
         count = len(said)
         x.power().wait()
@@ -213,3 +214,24 @@ def test_the_handshake_of_a_probe() -> None:
     probe.take(probe.stored(0x0500, 170, -0x7FFF_FFFF), 0x7FFF_FFFF, -8, 0.004)  # across the wrap, backwards
     assert (probe.fall.count, probe.wire) == (2, False)
     assert probe.fall.age_s == pytest.approx(0.001)
+
+
+def test_homing_and_probes_by_the_clock(tmp_path: Path) -> None:
+    """In real time, with answers that come a cycle later: the reference and the edges come out the same each time."""
+    url, bus = new_url(), buses.new_bus()
+    text = machine(url, bus, f"{HOMING}, probe_latch: 1")
+    text = text.replace("      drives:\n", "      missing_cycles: 200\n      heartbeat_s: 2\n      drives:\n", 1)
+    with (
+        buses.emulated(text),
+        buses.run(text, url, watchdog=1000) as (_, said),
+        running(tmp_path, url, machine=text, pace="real"),
+        takt.connect(url) as session,
+    ):
+        x = session.axis("x1")
+        x.power().wait(timeout=20)
+        assert any("x1: node 1: homed, its position is " in line for line in said)
+        x.step_ref_flying_ref_pulse(set_position=0.0).wait(timeout=20)
+        assert x.homed
+        capture = x.arm_probe()
+        x.move_absolute(position=45.0, velocity=200.0).wait(timeout=20)
+        assert capture.value == pytest.approx(39.5, abs=0.1)  # from the switch at -8 to the probe at 31.5
