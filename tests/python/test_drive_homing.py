@@ -217,12 +217,13 @@ def test_the_handshake_of_a_probe() -> None:
 
 
 def test_homing_and_probes_by_the_clock(tmp_path: Path) -> None:
-    """In real time, with answers that come a cycle later: the reference and the edges come out the same each time."""
+    """In real time, with answers that come a cycle later: reference and edges are right; a drive that has started anew
+    homes again."""
     url, bus = new_url(), buses.new_bus()
-    text = machine(url, bus, f"{HOMING}, probe_latch: 1")
-    text = text.replace("      drives:\n", "      missing_cycles: 200\n      heartbeat_s: 2\n      drives:\n", 1)
+    text = machine(url, bus, f"{HOMING}, probe_latch: 1", servo=SERVO.replace("-8", "-1").replace("31.5", "5.5"))
+    text = text.replace("      drives:\n", "      missing_cycles: 50\n      heartbeat_s: 0.2\n      drives:\n", 1)
     with (
-        buses.emulated(text),
+        buses.emulated(text) as emulation,
         buses.run(text, url, watchdog=1000) as (_, said),
         running(tmp_path, url, machine=text, pace="real"),
         takt.connect(url) as session,
@@ -233,5 +234,15 @@ def test_homing_and_probes_by_the_clock(tmp_path: Path) -> None:
         x.step_ref_flying_ref_pulse(set_position=0.0).wait(timeout=20)
         assert x.homed
         capture = x.arm_probe()
-        x.move_absolute(position=45.0, velocity=200.0).wait(timeout=20)
-        assert capture.value == pytest.approx(39.5, abs=0.1)  # from the switch at -8 to the probe at 31.5
+        x.move_absolute(position=10.0, velocity=200.0).wait(timeout=20)
+        assert capture.value == pytest.approx(6.5, abs=0.1)  # from the switch at -1 to the probe at 5.5
+
+        count = len(said)
+        emulation.command("power 1 off")
+        session.wait(lambda: x.error == 3002, timeout=20)
+        emulation.command("power 1 on")
+        assert buses.eventually(lambda: "x1: node 1 is set up again" in said[count:], 20), said
+        session.wait(lambda: not x.reset().wait_final(timeout=20).error, timeout=20)
+        assert not x.homed, "the reference went with the supply"
+        x.power().wait(timeout=20)
+        assert any("x1: node 1: homed, its position is " in line for line in said[count:])
