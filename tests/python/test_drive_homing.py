@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -123,6 +124,24 @@ def test_probes_latch_in_the_drive(bus: str, tmp_path: Path) -> None:
         captures = [x.arm_probe(edge=edge) for edge in ("rising", "falling")]  # back: the other way round
         x.move_absolute(position=0.0, velocity=200.0).wait()
         assert [one.value for one in captures] == pytest.approx([58.25, 31.5], abs=0.02)
+
+
+def test_a_following_error_is_said_with_its_size(tmp_path: Path) -> None:
+    """0x8611 of the drive (0x6065): which way and how far it was behind."""
+    url, bus = new_url(), buses.new_bus()
+    servo = "simulation: {servos: [{axis: x1, mechanics: {upper_stop: 5}}]}\n"
+    text = machine(url, bus, 'start_up: [{object: "0x6065:0", value: 4000}]', servo=servo)
+    with driven(text, url, tmp_path) as (said, _), takt.Engine(text) as engine:
+        x = engine.axis("x1")
+        x.power().wait()
+        x.move_velocity(velocity=50.0)
+        engine.wait(lambda: x.error != 0, timeout=20)
+        engine.run(0.5)
+        found = [line for line in said if "0x8611" in line]
+        assert len(found) == 1
+        lag = re.search(r"x1: node 1: fault 0x8611 \(.*\), (\d+) increments from its set point", found[0])
+        assert lag
+        assert int(lag[1]) == pytest.approx(4000, abs=3 * 50 * 5000 * 0.004)
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,7 @@ MODES = {
     drive.CYCLIC_TORQUE: Mode.CYCLIC_TORQUE,
 }
 AXIS_MODES = {"cyclic_position": Mode.CYCLIC_POSITION, "cyclic_velocity": Mode.CYCLIC_VELOCITY}  # of a machine file
+FOLLOWING = 0x8611
 CODE_WITHIN_S = 0.2  # after the fault itself the error code is expected to have come
 MANY_RESETS = 3
 JUMP = 1.5  # times the largest step of the axis: a drive that counts from its reference now
@@ -95,6 +96,8 @@ class DriveAxis:
         self.status = 0
         self.position = 0  # increments, as last heard
         self.error_code = 0  # of the last fault, 0: not told yet
+        self._target: int | None = None  # position that the drive was told last, while it followed one
+        self._lag: int | None = None  # increments: of the drive behind it at the begin of the last fault
         self._fault_since_s: float | None = None
         self._told_of_fault = self._told_of_resets = self._told_of_mode = False
 
@@ -130,11 +133,13 @@ class DriveAxis:
         words = Words(self._control(enable, now_s, stop), int(mode), torque_limit=self._limit(told))
         words.probe = self._probe.function if self._probe is not None else 0
         words.position = self.position  # so that the drive does not jump when it is switched on, or to csp
+        self._target = None
         if self._homes:
             self._home(words, enable, now_s)
         elif self.state is State.OPERATION_ENABLED and enable:
             if mode is Mode.CYCLIC_POSITION:
                 words.position = signed(self.scaling.increments(told.position_counts) + self._absorbed)
+                self._target = words.position
             words.velocity = self.scaling.velocity(told.velocity_counts_s) if mode is Mode.CYCLIC_VELOCITY else 0
             words.torque = self.scaling.torque(told.torque_nm) if mode is Mode.CYCLIC_TORQUE else 0
         return words
@@ -249,6 +254,7 @@ class DriveAxis:
             return
         if self._fault_since_s is None:
             self._fault_since_s = now_s
+            self._lag = None if self._target is None else signed(self._target - self.position)
         if not self._told_of_fault and (self.error_code or now_s - self._fault_since_s > CODE_WITHIN_S):
             self._told_of_fault = True
             self._say(f"{self.axis}: {self.called}: fault {self._code()}")
@@ -261,4 +267,8 @@ class DriveAxis:
             )
 
     def _code(self) -> str:
-        return error_text(self.error_code) if self.error_code else "without an error code"
+        if not self.error_code:
+            return "without an error code"
+        lag = self._lag if self.error_code == FOLLOWING else None
+        behind = "" if lag is None else f", {lag} increments from its set point"
+        return error_text(self.error_code) + behind
