@@ -103,6 +103,27 @@ def test_all_that_may_be_given() -> None:
             "scaling.increments_per_revolution: expected this key with a number above 0, found nothing",
         ),
         (
+            "node: 2",
+            "node: 2, homing: {method: 0, within_s: 0.5}",
+            "drives[1].homing.method: expected a homing method (0x6098) other than 0, found 0",
+        ),
+        (
+            "node: 2",
+            "node: 2, homing: {method: 17}",
+            "homing.within_s: expected less than drive: ready_timeout_s of the axis, which is switched on meanwhile: "
+            "1.0 s, found 60.0 s",
+        ),
+        (
+            "node: 2",
+            "node: 2, homing: {method: 200}",
+            "drives[1].homing.method: expected a whole number from -128 to 127, found 200",
+        ),
+        (
+            "node: 2",
+            "node: 2, probe_latch: 3",
+            "drives[1].probe_latch: expected a whole number from 0 to 2, found 3",
+        ),
+        (
             "    encoder: {increments_per_unit: 1000}\nexternal",
             "    encoder: {increments_per_unit: 1000}\n    drive: {mode: analog}\nexternal",
             "expected an axis whose drive: mode is cyclic_position or cyclic_velocity, found",
@@ -126,6 +147,15 @@ def test_what_is_wrong_is_said_with_line_and_key(old: str, new: str, sentence: s
     before, _, after = text.rpartition(old)
     found = problems(before + new + after)
     assert any(sentence in line for line in found), found
+
+
+def test_homing_in_the_drive_is_for_incremental_encoders() -> None:
+    """AX-87: an absolute one needs none."""
+    encoder = "encoder: {type: absolute_ssi, ssi_bits: 32, coding: binary, increments_per_unit: 1000}"
+    text = machine(URL, "canopen:can0", 1, drive_keys="homing: {method: 17, within_s: 0.5}")
+    found = problems(text.replace("encoder: {increments_per_unit: 1000}", encoder))
+    assert len(found) == 1
+    assert "drives[0].homing: expected this key with an incremental encoder, found an absolute one, which" in found[0]
 
 
 ETHERCAT = machine(URL, "ethercat:eth1", 2, bus_keys="dc: true").replace("node: ", "position: ")

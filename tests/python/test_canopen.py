@@ -232,8 +232,8 @@ def test_fewer_nodes_than_axes() -> None:
             "x1: node 1: 0x2FFF:1 cannot be written with 5: SDO abort 0x06020000, the object does not exist",
         ),
         (
-            'start_up: [{object: "0x6098:0", value: 17, bits: 8}]',
-            "x1: node 1: 0x6098:0 cannot be written with 17: SDO abort 0x06090030, the value is out of range",
+            'start_up: [{object: "0x6098:0", value: 7, bits: 8}]',
+            "x1: node 1: 0x6098:0 cannot be written with 7: SDO abort 0x06090030, the value is out of range",
         ),
         (
             'start_up: [{object: "0x6098:0", value: 35, bits: 16}]',

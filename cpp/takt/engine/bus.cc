@@ -22,6 +22,20 @@ void describe(Description<BusInputs>& d) {
   d.defaulted<&I::touch_probe>(between(-1, 31), "Touch probe.");
 }
 
+void describe(Description<BusHoming>& d) {
+  using H = BusHoming;
+  d.about(
+      "Homing by the drive itself (mode hm): MC_Power carries it out when the axis is switched on for the first time "
+      "after the start of the drive or of takt drives run. What is unset stays as the drive has it.");
+  d.required<&H::method>(between(-128, 127), "Homing method (0x6098); 0 is none.");
+  d.defaulted<&H::velocity_switch>(unit::u_s, positive, "Velocity of the search for a switch (0x6099:1).");
+  d.defaulted<&H::velocity_pulse>(unit::u_s, positive, "Velocity of the search for the index pulse (0x6099:2).");
+  d.defaulted<&H::acceleration>(unit::u_s2, positive,
+                                "Acceleration (0x609A), in increments/s^2 times velocity_factor.");
+  d.defaulted<&H::within_s>(unit::s, between(0.1, 3600),
+                            "How long it may take; drive: ready_timeout_s of the axis must be longer.");
+}
+
 void describe(Description<BusObject>& d) {
   using O = BusObject;
   d.about("An object that is written to a drive at start, before it is operational.");
@@ -40,11 +54,18 @@ void describe(Description<BusDrive>& d) {
                          "EtherCAT: configured station alias of the drive, instead of its position.");
   d.defaulted<&B::vendor>("Vendor of the drive (0x1018:1), \"0x2E1\": another one is refused.");
   d.defaulted<&B::product>("Product code of the drive (0x1018:2): another one is refused.");
+  d.defaulted<&B::device_file>(
+      "The maker's description of the drive, EDS (CANopen) or ESI (EtherCAT), from the folder of the machine file on: "
+      "vendor and product are those of the file unless they are given, and what is mapped and written is checked.");
   d.defaulted<&B::scaling>("Unset: an increment of the drive is a count of the axis' encoder.");
   d.defaulted<&B::velocity_factor>(positive, "Units of the drive's velocities (0x60FF) in 1 increment/s.");
   d.defaulted<&B::rated_torque>(unit::nm, positive,
                                 "Rated torque, N on linear motors; unset: the drive says it (0x6076).");
   d.defaulted<&B::inputs>("Which of its inputs are wires of the axis.");
+  d.defaulted<&B::probe_latch>(between(0, 2),
+                               "Touch probe of the drive, 1 or 2, whose latched positions (0x60BA to 0x60BD) are those "
+                               "of the axis' touch probe; 0: the wire alone, once a cycle.");
+  d.defaulted<&B::homing>("Homing in the drive; unset: the engine does it, with the inputs.");
   d.defaulted<&B::start_up>("Objects to write at start, in this order.");
   d.defaulted<&B::ready_within_s>(unit::s, between(0.1, 600), "How long the drive may take to answer at start.");
 }

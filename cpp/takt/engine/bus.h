@@ -27,6 +27,15 @@ struct BusInputs {
   std::int32_t touch_probe = -1;
 };
 
+// Homing by the drive itself (mode hm), before its axis is switched on for the first time.
+struct BusHoming {
+  std::int32_t method = 0;                  // 0x6098
+  std::optional<double> velocity_switch{};  // u/s, 0x6099:1; unset: as the drive has it
+  std::optional<double> velocity_pulse{};   // u/s, 0x6099:2
+  std::optional<double> acceleration{};     // u/s^2, 0x609A
+  double within_s = 60;                     // s from its begin to the reference
+};
+
 // Written to an object of a drive at start.
 struct BusObject {
   std::string object;  // "0x6098:0"
@@ -35,16 +44,19 @@ struct BusObject {
 };
 
 struct BusDrive {
-  std::string axis;                         // name of the axis
-  std::optional<std::uint8_t> node{};       // CANopen: address on the bus
-  std::optional<std::uint16_t> position{};  // EtherCAT: place on the wire, from 1
-  std::optional<std::uint16_t> alias{};     // EtherCAT: instead of the position
-  std::optional<std::string> vendor{};      // "0x2E1": that of the drive, else it is the wrong one
-  std::optional<std::string> product{};     // the same of its product code
-  std::optional<BusScaling> scaling{};      // unset: an increment of the drive is a count of the axis' encoder
-  double velocity_factor = 1;               // units of velocity objects in 1 increment/s
-  std::optional<double> rated_torque{};     // Nm or N; unset: the drive says it
+  std::string axis;                          // name of the axis
+  std::optional<std::uint8_t> node{};        // CANopen: address on the bus
+  std::optional<std::uint16_t> position{};   // EtherCAT: place on the wire, from 1
+  std::optional<std::uint16_t> alias{};      // EtherCAT: instead of the position
+  std::optional<std::string> vendor{};       // "0x2E1": that of the drive, else it is the wrong one
+  std::optional<std::string> product{};      // the same of its product code
+  std::optional<std::string> device_file{};  // EDS or ESI, from the folder of the machine file on
+  std::optional<BusScaling> scaling{};       // unset: an increment of the drive is a count of the axis' encoder
+  double velocity_factor = 1;                // units of velocity objects in 1 increment/s
+  std::optional<double> rated_torque{};      // Nm or N; unset: the drive says it
   BusInputs inputs;
+  std::uint8_t probe_latch = 0;  // touch probe of the drive (0x60B8) whose latches are used; 0: none
+  std::optional<BusHoming> homing{};
   std::vector<BusObject> start_up;
   double ready_within_s = 10;  // s from the start of the process to a drive that has answered
 };
@@ -61,6 +73,7 @@ struct Bus {
 
 void describe(Description<BusScaling>&);
 void describe(Description<BusInputs>&);
+void describe(Description<BusHoming>&);
 void describe(Description<BusObject>&);
 void describe(Description<BusDrive>&);
 void describe(Description<Bus>&);

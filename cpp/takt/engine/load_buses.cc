@@ -101,6 +101,7 @@ class BusChecker {
           Add(at + key, "expected a number of 32 bits like \"0x2E1\", found " + Quoted(**given));
         }
       }
+      if (drive.homing) CheckHoming(at, drive);
       for (std::size_t k = 0; k < drive.start_up.size(); ++k) {
         CheckObject(at + ".start_up[" + std::to_string(k) + "]", drive.start_up[k]);
       }
@@ -168,6 +169,24 @@ class BusChecker {
     for (std::size_t k = 0; mine && k < i; ++k) {
       if (bus.drives[k].*key != mine) continue;
       return Add(at, "expected " + what + " once on a bus, found " + std::to_string(*mine) + " again");
+    }
+  }
+
+  void CheckHoming(const std::string& at, const BusDrive& drive) {
+    const BusHoming& homing = *drive.homing;
+    if (homing.method == 0) Add(at + ".homing.method", "expected a homing method (0x6098) other than 0, found 0");
+    const std::uint32_t index = axis::FindAxis(machine_.axes, drive.axis);
+    if (index == axis::kNoAxis) return;  // reported
+    const axis::AxisParams& axis = machine_.axes[index];
+    if (axis.encoder.type != axis::EncoderType::kIncremental) {
+      Add(at + ".homing",
+          "expected this key with an incremental encoder, found an absolute one, which needs no homing, on " +
+              Quoted(drive.axis));
+    }
+    if (axis.drive.ready_timeout_s <= homing.within_s) {
+      Add(at + ".homing.within_s",
+          "expected less than drive: ready_timeout_s of the axis, which is switched on meanwhile: " +
+              FormatReal(axis.drive.ready_timeout_s) + " s, found " + FormatReal(homing.within_s) + " s");
     }
   }
 

@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from takt import drive
 from takt.drives.cia402 import CONTROL_WORDS, Command, FaultReset, Mode, State, command_towards, state_of
 from takt.drives.error_texts import error_text
-from takt.drives.scaling import Scaling, Unwrapped
+from takt.drives.homing import DriveHoming
+from takt.drives.probe import ProbeLatch
+from takt.drives.scaling import Scaling, Unwrapped, signed
 
 MODES = {
     drive.CYCLIC_POSITION: Mode.CYCLIC_POSITION,
@@ -19,8 +21,10 @@ MODES = {
     drive.CYCLIC_TORQUE: Mode.CYCLIC_TORQUE,
 }
 AXIS_MODES = {"cyclic_position": Mode.CYCLIC_POSITION, "cyclic_velocity": Mode.CYCLIC_VELOCITY}  # of a machine file
+FOLLOWING = 0x8611
 CODE_WITHIN_S = 0.2  # after the fault itself the error code is expected to have come
 MANY_RESETS = 3
+JUMP = 1.5  # times the largest step of the axis: a drive that counts from its reference now
 
 
 def set_point_mode(mode: Mode) -> int:
@@ -38,6 +42,19 @@ class Words:
     velocity: int = 0
     torque: int = 0
     torque_limit: int = 0xFFFF
+    probe: int = 0
+
+
+@dataclass
+class Heard:
+    """What a drive says in a cycle, as its objects hold it."""
+
+    status: int
+    position: int
+    torque: int = 0
+    inputs: int = 0
+    mode: int = Mode.NONE  # that it is in; looked at while it homes
+    probe: tuple[int | None, int | None] = (None, None)  # positions latched at a rising and at a falling edge
 
 
 class DriveAxis:
@@ -46,6 +63,8 @@ class DriveAxis:
     called: "node 3", as sentences name it.
     inputs: bits of the digital inputs by what they are (limit_negative ...); -1: none.
     modes: that the drive has; a set point in another one switches it off.
+    homing: that the drive carries out by itself before it is ready for the first time.
+    largest_step: increments that the axis moves in a cycle at the most; looked at with `homing`.
     """
 
     def __init__(
@@ -56,15 +75,29 @@ class DriveAxis:
         inputs: Mapping[str, int],
         modes: frozenset[Mode],
         say: Callable[[str], None],
+        *,
+        homing: DriveHoming | None = None,
+        probe: ProbeLatch | None = None,
+        period_s: float = 0.001,
+        largest_step: float = 0.0,
     ) -> None:
         self.axis, self.called, self.scaling, self.modes = axis, called, scaling, modes
         self._inputs = {name: 1 << bit for name, bit in inputs.items() if bit >= 0}
         self._say = say
+        self._homing, self._probe = homing, probe
+        self._period_s, self._largest_step = period_s, largest_step
+        self._absorbed = 0  # increments by which the drive's position has jumped when it was homed
+        self._reference: int | None = None  # increments without those jumps: where the drive counts 0
+        self._index_pulses = 0
+        self._cycles = 0  # since something was heard
+        self.mode = 0  # as last heard
         self._counter = Unwrapped()
         self._reset = FaultReset()
         self.status = 0
         self.position = 0  # increments, as last heard
         self.error_code = 0  # of the last fault, 0: not told yet
+        self._target: int | None = None  # position that the drive was told last, while it followed one
+        self._lag: int | None = None  # increments: of the drive behind it at the begin of the last fault
         self._fault_since_s: float | None = None
         self._told_of_fault = self._told_of_resets = self._told_of_mode = False
 
@@ -81,20 +114,52 @@ class DriveAxis:
         """The power stage drives the motor."""
         return self.state in (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION_ACTIVE)
 
+    @property
+    def _homes(self) -> bool:
+        """It has no reference yet."""
+        return self._homing is not None and self._reference is None
+
     def words(self, told: drive.SetPoint, now_s: float, *, stop: bool = False) -> Words:
         """What the drive is to hear.
 
         stop: the engine is lost, so the drive brakes by itself along its quick stop ramp."""
         mode = MODES.get(told.mode, Mode.NONE)
+        self._cycles += 1
         enable = told.enable and self._has(mode)
+        if self._homing is not None and self._homing.failed:
+            if not told.enable:
+                self._homing.forget()
+            enable = False
         words = Words(self._control(enable, now_s, stop), int(mode), torque_limit=self._limit(told))
+        words.probe = self._probe.function if self._probe is not None else 0
         words.position = self.position  # so that the drive does not jump when it is switched on, or to csp
-        if self.state is State.OPERATION_ENABLED and enable:
+        self._target = None
+        if self._homes:
+            self._home(words, enable, now_s)
+        elif self.state is State.OPERATION_ENABLED and enable:
             if mode is Mode.CYCLIC_POSITION:
-                words.position = self.scaling.increments(told.position_counts)
+                words.position = signed(self.scaling.increments(told.position_counts) + self._absorbed)
+                self._target = words.position
             words.velocity = self.scaling.velocity(told.velocity_counts_s) if mode is Mode.CYCLIC_VELOCITY else 0
             words.torque = self.scaling.torque(told.torque_nm) if mode is Mode.CYCLIC_TORQUE else 0
         return words
+
+    def _home(self, words: Words, enable: bool, now_s: float) -> None:
+        """Has the drive find its reference, and go back to the mode of the axis."""
+        homing = self._homing
+        assert homing is not None
+        if homing.homed:
+            return
+        if not enable or self.state is not State.OPERATION_ENABLED:
+            homing.interrupted()
+            words.mode = int(Mode.HOMING) if enable else words.mode
+            return
+        if not homing.under_way:
+            self._say(f"{self.axis}: {self.called}: homing in the drive by method {homing.method} begins")
+        words.mode = int(Mode.HOMING)
+        words.control |= homing.control_bits(self.status, self.mode, now_s)
+        if homing.failed:
+            self._say(f"{self.axis}: {self.called}: homing in the drive by method {homing.method}: {homing.failed}")
 
     def _limit(self, told: drive.SetPoint) -> int:
         return self.scaling.torque_limit(told.torque_limit_nm)
@@ -124,19 +189,59 @@ class DriveAxis:
         """The drive has started anew: its counter, and what was said of it, are of no worth any more."""
         self._counter = Unwrapped()
         self._told_of_mode = False
+        self._absorbed, self._reference = 0, None
+        if self._homing is not None:
+            self._homing.forget()
+        if self._probe is not None:
+            self._probe.forget()
 
-    def measured(self, status: int, position: int, torque: int, inputs: int, now_s: float) -> drive.Measured:
+    def measured(self, heard: Heard, now_s: float) -> drive.Measured:
         """What the words of a drive say."""
-        self.status, self.position = status, position
+        before = self._counter.total
+        total = self._counter.take(heard.position)
+        step = 0 if before is None else total - before
+        if self._homes and abs(step) > JUMP * self._largest_step:
+            self._absorbed += step
+        self.status, self.position, self.mode = heard.status, heard.position, heard.mode
         self._watch_fault(now_s)
-        wires = {name: bool(inputs & bit) for name, bit in self._inputs.items()}
-        return drive.Measured(
-            counts=self.scaling.counts(self._counter.take(position)),
-            drive_ready=self.state is State.OPERATION_ENABLED,
-            drive_fault=self.faulty,
-            torque_nm=self.scaling.torque_nm(torque),
-            **wires,
+        at = total - self._absorbed
+        found = drive.Measured(
+            counts=self.scaling.counts(at),
+            drive_fault=self.faulty or (self._homing is not None and self._homing.failed != ""),
+            torque_nm=self.scaling.torque_nm(heard.torque),
         )
+        for name, bit in self._inputs.items():
+            setattr(found, name, bool(heard.inputs & bit))
+        self._tell_reference(at, found)
+        self._tell_probe(heard, step, found)
+        found.drive_ready = self.state is State.OPERATION_ENABLED and not self._homes
+        self._cycles = 0
+        return found
+
+    def _tell_reference(self, at: int, found: drive.Measured) -> None:
+        """The reference of the drive is an index pulse that is seen in each cycle."""
+        if self._homing is None or not self._homing.homed:
+            return
+        if self._reference is None and self.state is State.OPERATION_ENABLED and self.mode != Mode.HOMING:
+            self._reference = at - self.position
+            self._say(f"{self.axis}: {self.called}: homed, its position is {self.position}")
+        if self._reference is not None:
+            found.index_counts = self.scaling.counts(self._reference)
+            if (
+                abs(found.counts - found.index_counts) < 1 << 31
+            ):  # further away the engine would take it for another one
+                self._index_pulses += 1
+            found.index_pulses = self._index_pulses
+
+    def _tell_probe(self, heard: Heard, step: int, found: drive.Measured) -> None:
+        probe = self._probe
+        if probe is None:
+            return
+        probe.take(heard.probe, heard.position, step, max(1, self._cycles) * self._period_s)
+        found.probe_rises, found.probe_falls = probe.rise.count, probe.fall.count
+        found.probe_rise_age_s, found.probe_fall_age_s = probe.rise.age_s, probe.fall.age_s
+        if "touch_probe" not in self._inputs:
+            found.touch_probe = probe.wire
 
     def _watch_fault(self, now_s: float) -> None:
         if not self.faulty:
@@ -149,6 +254,7 @@ class DriveAxis:
             return
         if self._fault_since_s is None:
             self._fault_since_s = now_s
+            self._lag = None if self._target is None else signed(self._target - self.position)
         if not self._told_of_fault and (self.error_code or now_s - self._fault_since_s > CODE_WITHIN_S):
             self._told_of_fault = True
             self._say(f"{self.axis}: {self.called}: fault {self._code()}")
@@ -161,4 +267,8 @@ class DriveAxis:
             )
 
     def _code(self) -> str:
-        return error_text(self.error_code) if self.error_code else "without an error code"
+        if not self.error_code:
+            return "without an error code"
+        lag = self._lag if self.error_code == FOLLOWING else None
+        behind = "" if lag is None else f", {lag} increments from its set point"
+        return error_text(self.error_code) + behind

@@ -16,7 +16,7 @@ from typing import Any, Final
 from takt import drive
 from takt.counted import counted
 from takt.drives import objects as od
-from takt.drives.axis import AXIS_MODES, DriveAxis, Words, set_point_mode
+from takt.drives.axis import AXIS_MODES, DriveAxis, Heard, Words, set_point_mode
 from takt.drives.can_link import (
     EMERGENCY,
     HEARTBEAT,
@@ -29,6 +29,8 @@ from takt.drives.can_link import (
     SYNC,
     TPDO1,
     TPDO2,
+    TPDO3,
+    TPDO4,
     CanLink,
     Sdo,
     frame_bits,
@@ -37,7 +39,9 @@ from takt.drives.can_link import (
 from takt.drives.cia402 import MODE_NAMES, Mode
 from takt.drives.emulation_commands import CLOCK, CLOCK_IS_SYNC
 from takt.drives.error_texts import error_text
-from takt.drives.field_bus import ANSWERS_WITHIN, FieldBus
+from takt.drives.field_bus import ANSWERS_WITHIN, FieldBus, extras_of, lacks
+from takt.drives.homing import homing_objects
+from takt.drives.probe import ProbeLatch, latches
 from takt.drives.scaling import scaling_of
 from takt.drives.sdo import SdoError
 from takt.errors import TaktError
@@ -50,9 +54,9 @@ BUSY: Final = 0.8  # of the bit rate
 NOT_MAPPED: Final = 1 << 31
 
 _TAKEN: Final = struct.Struct("<HiH")  # RPDO1: control word, target, max torque
-_TORQUE: Final = struct.Struct("<bh")  # RPDO2: mode, target torque
 _MEASURED: Final = struct.Struct("<Hih")  # TPDO1: status word, position, torque
-_MORE: Final = struct.Struct("<IH")  # TPDO2: digital inputs, error code
+_MORE: Final = struct.Struct("<IH")  # TPDO2: digital inputs, error code, and where it homes its mode
+_LATCHED: Final = struct.Struct("<Hi")  # TPDO3, TPDO4: touch probe status, position at a rising, falling edge
 
 
 class _Node:
@@ -65,8 +69,13 @@ class _Node:
         self.mode = AXIS_MODES[axis["drive"]["mode"]]
         self.drive: DriveAxis | None = None
         self.emulated = False
-        self.torque = False  # the mode is sent in RPDO2, so that torque is possible
-        self.sent_torque = b""
+        self.torque = False  # it has cst
+        self.rare: Sequence[od.Object] = ()  # what is sent in RPDO2, when it changes
+        self.sent_rare = b""
+        self.mode_display = 0
+        number = described["probe_latch"]
+        self.latch = ProbeLatch(number) if number else None  # reads the status
+        self.stored: list[int | None] = [0, 0]  # at a rising and at a falling edge; something until it is heard
         self.fresh = False  # TPDO1 has come since the last SYNC
         self.data = (0, 0, 0)
         self.inputs = 0
@@ -159,6 +168,9 @@ class CanopenBus(FieldBus):
         network = self._link.network
         network.subscribe(TPDO1 + node.id, lambda _id, data, _s: self._on_measured(node, data))
         network.subscribe(TPDO2 + node.id, lambda _id, data, _s: self._on_more(node, data))
+        if node.latch is not None:
+            network.subscribe(TPDO3 + node.id, lambda _id, data, _s: self._on_latched(node, 0, data))
+            network.subscribe(TPDO4 + node.id, lambda _id, data, _s: self._on_latched(node, 1, data))
         network.subscribe(EMERGENCY + node.id, lambda _id, data, _s: self._on_emergency(node, data))
         network.subscribe(HEARTBEAT + node.id, lambda _id, data, _s: self._on_heartbeat(node, data))
 
@@ -225,13 +237,20 @@ class CanopenBus(FieldBus):
                 f"{self.bus_name}: {node.named} does not have the mode {MODE_NAMES[node.mode]}, which drive: mode of "
                 f"its axis asks for; it has {has}"
             )
+        lacking = lacks(node.described, sdo, modes)
+        if lacking:
+            raise TaktError(f"{self.bus_name}: {node.named} {lacking}")
         node.torque = Mode.CYCLIC_TORQUE in modes
+        rare = [od.MODE] if node.torque or node.described.get("homing") else []
+        rare += [od.TARGET_TORQUE] if node.torque else []
+        node.rare = rare + ([od.PROBE_FUNCTION] if node.latch else [])
         node.emulated = sdo.find(*CLOCK) is not None
         rated = sdo.find(od.RATED_TORQUE.index)
         scaling = scaling_of(node.described, node.axis_described, (rated or 1000) / 1000)
         usable = frozenset({node.mode} | ({Mode.CYCLIC_TORQUE} if node.torque else set()))
         if node.drive is None:
-            node.drive = DriveAxis(node.axis, node.called, scaling, node.described["inputs"], usable, self._say)
+            more = extras_of(node.described, node.axis_described, scaling, self.period_s)
+            node.drive = DriveAxis(node.axis, node.called, scaling, node.described["inputs"], usable, self._say, **more)
         else:
             node.drive.restarted()
 
@@ -240,6 +259,10 @@ class CanopenBus(FieldBus):
         for one in node.described["start_up"]:
             index, subindex = (int(text, 0) for text in one["object"].split(":"))
             sdo.write(index, subindex, one["value"], one["bits"])
+        if node.described.get("homing") and node.drive is not None:
+            scaling = node.drive.scaling
+            for written in homing_objects(node.described["homing"], node.axis_described, scaling):
+                sdo.write(*written)
         sdo.write(od.MODE.index, 0, node.mode, 8)
         beat_ms = max(1, round(1000 * self._heartbeat_s))
         sdo.write(0x1017, 0, beat_ms, 16)
@@ -255,19 +278,26 @@ class CanopenBus(FieldBus):
     def _map(self, node: _Node, sdo: Sdo) -> None:
         target = od.TARGET_POSITION if node.mode is Mode.CYCLIC_POSITION else od.TARGET_VELOCITY
         _map_one(sdo, 0x1400, RPDO1 + node.id, 1, (od.CONTROL_WORD, target, od.MAX_TORQUE))
-        if node.torque:
+        if node.rare:
             # At SYNC, too: the mode must not change before the set point that belongs to it.
-            _map_one(sdo, 0x1401, RPDO2 + node.id, 1, (od.MODE, od.TARGET_TORQUE))
+            _map_one(sdo, 0x1401, RPDO2 + node.id, 1, node.rare)
         _map_one(sdo, 0x1800, TPDO1 + node.id, 1, (od.STATUS_WORD, od.POSITION, od.TORQUE))
-        _map_one(sdo, 0x1801, TPDO2 + node.id, 255, (od.DIGITAL_INPUTS, od.ERROR_CODE))
+        mode = [od.MODE_DISPLAY] if node.described.get("homing") else []
+        _map_one(sdo, 0x1801, TPDO2 + node.id, 255, (od.DIGITAL_INPUTS, od.ERROR_CODE, *mode))
         sdo.try_to_write(0x1801, 5, INPUTS_AGAIN_MS, 16)
-        for index, first in ((0x1402, 0x400), (0x1403, 0x500), (0x1802, 0x380), (0x1803, 0x480)):
+        others = [(0x1402, 0x400), (0x1403, 0x500), (0x1802, TPDO3), (0x1803, TPDO4)]
+        if node.latch is not None:
+            for (index, first), latched in zip(others[2:], latches(node.described["probe_latch"]), strict=True):
+                _map_one(sdo, index, first + node.id, 255, (od.PROBE_STATUS, latched))
+                sdo.try_to_write(index, 5, INPUTS_AGAIN_MS, 16)
+            del others[2:]
+        for index, first in others:
             with contextlib.suppress(SdoError):  # most have no more
                 if not sdo.read(index, 1) & NOT_MAPPED:
                     sdo.write(index, 1, NOT_MAPPED | first + node.id, 32)
 
     def _start_node(self, node: _Node) -> None:
-        node.sent_torque = b""
+        node.sent_rare, node.mode_display, node.stored = b"", 0, [0, 0]
         node.operational, node.lost = True, False
         node.heard_s = node.started_s = time.monotonic()
         self._link.send(NMT_COMMAND, bytes((START, node.id)))
@@ -283,8 +313,15 @@ class CanopenBus(FieldBus):
     def _on_more(self, node: _Node, data: bytes) -> None:
         if len(data) >= _MORE.size:
             node.inputs, code = _MORE.unpack_from(data)
+            if len(data) > _MORE.size:
+                node.mode_display = od.MODE_DISPLAY.decode(data[_MORE.size :])
             if code and node.drive is not None:
                 node.drive.error_code = code
+
+    def _on_latched(self, node: _Node, edge: int, data: bytes) -> None:
+        if node.latch is not None and len(data) >= _LATCHED.size:
+            status, position = _LATCHED.unpack_from(data)
+            node.stored[edge] = node.latch.stored(status, position, position)[edge]
 
     def _on_emergency(self, node: _Node, data: bytes) -> None:
         code = int.from_bytes(data[:2], "little")
@@ -386,11 +423,11 @@ class CanopenBus(FieldBus):
     def _send(self, node: _Node, words: Words) -> None:
         target = words.velocity if node.mode is Mode.CYCLIC_VELOCITY else words.position
         self._link.send(RPDO1 + node.id, _TAKEN.pack(words.control, target, words.torque_limit))
-        if node.torque:
-            torque = _TORQUE.pack(words.mode or node.mode, words.torque)
-            if torque != node.sent_torque:
-                node.sent_torque = torque
-                self._link.send(RPDO2 + node.id, torque)
+        values = {od.MODE: words.mode or node.mode, od.TARGET_TORQUE: words.torque, od.PROBE_FUNCTION: words.probe}
+        rare = b"".join(entry.encode(values[entry]) for entry in node.rare)
+        if rare != node.sent_rare:
+            node.sent_rare = rare
+            self._link.send(RPDO2 + node.id, rare)
 
     def _sync(self, asked: Sequence[_Node]) -> float:
         for node in asked:
@@ -408,8 +445,9 @@ class CanopenBus(FieldBus):
     def _measured(self, node: _Node) -> drive.Measured | None:
         if node.drive is None:
             return None
-        status, position, torque = node.data
-        return node.drive.measured(status, position, torque, node.inputs, time.monotonic())
+        latched = (node.stored[0], node.stored[1])
+        heard = Heard(*node.data, node.inputs, node.mode_display, latched)
+        return node.drive.measured(heard, time.monotonic())
 
     # --- the end ---
 

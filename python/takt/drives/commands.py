@@ -17,6 +17,7 @@ from takt.drives import objects as od
 from takt.drives.can_link import CanLink, Sdo, parse
 from takt.drives.canopen_bus import CanopenBus, nodes_on
 from takt.drives.cia402 import MODE_NAMES, Mode, state_of, supported_modes
+from takt.drives.device_file import read_device_file, with_device_files
 from takt.drives.emulation import Emulation, bus_of, emulated_link, emulated_nodes
 from takt.drives.emulation_commands import read_commands
 from takt.drives.error_texts import error_text
@@ -183,6 +184,27 @@ def _facts(sdo: Objects) -> Iterator[tuple[str, str]]:
             yield kind, f"0x{index:04X}: {' '.join(f'0x{word >> 16:04X}:{word >> 8 & 0xFF}' for word in mapped)}"
 
 
+@drives.command("file")
+@click.argument("file", type=FILE)
+@click.option("--product", metavar="NUMBER", help="ESI with several drives: which one, as 0x10.")
+def device_file(file: Path, product: str | None) -> int:
+    """Say what the maker's file (EDS, ESI) tells of a drive: maker, and which objects of CiA 402 it has."""
+    try:
+        number = None if product is None else int(product, 0)
+    except ValueError:
+        raise click.UsageError(f"--product: expected a number such as 0x10, found {product!r}") from None
+    device = read_device_file(file, number)
+    print(f"{device.name}: vendor 0x{device.vendor:X}, product 0x{device.product:X}")
+    for entry in od.OBJECTS.values():
+        there = device.objects.get((entry.index, 0))
+        if there is not None:
+            mapped = {True: ", mappable", False: ", not mappable", None: ""}[there.mappable]
+            print(f"  0x{entry.index:04X} {entry.name}: {there.bits} bits{mapped}")
+    for index, mapping in device.pdos.items():
+        print(f"  PDO 0x{index:04X}: {' '.join(mapping)}")
+    return 0
+
+
 @contextmanager
 def until_signal(stop: Callable[[], None]) -> Iterator[None]:
     """SIGINT and SIGTERM call `stop` meanwhile."""
@@ -219,7 +241,7 @@ def run(machine: Path, bus: str | None, url: str | None, key: Path | None, watch
     try:
         for one in bus_of(described, file_name, bus):
             kind = EthercatBus if is_ethercat(one["bus"]) else CanopenBus
-            buses.append(kind(one, described, _say))
+            buses.append(kind(with_device_files(one, described, machine.parent), described, _say))
         plant = Plant({}, url or network_of(described), buses=buses, watchdog=watchdog, key=key, say=_say)
         _say(f"ready: {', '.join(axis for one in buses for axis in one.axes)}")
         with until_signal(plant.stop):

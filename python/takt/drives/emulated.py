@@ -21,10 +21,22 @@ from takt.drives.cia402 import (
     State,
     command_of,
 )
+from takt.drives.probe import (
+    CONTINUOUS_BIT,
+    ENABLE_BIT,
+    FALL_BIT,
+    FALL_STORED_BIT,
+    RISE_BIT,
+    RISE_STORED_BIT,
+    latches,
+)
 from takt.drives.scaling import Scaling, Unwrapped, signed
 
 AT_REST_COUNTS: Final = 0.5  # in a cycle
 HOME_HERE: Final = (35, 37)  # homing methods: the present position
+HOME_AT: Final = {17: "limit_negative", 18: "limit_positive"}  # the edge of a switch
+HOME_PULSE: Final = {33: -1, 34: 1}  # the next index pulse that way
+HOMING_METHODS: Final = (*HOME_HERE, *HOME_AT, *HOME_PULSE)
 FOLLOWING: Final = 0x8611
 
 
@@ -49,8 +61,15 @@ class EmulatedDrive:
         self._counts = Unwrapped()  # of the encoder
         self._increments = 0  # unwrapped: where the motor is
         self._measured: dict[str, Any] = {}
-        self._homed = False
+        self.homing_velocities = [200_000, 20_000]  # 0x6099: to a switch, to its edge or an index pulse
+        self._homed = self._homing_failed = False
+        self._homing_sense = 0  # which way it searches; 0: it does not
+        self._leaving = False  # the switch was found, its edge is looked for
+        self._pulses = 0  # seen when the search began
+        self._homing_speed = 0.0  # increments/s
         self._home = 0  # increments: subtracted from the position
+        self._edges = [0, 0]  # of the touch probe, rising and falling
+        self._latched: dict[int, int] = {}  # increments by the object of a latch
         self._ramp: float | None = None  # counts/s: of a quick stop
         self._ready = False
         self._speed = 0.0  # counts/s, over the last step
@@ -73,6 +92,9 @@ class EmulatedDrive:
         fresh = PowerStateMachine(quick_stop_option=self.read(od.QUICK_STOP_OPTION))
         fresh.started()
         self.machine, self._ramp, self._target = fresh, None, None
+        self._home = 0
+        self._latched.clear()
+        self.values[od.PROBE_FUNCTION.index] = self.values[od.CONTROL_WORD.index] = 0
 
     # --- faults ---
 
@@ -117,6 +139,8 @@ class EmulatedDrive:
     def _entered(self, state: State) -> None:
         if state is State.OPERATION_ENABLED:
             self._target = None
+            self._homing_speed = 0.0
+        self._forget_homing()
         self._ramp = None
 
     def _what_to_do(self, state: State, enabling: bool) -> dict[str, Any]:
@@ -164,13 +188,60 @@ class EmulatedDrive:
             if mode is Mode.CYCLIC_VELOCITY:
                 velocity = self.values[od.TARGET_VELOCITY.index]
                 told["velocity_counts_s"] = velocity / ratio / self.scaling.velocity_factor
-            elif mode is Mode.HOMING and self.values[od.CONTROL_WORD.index] & HOMING_START_BIT and not self._homed:
-                self._home = self._increments - self.values[od.HOME_OFFSET.index]
-                self._homed = True
+            elif mode is Mode.HOMING:
+                self._search()
+                told["velocity_counts_s"] = self._homing_speed / ratio
         if mode is not Mode.CYCLIC_POSITION:
             self._target = None
+        if mode is not Mode.HOMING:
+            self._homing_speed = 0.0
         if mode is not Mode.HOMING or not self.values[od.CONTROL_WORD.index] & HOMING_START_BIT:
-            self._homed = False
+            self._forget_homing()
+
+    def _forget_homing(self) -> None:
+        self._homed = self._homing_failed = self._leaving = False
+        self._homing_sense = 0
+
+    # --- homing ---
+
+    def _search(self) -> None:
+        """One period of homing by the method of 0x6098: the speed of the next one, and what was found."""
+        method = self.values[od.HOMING_METHOD.index]
+        if self.values[od.CONTROL_WORD.index] & HOMING_START_BIT and not (self._homed or self._homing_failed):
+            if self._homing_sense == 0:
+                self._pulses = self._measured["index_pulses"]
+                self._homing_sense = HOME_PULSE.get(method, -1 if method == 17 else 1)
+            self._look(method)
+        to_switch, to_edge = (each / self.scaling.velocity_factor for each in self.homing_velocities)
+        wanted = 0.0
+        if not (self._homed or self._homing_failed) and method not in HOME_HERE:
+            wanted = self._homing_sense * (
+                -to_edge if self._leaving else to_edge if method in HOME_PULSE else to_switch
+            )
+        most = self.values[od.HOMING_ACCELERATION.index] * self.period_s
+        self._homing_speed += max(-most, min(most, wanted - self._homing_speed))
+
+    def _look(self, method: int) -> None:
+        """Ends the search where its reference, or the wrong switch, was found."""
+        if method in HOME_HERE:
+            self._found(self._increments)
+        elif method in HOME_PULSE:
+            if self._measured["index_pulses"] != self._pulses:
+                before = self._measured["index_counts"] - self._measured["counts"]
+                self._found(self._increments + round(signed(before) * self.scaling.increments_per_count))
+            elif self._measured["limit_positive" if self._homing_sense > 0 else "limit_negative"]:
+                self._homing_failed = True
+        else:
+            on = self._measured[HOME_AT[method]]
+            if self._leaving and not on:
+                self._found(self._increments)
+            self._leaving = self._leaving or on
+            other = "limit_positive" if self._homing_sense < 0 else "limit_negative"
+            self._homing_failed = not on and bool(self._measured[other])
+
+    def _found(self, increments: int) -> None:
+        self._home = increments - self.values[od.HOME_OFFSET.index]
+        self._homed = True
 
     def _braked(self) -> float:
         """The speed of the next period on the quick stop ramp."""
@@ -186,6 +257,28 @@ class EmulatedDrive:
         self._speed = 0.0 if before is None else (counts - before) / self.period_s
         self._increments = round(counts * self.scaling.increments_per_count)
         self._measured = measured
+        self._latch(measured)
+
+    def _latch(self, measured: dict[str, Any]) -> None:
+        """The touch probes, both on the same wire: where the motor was at an edge."""
+        function, status = self.values[od.PROBE_FUNCTION.index], 0
+        edges = [measured["probe_rises"], measured["probe_falls"]]
+        for number, shift in ((1, 0), (2, 8)):
+            bits = function >> shift
+            status |= (bits & ENABLE_BIT) << shift
+            for which, (entry, wanted, stored) in enumerate(
+                zip(latches(number), (RISE_BIT, FALL_BIT), (RISE_STORED_BIT, FALL_STORED_BIT), strict=True)
+            ):
+                if not bits & ENABLE_BIT or not bits & wanted:
+                    self._latched.pop(entry.index, None)
+                elif edges[which] != self._edges[which] and (bits & CONTINUOUS_BIT or entry.index not in self._latched):
+                    age_s = measured["probe_fall_age_s" if which else "probe_rise_age_s"]
+                    at = self._increments - round(self._speed * age_s * float(self.scaling.increments_per_count))
+                    self.values[entry.index] = signed(at - self._home)
+                    self._latched[entry.index] = at
+                status |= (stored << shift) * (entry.index in self._latched)
+        self._edges = edges
+        self.values[od.PROBE_STATUS.index] = status
 
     def _supervise(self, state: State) -> None:
         window = self.values[od.FOLLOWING_WINDOW.index]
@@ -207,7 +300,9 @@ class EmulatedDrive:
         values[od.ERROR_CODE.index] = self.machine.error_code
         more = 0
         if self.machine.state is State.OPERATION_ENABLED:
-            homing = FOLLOWS_BIT | TARGET_REACHED_BIT if self._homed else 0
+            resting = abs(self._speed) * self.period_s <= AT_REST_COUNTS and self._homing_speed == 0
+            homing = FOLLOWS_BIT | TARGET_REACHED_BIT * resting if self._homed else 0
+            homing |= FOLLOWING_ERROR_BIT if self._homing_failed else 0
             more = homing if self.mode is Mode.HOMING else FOLLOWS_BIT
         if self.machine.error_code == FOLLOWING:
             more |= FOLLOWING_ERROR_BIT

@@ -16,7 +16,7 @@ from typing import Any, Final
 from takt.drives import objects as od
 from takt.drives.can_link import CanLink, packages, parse
 from takt.drives.cia402 import State
-from takt.drives.emulated import HOME_HERE, EmulatedDrive
+from takt.drives.emulated import HOMING_METHODS, EmulatedDrive
 from takt.drives.emulation_commands import CLOCK, CLOCK_IS_SYNC, NAME, PRODUCT, VENDOR, Commanded
 from takt.drives.scaling import scaling_of
 from takt.errors import TaktError
@@ -28,6 +28,8 @@ MOST_MADE_UP_S: Final = 0.2  # of the clock, where the host gave no time
 OPERATIONAL: Final = 5
 PRE_OPERATIONAL: Final = 127
 NOT_MAPPED: Final = 1 << 31
+_RPDOS: Final = (0x1400, 0x1401)
+_TPDOS: Final = (0x1800, 0x1801, 0x1802, 0x1803)
 
 
 def _dictionary(product: int) -> Any:
@@ -71,7 +73,8 @@ def _dictionary(product: int) -> Any:
     record(0x1016, variable(0x1016, 1, 32, 0))
     record(0x1018, *(variable(0x1018, k, 32, v, "ro") for k, v in ((1, VENDOR), (2, product), (3, 1), (4, 0))))
     record(0x60C2, variable(0x60C2, 1, 8, 1), variable(0x60C2, 2, 8, -3, signed=True))
-    for base, first in ((0x1400, 0x200), (0x1401, 0x300), (0x1800, 0x180), (0x1801, 0x280)):
+    record(0x6099, variable(0x6099, 1, 32, 0), variable(0x6099, 2, 32, 0))
+    for base, first in zip((*_RPDOS, *_TPDOS), (0x200, 0x300, 0x180, 0x280, 0x380, 0x480), strict=True):
         settings = [variable(base, 1, 32, NOT_MAPPED | first), variable(base, 2, 8, 255)]
         settings += [variable(base, 5, 16, 0)] if base >= 0x1800 else []
         record(base, *settings)
@@ -129,6 +132,8 @@ class EmulatedNode:
         self.told_fault = 0
 
     def _read(self, index: int, subindex: int, **_: Any) -> int | None:
+        if index == 0x6099 and subindex:
+            return self.drive.homing_velocities[subindex - 1]
         return self.drive.values.get(index) if subindex == 0 else None
 
     def _write(self, index: int, subindex: int, data: bytes, **_: Any) -> None:
@@ -136,7 +141,7 @@ class EmulatedNode:
         entry = od.OBJECTS.get(index)
         if entry is not None:
             value = entry.decode(bytes(data))
-            if entry is od.HOMING_METHOD and value not in HOME_HERE:
+            if entry is od.HOMING_METHOD and value not in HOMING_METHODS:
                 raise canopen.SdoAbortedError(0x0609_0030)
             self.drive.write(entry, value)
             return
@@ -146,6 +151,8 @@ class EmulatedNode:
         elif (index, subindex) == (0x1016, 1):
             self.watched = (value >> 16 & 0x7F, (value & 0xFFFF) / 1000) if value & 0xFFFF else None
             self.master_heard_s = None
+        elif index == 0x6099 and subindex:
+            self.drive.homing_velocities[subindex - 1] = value
         elif index == 0x1006 and value:
             self.drive.period_s = value / 1e6
         elif (index, subindex) == CLOCK:
@@ -156,8 +163,8 @@ class EmulatedNode:
 
     def map(self) -> None:
         """Reads the mappings, as a node does that becomes operational."""
-        self.rpdos = list(filter(None, (self._mapped(index) for index in (0x1400, 0x1401))))
-        self.tpdos = list(filter(None, (self._mapped(index) for index in (0x1800, 0x1801))))
+        self.rpdos = list(filter(None, (self._mapped(index) for index in _RPDOS)))
+        self.tpdos = list(filter(None, (self._mapped(index) for index in _TPDOS)))
 
     def _mapped(self, index: int) -> _Map | None:
         cob_id = self.number(index, 1)

@@ -84,6 +84,7 @@ class Esc:
         self.last_s = 0.0  # when process data came
         self.waiting = False  # process data have come, a cycle is to be carried out
         self._clock_ns = 1_000_003 * (number + 1)  # ahead of the host's: each has its own
+        self._drift, self._drifts_since_ns = 0.0, 0
         self.reset()
 
     def reset(self) -> None:
@@ -327,7 +328,14 @@ class Esc:
     # --- clock ---
 
     def local_ns(self) -> int:
-        return time.monotonic_ns() + self._clock_ns
+        now_ns = time.monotonic_ns()
+        return now_ns + self._clock_ns + round(self._drift * (now_ns - self._drifts_since_ns))
+
+    def drift(self, ppm: float) -> None:
+        """From now on the clock is so much faster than that of the host."""
+        now_ns = time.monotonic_ns()
+        self._clock_ns = self.local_ns() - now_ns
+        self._drift, self._drifts_since_ns = 1e-6 * ppm, now_ns
 
     def _latch(self) -> None:
         """When the frame that writes here came by each port; the line of slaves sets the hops."""

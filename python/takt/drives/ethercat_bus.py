@@ -18,7 +18,7 @@ from typing import Any, Final
 from takt import drive
 from takt.counted import counted
 from takt.drives import objects as od
-from takt.drives.axis import AXIS_MODES, DriveAxis, Words, set_point_mode
+from takt.drives.axis import AXIS_MODES, DriveAxis, Heard, Words, set_point_mode
 from takt.drives.cia402 import MODE_NAMES, Mode
 from takt.drives.emulation_commands import CLOCK, CLOCK_IS_SYNC
 from takt.drives.ethercat_link import (
@@ -32,7 +32,9 @@ from takt.drives.ethercat_link import (
     Wire,
     state_text,
 )
-from takt.drives.field_bus import ANSWERS_WITHIN, ANSWERS_WITHIN_S, FieldBus
+from takt.drives.field_bus import ANSWERS_WITHIN, FieldBus, extras_of, lacks
+from takt.drives.homing import homing_objects
+from takt.drives.probe import ProbeLatch, latches
 from takt.drives.scaling import scaling_of
 from takt.drives.sdo import SdoError
 from takt.errors import TaktError
@@ -97,6 +99,8 @@ class _Slave:
         self.emulated = False
         self.outputs = self.inputs = _Layout(())
         self.state = 0  # as last seen
+        number = described["probe_latch"]
+        self.latch = ProbeLatch(number) if number else None  # reads the status
         self.registers: dict[int, bytes] = {}
         self.told_lost = False
 
@@ -130,6 +134,7 @@ class EthercatBus(FieldBus):
         self._lost_in_a_row = 0
         self._counter = 0  # of the last frame
         self._others_count = 0  # what slaves that are no axis' may add to it
+        self._clocks: deque[tuple[float, float]] = deque(maxlen=200_000)  # s: of this host, and of the slaves
         self._told_silent = False
         self._said: set[str] = set()
         self._look = threading.Event()
@@ -208,6 +213,9 @@ class EthercatBus(FieldBus):
             for start in one.described["start_up"]:
                 index, subindex = (int(text, 0) for text in start["object"].split(":"))
                 one.sdo.write(index, subindex, start["value"], start["bits"])
+            if one.described.get("homing") and one.drive is not None:
+                for written in homing_objects(one.described["homing"], one.axis_described, one.drive.scaling):
+                    one.sdo.write(*written)
             one.sdo.write(od.MODE.index, 0, one.mode, 8)
             self._tell_period(one)
             self._choose(one)
@@ -240,12 +248,16 @@ class EthercatBus(FieldBus):
                 f"{self.bus_name}: {one.named} does not have the mode {MODE_NAMES[one.mode]}, which drive: mode of "
                 f"its axis asks for; it has {has}"
             )
+        lacking = lacks(one.described, sdo, modes)
+        if lacking:
+            raise TaktError(f"{self.bus_name}: {one.named} {lacking}")
         one.emulated = sdo.find(*CLOCK) is not None
         rated = sdo.find(od.RATED_TORQUE.index)
         scaling = scaling_of(one.described, one.axis_described, (rated or 1000) / 1000)
         if one.drive is None:
             usable = frozenset({one.mode}) | (modes & {Mode.CYCLIC_TORQUE})
-            one.drive = DriveAxis(one.axis, one.called, scaling, one.described["inputs"], usable, self._say)
+            more = extras_of(one.described, one.axis_described, scaling, self.period_s)
+            one.drive = DriveAxis(one.axis, one.called, scaling, one.described["inputs"], usable, self._say, **more)
         else:
             one.drive.restarted()
 
@@ -262,8 +274,20 @@ class EthercatBus(FieldBus):
         """Maps what is needed; where a drive has a mapping that stays as it is, that must do."""
         target = od.TARGET_POSITION if one.mode is Mode.CYCLIC_POSITION else od.TARGET_VELOCITY
         outputs = [target if entry is None else entry for entry in OUTPUTS]
-        one.outputs = self._map_one(one, RX_MAP, RX_ASSIGNED, outputs, (od.CONTROL_WORD, target))
-        one.inputs = self._map_one(one, TX_MAP, TX_ASSIGNED, INPUTS, (od.STATUS_WORD, od.POSITION))
+        inputs = list(INPUTS)
+        send, hear = [od.CONTROL_WORD, target], [od.STATUS_WORD, od.POSITION]
+        if one.latch is not None:
+            latched = (od.PROBE_STATUS, *latches(one.described["probe_latch"]))
+            outputs.insert(-1, od.PROBE_FUNCTION)
+            send.append(od.PROBE_FUNCTION)
+            inputs += latched
+            hear += latched
+        if one.described.get("homing"):
+            inputs.append(od.MODE_DISPLAY)
+            send.append(od.MODE)
+            hear.append(od.MODE_DISPLAY)
+        one.outputs = self._map_one(one, RX_MAP, RX_ASSIGNED, outputs, send)
+        one.inputs = self._map_one(one, TX_MAP, TX_ASSIGNED, inputs, hear)
         if one.drive is not None and not (one.outputs.has(od.MODE) and one.outputs.has(od.TARGET_TORQUE)):
             one.drive.modes = frozenset({one.mode})
 
@@ -431,13 +455,17 @@ class EthercatBus(FieldBus):
     def _measure(self, one: _Slave, axis: DriveAxis, now_s: float) -> drive.Measured:
         data, layout = one.slave.input, one.inputs
         axis.error_code = layout.get(data, od.ERROR_CODE) or axis.error_code
-        return axis.measured(
+        heard = Heard(
             layout.get(data, od.STATUS_WORD),
             layout.get(data, od.POSITION),
             layout.get(data, od.TORQUE),
             layout.get(data, od.DIGITAL_INPUTS),
-            now_s,
+            layout.get(data, od.MODE_DISPLAY),
         )
+        if one.latch is not None:
+            rise, fall = (layout.get(data, entry) for entry in latches(one.described["probe_latch"]))
+            heard.probe = one.latch.stored(layout.get(data, od.PROBE_STATUS), rise, fall)
+        return axis.measured(heard, now_s)
 
     def _put(self, one: _Slave, words: Words) -> None:
         layout = one.outputs
@@ -448,6 +476,7 @@ class EthercatBus(FieldBus):
         layout.put(data, od.TARGET_VELOCITY, words.velocity)
         layout.put(data, od.TARGET_TORQUE, words.torque)
         layout.put(data, od.MAX_TORQUE, words.torque_limit)
+        layout.put(data, od.PROBE_FUNCTION, words.probe)
         one.slave.output = bytes(data)
 
     # --- who is out of operation ---
@@ -599,6 +628,8 @@ class EthercatBus(FieldBus):
         self._frame(self._answers_within_s(real_time))
         if real_time:
             self.sent_s.append(begin_s)
+            if self.described["dc"] and self._counter:
+                self._clocks.append((begin_s, 1e-9 * self._wire.master.dc_time))
             self.round_trips_s.append(time.monotonic() - begin_s)
         measured = self._take_in()
         self.cycles += 1
@@ -637,4 +668,27 @@ class EthercatBus(FieldBus):
         self._wire.close()
 
     def _also_lost(self) -> str:
-        return f", {counted(self.lost_frames, 'frame')} lost"
+        return f", {counted(self.lost_frames, 'frame')} lost{self._drift_text()}"
+
+    def _drift_text(self) -> str:
+        drift = drift_of(self._clocks)
+        if drift is None:
+            return ""
+        said = f"; the clocks of the slaves gain {1e6 * drift:.1f} ppm on that of this host"
+        return said + (f", so SYNC0 passes the frames every {self.period_s / abs(drift):.3g} s" if drift else "")
+
+
+def drift_of(clocks: Sequence[tuple[float, float]]) -> float | None:
+    """How much faster a second clock runs than the first one, from readings of both in s; None: too few.
+
+    The second one is read later by whatever a frame needs; the quickest frames of the first and the last fifth count.
+    """
+    fifth = len(clocks) // 5
+    if fifth < 4:
+        return None
+    read = list(clocks)
+    (begin, first), (end, last) = (
+        min(((own, other - own) for own, other in part), key=lambda one: one[1])
+        for part in (read[:fifth], read[-fifth:])
+    )
+    return (last - first) / (end - begin)

@@ -20,7 +20,7 @@ from typing import Any, Final
 from takt.drives import objects as od
 from takt.drives.cia402 import State
 from takt.drives.coe import AbortError, Entry, SdoServer
-from takt.drives.emulated import HOME_HERE, EmulatedDrive
+from takt.drives.emulated import HOMING_METHODS, EmulatedDrive
 from takt.drives.emulation_commands import CLOCK, CLOCK_IS_SYNC, HELP, NAME, PRODUCT, VENDOR, Commanded
 from takt.drives.esc import OPERATIONAL, PRE_OPERATIONAL, Device, Esc, Line
 from takt.drives.ethercat_link import ethernet_socket
@@ -108,6 +108,11 @@ class EmulatedSlave(Device):
         for index in (0x1C32, 0x1C33):
             for subindex, value, bits in ((0, 2, 8), (1, 1, 16), (2, 1_000_000, 32)):
                 number(index, subindex, value, bits, subindex == 1)
+        number(0x6099, 0, 2, 8)
+        for which in (0, 1):
+            found[0x6099, which + 1] = Entry(
+                partial(self._read_homing_velocity, which), partial(self._write_homing_velocity, which)
+            )
         found[CLOCK] = Entry(lambda: bytes((self._clock_is_sync,)), self._set_clock)
         for entry in od.OBJECTS.values():
             write = partial(self._write_object, entry) if entry.writable else None
@@ -131,13 +136,19 @@ class EmulatedSlave(Device):
         bits = self.numbers[index, subindex][1]
         self.numbers[index, subindex] = (_number(data, bits), bits)
 
+    def _read_homing_velocity(self, which: int) -> bytes:
+        return self.drive.homing_velocities[which].to_bytes(4, "little")
+
+    def _write_homing_velocity(self, which: int, data: bytes) -> None:
+        self.drive.homing_velocities[which] = _number(data, 32)
+
     def _read_object(self, entry: od.Object) -> bytes:
         return entry.encode(self.drive.read(entry))
 
     def _write_object(self, entry: od.Object, data: bytes) -> None:
         _number(data, entry.bits)
         value = entry.decode(data)
-        if entry is od.HOMING_METHOD and value not in HOME_HERE:
+        if entry is od.HOMING_METHOD and value not in HOMING_METHODS:
             raise AbortError(OUT_OF_RANGE)
         self.drive.write(entry, value)
 
@@ -317,7 +328,7 @@ class EthercatEmulation(Commanded):
     nodes: by position, from 1."""
 
     called = "slave"
-    help = HELP + " | lose PERCENT | fix NODE"
+    help = HELP + " | lose PERCENT | fix NODE | drift PPM"
 
     def __init__(self, interface: str, slaves: Sequence[EmulatedSlave], say: Callable[[str], None]) -> None:
         super().__init__(dict(enumerate(slaves, start=1)), say)
@@ -404,6 +415,9 @@ class EthercatEmulation(Commanded):
             if not 0 <= percent <= 100:
                 raise ValueError(percent)
             self.lost_share = percent / 100
+        elif verb == "drift":
+            for node in self._slaves:  # their clocks run together
+                node.esc.drift(float(rest[0]))
         elif verb == "fix":
             for node in self._which(rest[0]):
                 node.fixed_map = True

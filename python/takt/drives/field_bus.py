@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import itertools
 from abc import abstractmethod
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, Final, Protocol
 
 from takt import drive
 from takt.counted import counted
+from takt.drives import objects as od
+from takt.drives.cia402 import MODE_NAMES, Mode
+from takt.drives.homing import DriveHoming
+from takt.drives.probe import ProbeLatch, latches
+from takt.drives.scaling import Scaling
+from takt.drives.sdo import Objects
 from takt.errors import TaktError
 
 ANSWERS_WITHIN: Final = 0.9  # of a period, in real time
@@ -22,6 +29,32 @@ class Member(Protocol):
 
     @property
     def named(self) -> str: ...
+
+
+def lacks(described: Mapping[str, Any], sdo: Objects, modes: Collection[Mode]) -> str:
+    """What a drive does not have of what its entry in the machine file asks for; "": nothing."""
+    if described.get("homing") and Mode.HOMING not in modes:
+        has = ", ".join(MODE_NAMES[m] for m in sorted(modes)) or "none"
+        return f"does not have the mode hm, which homing asks for; it has {has}"
+    number = described["probe_latch"]
+    for entry in (od.PROBE_FUNCTION, od.PROBE_STATUS, *latches(number)) if number else ():
+        if sdo.find(entry.index) is None:
+            return f"does not have 0x{entry.index:04X} ({entry.name}), which probe_latch: {number} asks for"
+    return ""
+
+
+def extras_of(
+    described: Mapping[str, Any], axis: Mapping[str, Any], scaling: Scaling, period_s: float
+) -> dict[str, Any]:
+    """Keywords of a DriveAxis for an entry in the machine file."""
+    homing, number = described.get("homing"), described["probe_latch"]
+    counts = float(axis["limits"]["velocity"]) * float(axis["encoder"]["increments_per_unit"]) * period_s
+    return {
+        "homing": DriveHoming(homing) if homing else None,
+        "probe": ProbeLatch(number) if number else None,
+        "period_s": period_s,
+        "largest_step": counts * float(scaling.increments_per_count) + 1,
+    }
 
 
 class FieldBus(drive.Bus):
@@ -77,7 +110,7 @@ class FieldBus(drive.Bus):
         said += self._also_lost()
         if len(self.sent_s) > 2:
             sent = list(self.sent_s)
-            periods = sorted(b - a for a, b in zip(sent[:-1], sent[1:], strict=True))
+            periods = sorted(b - a for a, b in itertools.pairwise(sent))
             trips = sorted(self.round_trips_s)
             low, middle, high = (1000 * periods[int(q * (len(periods) - 1))] for q in (0.01, 0.5, 0.99))
             trip, worst = (1000 * trips[int(q * (len(trips) - 1))] for q in (0.5, 0.99))

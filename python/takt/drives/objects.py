@@ -57,6 +57,13 @@ HOME_OFFSET: Final = Object(0x607C, "home offset", 32, True, True)
 MAX_MOTOR_SPEED: Final = _output(0x6080, "max motor speed", 32, default=0xFFFF_FFFF)
 QUICK_STOP_DECELERATION: Final = Object(0x6085, "quick stop deceleration", 32, False, True, default=5_000_000)
 HOMING_METHOD: Final = Object(0x6098, "homing method", 8, True, True, default=37)
+HOMING_ACCELERATION: Final = Object(0x609A, "homing acceleration", 32, False, True, default=1_000_000)
+PROBE_FUNCTION: Final = _output(0x60B8, "touch probe function", 16)
+PROBE_STATUS: Final = _input(0x60B9, "touch probe status", 16)
+PROBE_1_RISE: Final = _input(0x60BA, "touch probe 1, position at the rising edge", 32, True)
+PROBE_1_FALL: Final = _input(0x60BB, "touch probe 1, position at the falling edge", 32, True)
+PROBE_2_RISE: Final = _input(0x60BC, "touch probe 2, position at the rising edge", 32, True)
+PROBE_2_FALL: Final = _input(0x60BD, "touch probe 2, position at the falling edge", 32, True)
 FOLLOWING_ERROR: Final = _input(0x60F4, "following error actual value", 32, True)
 DIGITAL_INPUTS: Final = _input(0x60FD, "digital inputs", 32)
 TARGET_VELOCITY: Final = _output(0x60FF, "target velocity", 32, True)
@@ -68,7 +75,8 @@ OBJECTS: Final = {
         Object(0x6007, "abort connection option code", 16, True, True, default=1),
         *(ERROR_CODE, CONTROL_WORD, STATUS_WORD, QUICK_STOP_OPTION, FAULT_REACTION_OPTION, MODE, MODE_DISPLAY),
         *(POSITION, FOLLOWING_WINDOW, VELOCITY, TARGET_TORQUE, MAX_TORQUE, RATED_TORQUE, TORQUE, TARGET_POSITION),
-        *(HOME_OFFSET, MAX_MOTOR_SPEED, QUICK_STOP_DECELERATION, HOMING_METHOD, FOLLOWING_ERROR, DIGITAL_INPUTS),
+        *(HOME_OFFSET, MAX_MOTOR_SPEED, QUICK_STOP_DECELERATION, HOMING_METHOD, HOMING_ACCELERATION, PROBE_FUNCTION),
+        *(PROBE_STATUS, PROBE_1_RISE, PROBE_1_FALL, PROBE_2_RISE, PROBE_2_FALL, FOLLOWING_ERROR, DIGITAL_INPUTS),
         *(TARGET_VELOCITY, SUPPORTED_MODES),
     )
 }
