@@ -28,6 +28,11 @@ std::int64_t Difference(const Encoder& p, std::uint32_t from, std::uint32_t to) 
   return static_cast<std::int32_t>((to - from) << unused) >> unused;
 }
 
+// Where a counter of 32 bits begins: as a number with a sign, which position objects of drives are.
+bool IsSigned(const Encoder& p) noexcept {
+  return p.type == EncoderType::kIncremental || (p.ssi_bits == 32 && p.coding == SsiCoding::kBinary);
+}
+
 double PositionOf(const Encoder& p, std::int64_t count) noexcept {
   const double distance = static_cast<double>(count) / p.increments_per_unit;
   return p.offset + (p.invert ? -distance : distance);
@@ -38,7 +43,7 @@ bool Take(const Encoder& p, const EncoderInputs& in, EncoderState& s, double& di
   const std::uint32_t word = Decode(p, in.counts);
   distance = 0;
   if (!s.started) {
-    s.count = p.type == EncoderType::kIncremental ? static_cast<std::int32_t>(word) : std::int64_t{word};
+    s.count = IsSigned(p) ? static_cast<std::int32_t>(word) : std::int64_t{word};
   } else {
     const std::int64_t step = Difference(p, s.word, word);
     distance = static_cast<double>(p.invert ? -step : step) / p.increments_per_unit;
@@ -124,7 +129,8 @@ void describe(Description<Encoder>& d) {
   d.defaulted<&P::type>("What it sends.");
   d.defaulted<&P::increments_per_unit>(unit::count_u, between(1e-6, 1e9), "Counts per unit of the axis.");
   d.defaulted<&P::invert>("Counts fall while the position grows.");
-  d.defaulted<&P::ssi_bits>(between(8, 32), "Absolute: bits of the word.");
+  d.defaulted<&P::ssi_bits>(
+      between(8, 32), "Absolute: bits of the word; 32 in binary are a number with a sign, as drives on a bus send it.");
   d.defaulted<&P::coding>("Absolute: how the word is written.");
   d.defaulted<&P::offset>(unit::u, "Position of the axis where the encoder counts 0.");
   d.defaulted<&P::velocity_filter_s>(unit::s, between(0, 10), "Time constant of the velocity's filter; 0: none.");

@@ -28,7 +28,7 @@ struct Encoder {
   EncoderType type = EncoderType::kIncremental;
   double increments_per_unit = 1000;        // counts per u, > 0
   bool invert = false;                      // counts fall while the position grows
-  int ssi_bits = 24;                        // absolute: 8 to 32; bits of the word above them are ignored
+  int ssi_bits = 24;                        // absolute: 8 to 32 (binary: signed); what is above is ignored
   SsiCoding coding = SsiCoding::kBinary;    // absolute
   double offset = 0;                        // u: position at count 0
   double velocity_filter_s = 0;             // s, >= 0: time constant of the velocity's filter; 0: none

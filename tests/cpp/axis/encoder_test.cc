@@ -123,6 +123,20 @@ TEST(Encoder, SsiWordWraps) {  // AX-04: a single-turn encoder on an axis that g
   }
 }
 
+TEST(Encoder, AbsolutePositionsOfDrivesHaveASign) {  // AX-04, AX-87: 32 bits in binary; fewer count from 0 up
+  Measurement drive;
+  drive.params.type = EncoderType::kAbsoluteSsi;
+  drive.params.ssi_bits = 32;
+  EXPECT_EQ(drive.Read(-10000).position, -10);
+  EXPECT_EQ(drive.Read(-9900).position, -9.9);
+  Measurement word;
+  word.params.type = EncoderType::kAbsoluteSsi;
+  EXPECT_EQ(word.Read((1 << 24) - 1000).position, 16776.216);
+  Measurement gray;
+  gray.params = {.type = EncoderType::kAbsoluteSsi, .ssi_bits = 32, .coding = SsiCoding::kGray};
+  EXPECT_EQ(gray.Read(0x80000000).position, 4294967.295);
+}
+
 TEST(Encoder, BitsAboveTheWordAreIgnored) {  // AX-04
   Measurement m;
   m.params = {.type = EncoderType::kAbsoluteSsi, .increments_per_unit = 1, .ssi_bits = 12};
