@@ -34,6 +34,7 @@
 #include "takt/lcm/drives.h"
 #include "takt/planar/nearest.h"
 #include "takt/workspace/trouble.h"
+#include "watch.h"
 
 namespace takt::bindings {
 namespace {
@@ -140,7 +141,8 @@ class VirtualEngine {
     if (!drives_) Throw("ConnectionError", py::str(problem));
   }
 
-  // Steps up to `cycles` cycles, or until one reports feedback, or until external drives let it wait. How many it were.
+  // Steps up to `cycles` cycles, or until one reports feedback, a watch sees a change, or external drives let it wait.
+  // How many it were.
   std::uint64_t Step(std::uint64_t cycles, bool until_feedback) {
     RefuseFromPlant();
     const std::lock_guard lock(mutex_);
@@ -157,9 +159,35 @@ class VirtualEngine {
         Drain(engine_.hashes(), hashes_);
       }
       for (const auto& recorder : recorders_) recorder->Append(engine_);
-      if (news && until_feedback) return i;
+      if ((news && until_feedback) || AnyChanged()) return i;
     }
     return cycles;
+  }
+
+  // Has steps end where any of these fields, (component, field), is other than when it was kept last.
+  std::shared_ptr<Watch> StartWatch(const std::vector<std::pair<std::size_t, std::size_t>>& fields,
+                                    std::uint64_t every) {
+    if (every == 0) throw std::invalid_argument("every must be at least 1");
+    std::vector<Watch::Field> found;
+    for (const auto& [component, field] : fields) {
+      CheckComponent(component);
+      const Column& column = columns_.at(engine_.published(component).type).at(field);
+      found.push_back({component, column.offset, column.type->size});
+    }
+    const auto lock = Lock();
+    watches_.push_back(std::make_shared<Watch>(std::move(found), every, engine_.cycle().count));
+    watches_.back()->Keep(engine_);
+    return watches_.back();
+  }
+
+  bool HasChanged(const Watch& watch) {
+    const auto lock = Lock();
+    return watch.Changed(engine_);
+  }
+
+  void Keep(Watch& watch) {
+    const auto lock = Lock();
+    watch.Keep(engine_);
   }
 
   // `step` moves the axes that this engine was made with as those of a plant.
@@ -452,6 +480,12 @@ class VirtualEngine {
     return py::make_tuple(ticket, static_cast<int>(error), sentence);
   }
 
+  bool AnyChanged() const {
+    const std::uint64_t cycle = engine_.cycle().count;
+    return std::ranges::any_of(watches_,
+                               [&](const auto& watch) { return watch->IsDue(cycle) && watch->Changed(engine_); });
+  }
+
   template <typename T>
   static bool Drain(SpscQueue<T>& queue, std::vector<T>& out) {
     T value;
@@ -540,6 +574,7 @@ class VirtualEngine {
   std::vector<engine::DriveEntry> drive_journal_;
   std::vector<std::string> complaints_;
   std::vector<std::shared_ptr<Recorder>> recorders_;
+  std::vector<std::shared_ptr<Watch>> watches_;
 };
 
 // `checks`: groups with a workspace are answered when they ask about a path, and tracks are made; without, the journal
@@ -588,8 +623,10 @@ void BindEngine(py::module_& m) {
                                                   "Rows of what components publish, one every so many cycles.")
       .def_property_readonly("rows", &Recorder::rows)
       .def("cycles", &Recorder::Cycles, "The cycle of every row.")
-      .def("table", &Recorder::Table, py::arg("index"),
-           "The rows of the component at this place of the list it was started with.");
+      .def("take_table", &Recorder::TakeTable, py::arg("index"),
+           "The rows of the component at this place of the list it was started with; once, when it has been stopped.");
+
+  py::class_<Watch, std::shared_ptr<Watch>>(m, "Watch", "Published values that end a step when they change.");
 
   using F = axis::Forecast;
   py::class_<F>(m, "Forecast", "What a motion is going to do.")
@@ -639,6 +676,9 @@ void BindEngine(py::module_& m) {
       .def("foresee_command", &E::ForeseeCommand, py::arg("target"), py::arg("verb"), py::arg("arguments"))
       .def("start_recorder", &E::StartRecorder, py::arg("components"), py::arg("every") = 1)
       .def("stop_recorder", &E::StopRecorder, py::arg("recorder"))
+      .def("start_watch", &E::StartWatch, py::arg("fields"), py::arg("every"))
+      .def("has_changed", &E::HasChanged, py::arg("watch"))
+      .def("keep", &E::Keep, py::arg("watch"))
       .def("figures", &E::Figures)
       .def("state_hash", &E::StateHash)
       .def_property_readonly("cycle", &E::cycle)

@@ -3,14 +3,55 @@
 
 #include <pybind11/numpy.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "bindings.h"
 #include "takt/engine/engine.h"
 
 namespace takt::bindings {
+
+// Bytes that grow by realloc, which moves large blocks to other pages without copying them.
+class GrowingBytes {
+ public:
+  void Append(const void* bytes, std::size_t count) {
+    if (size_ + count > room_) Grow(size_ + count);
+    std::memcpy(data_.get() + size_, bytes, count);
+    size_ += count;
+  }
+
+  // Hands the bytes over and begins anew. Null if there are none.
+  std::byte* Release() {
+    size_ = room_ = 0;
+    return data_.release();
+  }
+
+ private:
+  struct Free {
+    void operator()(std::byte* bytes) const { std::free(bytes); }
+  };
+
+  void Grow(std::size_t needed) {
+    const std::size_t room = std::max(needed, 2 * room_);
+    auto* grown = static_cast<std::byte*>(std::realloc(data_.get(), room));
+    if (!grown) throw std::bad_alloc();
+    static_cast<void>(data_.release());  // realloc has it
+    data_.reset(grown);
+    room_ = room;
+  }
+
+  std::unique_ptr<std::byte, Free> data_;
+  std::size_t size_ = 0;
+  std::size_t room_ = 0;
+};
 
 // Keeps the published structs of some components as they are, one row every so many cycles; their descriptions give
 // NumPy the columns.
@@ -27,8 +68,7 @@ class Recorder {
     cycles_.push_back(cycle);
     for (std::size_t i = 0; i < components_.size(); ++i) {
       const engine::Engine::Published published = engine.published(components_[i]);
-      const auto* bytes = static_cast<const std::byte*>(published.outputs);
-      tables_[i].bytes.insert(tables_[i].bytes.end(), bytes, bytes + published.type->size);
+      tables_[i].bytes.Append(published.outputs, published.type->size);
     }
   }
 
@@ -36,16 +76,23 @@ class Recorder {
   py::array Cycles() const {
     return py::array_t<std::uint64_t>(static_cast<py::ssize_t>(cycles_.size()), cycles_.data());
   }
-  py::array Table(std::size_t index) const {
-    const Rows& rows = tables_.at(index);
-    return py::array(LayoutOf(ColumnsOf(*rows.type), rows.type->size), static_cast<py::ssize_t>(cycles_.size()),
-                     rows.bytes.data());
+  // The rows of a component, handed over and not copied: once for each, when the recorder has been stopped.
+  py::array TakeTable(std::size_t index) {
+    Rows& rows = tables_.at(index);
+    if (rows.taken) throw std::logic_error("the rows of this component have been taken");
+    rows.taken = true;
+    const py::dtype layout = LayoutOf(ColumnsOf(*rows.type), rows.type->size);
+    std::byte* bytes = rows.bytes.Release();
+    if (!bytes) return py::array(layout, py::ssize_t{0});
+    const py::capsule owner(bytes, [](void* owned) { std::free(owned); });
+    return py::array(layout, static_cast<py::ssize_t>(cycles_.size()), bytes, owner);
   }
 
  private:
   struct Rows {
     const Type* type = nullptr;
-    std::vector<std::byte> bytes;
+    GrowingBytes bytes{};
+    bool taken = false;
   };
 
   std::vector<std::size_t> components_;

@@ -387,6 +387,19 @@ def view(what: str | None, port: int, browser: bool, pace: str, key: Path | None
 
 
 @cli.command()
+@click.argument("what", required=False, metavar="[MACHINE | URL]")
+@click.option("--port", default=8765, show_default=True, type=click.IntRange(0, 65535), help="Of the link; 0: any.")
+@click.option("--pace", type=click.Choice(["real", "paced"]), default="real", show_default=True, help="Of taktd.")
+@KEY
+def foxglove(what: str | None, port: int, pace: str, key: Path | None) -> int:
+    """Serve an engine's scene and signals live for Foxglove on this host: of a MACHINE file, which then runs on a taktd
+    of its own, or of an LCM network [the usual one]."""
+    from takt.view import foxglove as link
+
+    return link.run(what, port, pace, _say, key)
+
+
+@cli.command()
 @click.argument("machine", type=FILE)
 @click.option("--url", help="LCM network of the engine [machine file].")
 @click.option("--axis", "axes", multiple=True, help="Only this axis; may be given again [all external drives].")

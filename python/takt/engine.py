@@ -25,7 +25,6 @@ from takt.errors import ConfigError, DriveWarning, TaktError, seconds, whole
 from takt.feedback import Feedback
 from takt.forecast import Forecast
 from takt.keys import KeyFile, read_key
-from takt.lying import LOOK_S
 from takt.mover import Mover
 from takt.network import network_of
 from takt.plant import Plant, axes_of
@@ -334,11 +333,13 @@ class Engine(Session):
             self._release(feedback)
         if self._programs:
             self._scan()
-            cycles = min(cycles, max(1, min(program.due for program in self._programs) - self.cycle))
+            now = self.cycle
+            cycles = min(cycles, *(p.at_or_after(max(p.due, now + 1)) - now for p in self._programs))
         if self._unreleased:
             cycles = 1
-        if any(recorder.belts for recorder in self._recorders):
-            cycles = min(cycles, max(1, round(LOOK_S / self.period)))
+        for recorder in self._recorders:
+            for belt in recorder.belts:
+                cycles = min(cycles, max(1, round(recorder.lying.due_in(belt, self.now) / self.period)))
         while not (made := self._core.step(min(cycles, CHUNK), until_feedback)):
             self._warn()  # external drives let it wait: time for a look at Ctrl-C, too
         self._warn()
@@ -375,6 +376,15 @@ class Engine(Session):
             left -= made if timeout < math.inf else 0
         return True
 
+    def _watch(self, fields: list[tuple[int, int]], every: int) -> _core.Watch:
+        return self._core.start_watch(fields, every)
+
+    def _has_changed(self, watch: _core.Watch) -> bool:
+        return self._core.has_changed(watch)
+
+    def _keep(self, watch: _core.Watch) -> None:
+        self._core.keep(watch)
+
     def _begin(self, recorder: Recorder) -> None:
         indices = [self._components[name].index for name in recorder.components]
         self._core_recorders[recorder] = self._core.start_recorder(indices, recorder.every)
@@ -386,7 +396,7 @@ class Engine(Session):
         base = {"time_s": cycles * self.period, "cycle": cycles}
         tables = {}
         for i, name in enumerate(recorder.components):
-            rows = core.table(i)
+            rows = core.take_table(i)
             tables[name] = base | {f: rows[f] for f in fields_of_kind(self._components[name].KIND)}
         meta = {"source": "engine", "period_s": self.period, "version": _core.__version__}
         meta |= {"objects": recorder.lying.columns(), **self._made_cams.kept()}

@@ -45,6 +45,11 @@ class Lying:
         times = self._times.get(belt)
         return not times or time_s - times[-1] >= 0.999 * LOOK_S
 
+    def due_in(self, belt: str, time_s: float) -> float:
+        """s until a look is due."""
+        times = self._times.get(belt)
+        return times[-1] + LOOK_S - time_s if times else 0.0
+
     def look(self, belt: str, time_s: float, objects: Iterable[Object]) -> None:
         """Keeps what lies there, if a look is due."""
         if not self.is_due(belt, time_s):

@@ -128,7 +128,7 @@ class _States:
             last = int(np.searchsorted(one.columns["cycle"], end))
             if not len(cycles) or one.given == last:
                 continue
-            rows = self._recorder.table(place)
+            rows = self._recorder.take_table(place)
             chosen = one.columns["cycle"][one.given : last] - cycles[0]
             wrong = np.zeros(len(chosen), dtype=bool)
             for field in one.fields:

@@ -34,8 +34,8 @@ from takt.part import Part
 from takt.pick_place import PickPlace
 from takt.planar_group import PlanarGroup
 from takt.pose import FreePose
-from takt.recording import Recording
-from takt.tables import components_of
+from takt.recording import Recording, split_signal
+from takt.tables import KINDS, components_of
 from takt.track import Track
 
 if TYPE_CHECKING:
@@ -49,11 +49,18 @@ Program = Callable[[], object]
 
 @dataclass
 class Scheduled:
-    """A program, and the cycle ahead of which it is called next."""
+    """A program, and the cycle ahead of which it is called next. `watch`: it is called earlier when this sees a change,
+    and only ahead of cycles that are a multiple of `every` from `begin` on."""
 
     scan: Program
     every: int
     due: int
+    begin: int = 0
+    watch: Any = None
+
+    def at_or_after(self, cycle: int) -> int:
+        """The first cycle from this one on ahead of which it may be called."""
+        return cycle if self.watch is None else cycle + (self.begin - cycle) % self.every
 
 
 P = TypeVar("P", bound=Program)
@@ -422,18 +429,44 @@ class Session(SessionWithCams):
         self._check_open()
         self._run(round(seconds(duration, "a duration", sys.float_info.max) / self.period))
 
-    def program(self, scan: P, *, every: int = 1) -> P:
+    def program(self, scan: P, *, every: int = 1, on: Iterable[str] | None = None) -> P:
         """Has `scan` called before every cycle, like a program in a PLC: the place for function blocks (takt.plcopen).
         Over LCM it is called whenever the engine's state has come. Serves as a decorator.
 
         every: cycles from one call to the next. What need not look into every cycle holds the engine up less.
+        on: published values, as "component.field". Calls are left out while these are as they were at the last one,
+            until the s of engine time have passed that `scan` returned then (None: for ever), or `wake` was called.
+            Over LCM none is left out.
         """
         self._check_open()
         every = whole(every, "every", 1)
         if not callable(scan):
             raise TypeError(f"a program is a function, not {scan!r}")
-        self._programs.append(Scheduled(scan, every, self.cycle))
+        watch = None if on is None else self._watch(self._watched(on), every)
+        self._programs.append(Scheduled(scan, every, self.cycle, self.cycle, watch))
         return scan
+
+    def wake(self, scan: Program) -> None:
+        """Has a program that waits for changes (`program(on=...)`) called at its next turn."""
+        for program in self._programs:
+            if program.scan == scan:
+                program.due = min(program.due, self.cycle)
+
+    def _watched(self, signals: Iterable[str]) -> list[tuple[int, int]]:
+        """Components and their fields by number."""
+        if isinstance(signals, str):
+            raise TypeError(f"on is a list of published values, not the text {signals!r}")
+        found = []
+        for signal in signals:
+            name, field = split_signal(signal)
+            component = _named(self._components, name, "axis or other component")
+            places = KINDS[component.KIND].places
+            if field not in places:
+                near = difflib.get_close_matches(field, places, n=1)
+                hint = f"; did you mean '{near[0]}'?" if near else ""
+                raise TaktError(f"'{name}' publishes no '{field}'{hint}")
+            found.append((component.index, places[field]))
+        return found
 
     def _scan(self) -> None:
         if self._scanning:
@@ -442,11 +475,26 @@ class Session(SessionWithCams):
         try:
             now = self.cycle
             for program in self._programs:
-                if program.every == 1 or program.due <= now:
+                if program.watch is not None:
+                    self._scan_on_change(program, now)
+                elif program.every == 1 or program.due <= now:
                     program.due = now + program.every
                     program.scan()
         finally:
             self._scanning = False
+
+    def _scan_on_change(self, program: Scheduled, now: int) -> None:
+        if program.at_or_after(now) != now or (program.due > now and not self._has_changed(program.watch)):
+            return
+        program.due = sys.maxsize
+        self._keep(program.watch)
+        asked = program.scan()
+        if asked is not None:
+            if not isinstance(asked, (int, float)) or not asked >= 0:
+                raise TypeError(f"a program with `on` returns s until its next call, or None, not {asked!r}")
+            # Rather a call too early than one too late by a rounding.
+            cycles = min(asked / self.period, 1e15)
+            program.due = min(program.due, now + max(1, math.ceil(cycles - 1e-6)))
 
     # --- recording ---
 
@@ -578,6 +626,19 @@ class Session(SessionWithCams):
     @abstractmethod
     def _run(self, cycles: int) -> None:
         """Lets so many cycles pass."""
+
+    def _watch(self, fields: list[tuple[int, int]], every: int) -> Any:
+        """Looks at these fields of components every so many cycles. None: it is not known which cycles are seen, and
+        programs are called whenever there is something new."""
+        return None
+
+    def _has_changed(self, watch: Any) -> bool:
+        """Whether a field is other than when they were kept last."""
+        raise NotImplementedError
+
+    def _keep(self, watch: Any) -> None:
+        """Keeps the fields of a watch as they are now."""
+        raise NotImplementedError
 
     def _catch_up(self, cycle: int) -> None:
         """Makes sure that published values are not older than this cycle."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import itertools
 import json
 import math
 import subprocess
@@ -529,6 +530,49 @@ def test_what_is_no_number_or_name_is_said_in_a_sentence(engine: takt.Engine) ->
         with pytest.raises(kind) as raised:
             use()
         assert str(raised.value) == sentence
+
+
+def test_programs_that_wait_for_changes(engine: takt.Engine) -> None:
+    """PY-24, PY-08: called where a value changed since the last call, at the time asked for, or when woken; looks are
+    those of a program that is called at each of them."""
+    calls: list[int] = []
+    states: list[tuple[int, takt.PlcState]] = []
+    asks: list[float | None] = [None]
+
+    def scan() -> float | None:
+        calls.append(engine.cycle)
+        return asks[0]
+
+    engine.program(scan, every=5, on=["x.state"])
+    engine.program(lambda: states.append((engine.cycle, engine.axis("x").state)), every=5)
+    engine.step(12)
+    assert calls == [0]  # nothing has changed since
+    engine.axis("x").power()
+    engine.step(400)
+    seen = [after[0] for before, after in itertools.pairwise(states) if before[1] != after[1]]
+    assert seen
+    assert calls == [0, *seen]
+
+    calls.clear()
+    engine.wake(scan)
+    asks[0] = 12 * engine.period
+    begin = engine.cycle
+    engine.step(41)
+    first = begin + -begin % 5
+    assert calls == [first, first + 15, first + 30]  # the first look that is not before the time
+
+    for wrong, kind, sentence in (
+        (["x.stat"], takt.TaktError, "'x' publishes no 'stat'; did you mean 'state'?"),
+        (["state"], takt.TaktError, "'state' is not of the form component.field"),
+        ("x.state", TypeError, "on is a list of published values, not the text 'x.state'"),
+    ):
+        with pytest.raises(kind) as raised:
+            engine.program(scan, on=wrong)
+        assert str(raised.value) == sentence
+    asks[0] = -1
+    engine.wake(scan)
+    with pytest.raises(TypeError, match="a program with `on` returns s until its next call, or None, not -1"):
+        engine.step(10)
 
 
 def test_programs_and_conditions_every_so_many_cycles(engine: takt.Engine) -> None:

@@ -21,6 +21,7 @@ import numpy.typing as npt
 import takt
 
 Array = npt.NDArray[np.float64]
+BELT = 1500.0  # mm from the sensor to the end of a belt
 EVERY = 10  # cycles between two looks of sensors and control: what passes a sensor meanwhile is found between them
 
 
@@ -87,6 +88,15 @@ def in_world(origin: dict[str, float], x: Array | float, y: Array | float) -> Ar
     )
 
 
+def reaches_in(belt: takt.Belt, distance: float) -> float:
+    """s in which a belt cannot travel farther, mm, whatever it is told meanwhile."""
+    if distance <= 0:
+        return 0.0
+    fastest = max(belt.axis.set_velocity, belt.axis.actual_velocity) + 20.0  # mm/s: more than its servo is ever off
+    speeds_up = 2.0 * float(belt.axis.parameters["limits"]["acceleration"])
+    return (math.sqrt(fastest * fastest + 2 * speeds_up * distance) - fastest) / speeds_up
+
+
 @dataclass
 class Seen:
     """What the control knows of a thing on a belt."""
@@ -108,6 +118,7 @@ class Conveyor:
         self.late = late
         self.origin: dict[str, float] = self.belt.parameters["origin"]
         self.seen: dict[int, Seen] = {}  # by number, with a pose
+        self.changed: Callable[[], None] = lambda: None  # called when there is a new one
         self.here: dict[int, Thing] = {}  # what has passed the sensor and lies there still
         self._things = things
         self._next = next(things)
@@ -126,11 +137,32 @@ class Conveyor:
         """mm that its drive has really travelled."""
         return self.belt.axis.true_position - self._start
 
+    def on_belt(self) -> list[Thing]:
+        """What has passed the sensor, without that which has left at the end of the belt."""
+        ended = [number for number, thing in self.here.items() if self.travel - thing.at > BELT]
+        for number in ended if self.cargo is None else ():
+            del self.here[number]
+        return list(self.here.values())
+
     def truth(self, thing: Thing) -> Array:
         """X and Y in the world."""
         if self.cargo is not None:
             return np.asarray(self.cargo.position(thing.number)[:2])
         return in_world(self.origin, *place(thing, self.travel, self.settings))
+
+    def looks_again(self) -> float:
+        """s until the sensor has to be looked at again: the look before the next thing passes it, and when the camera
+        gives a pose."""
+        travel = self.travel
+        left = [-self._past(travel)]
+        if self.cargo is not None:
+            left = [] if left[0] == math.inf else left
+            left.append(self.settings.begins - float(place(self._arrives, travel, self.settings)[0]))
+            left += [self.settings.slides_at - (travel - thing.at) for thing in self._about_to_slide()]
+        due = reaches_in(self.belt, min(left)) - EVERY * self.session.period
+        if self._pictures:
+            due = min(due, self._pictures[0][0] - self.session.now)
+        return max(due, 0.0)
 
     @property
     def waiting(self) -> int:
@@ -159,6 +191,7 @@ class Conveyor:
                 if self.late > 0:
                     self.belt.locate(number=seen.number, x=seen.x, y=seen.y)
                 self.seen[seen.number] = seen
+                self.changed()
 
     def _past(self, travel: float) -> float:
         """mm of travel since the next thing has passed the sensor."""
@@ -176,12 +209,14 @@ class Conveyor:
         while (x := float(place(self._arrives, travel, self.settings)[0])) >= self.settings.begins:
             self.cargo.put(self.belt.name, x, self._arrives.y)
             self._arrives = next(self._coming)
-        for thing in self.here.values():
-            slid = thing.number in self._slid or thing.slides == (0.0, 0.0)
-            if not slid and place(thing, travel, self.settings)[0] > self.settings.slides_at:
+        for thing in self._about_to_slide():
+            if place(thing, travel, self.settings)[0] > self.settings.slides_at:
                 self._slid.add(thing.number)
                 self.cargo.move(thing.number, *(in_world({**self.origin, "x": 0.0, "y": 0.0}, *thing.slides)))
         self.here = {number: thing for number, thing in self.here.items() if number in self.cargo.here}
+
+    def _about_to_slide(self) -> list[Thing]:
+        return [one for one in self.here.values() if one.slides != (0.0, 0.0) and one.number not in self._slid]
 
     def _latch(self, thing: Thing, recorded: float) -> None:
         noise = self.settings.noise if self.late > 0 else 0.0
@@ -202,20 +237,29 @@ class Gripper:
     _due: list[tuple[float, bool]] = field(default_factory=list)
 
     def close(self) -> None:
-        self._due.append((self.cell.session.now + self.cell.settings.gripper_s, True))
+        self._tell(True)
 
     def open(self) -> None:
-        self._due.append((self.cell.session.now + self.cell.settings.gripper_s, False))
+        self._tell(False)
+
+    def _tell(self, close: bool) -> None:
+        self._due.append((self.cell.session.now + self.cell.settings.gripper_s, close))
+        self.cell.wake()
 
     def step(self) -> None:
         while self._due and self._due[0][0] <= self.cell.session.now:
             _, self.closed = self._due.pop(0)
             self._grip() if self.closed else self._let_go()
+            self.cell.changed()
+
+    def looks_again(self) -> float:
+        """s until it acts."""
+        return max(self._due[0][0] - self.cell.session.now, 0.0) if self._due else math.inf
 
     def _grip(self) -> None:
         conveyor, session = self.cell.infeed, self.cell.session
-        near = min(conveyor.here.values(), key=lambda thing: self.cell.apart(conveyor, thing), default=None)
-        if near is None or self.cell.apart(conveyor, near) > self.cell.settings.holds_within:
+        near, apart = self.cell.nearest(conveyor)
+        if near is None or apart > self.cell.settings.holds_within:
             session.mark("holds nothing")
             return
         self.holds = conveyor.here.pop(near.number)
@@ -226,18 +270,23 @@ class Gripper:
         if thing is None:
             return
         conveyor = self.cell.outfeed
-        tray = min(conveyor.here.values(), key=lambda tray: self.cell.apart(conveyor, tray))
+        tray, _ = self.cell.nearest(conveyor)
+        assert tray is not None
         self.cell.session.mark(f"puts product {thing.number} onto tray {tray.number}")
 
 
 class TwinGripper(Gripper):
     """That of the twin: MuJoCo has the products, and what the gripper holds."""
 
-    def close(self) -> None:
-        self._twin.close()
+    _told = False
 
-    def open(self) -> None:
-        self._twin.open()
+    def _tell(self, close: bool) -> None:
+        self._twin.close() if close else self._twin.open()
+        self._told = close
+        self.cell.wake()
+
+    def looks_again(self) -> float:
+        return 0.0 if self._told != self.closed else math.inf
 
     @property
     def _twin(self) -> Any:
@@ -247,6 +296,7 @@ class TwinGripper(Gripper):
         if self._twin.closed == self.closed:
             return
         self.closed = self._twin.closed
+        self.cell.changed()
         if not self.closed:
             self._let_go()
         elif self._twin.holds is None:
@@ -266,26 +316,44 @@ class Cell:
         self.infeed = Conveyor(session, "infeed", products(settings), settings, settings.picture_s)
         self.outfeed = Conveyor(session, "outfeed", trays(settings), settings, 0.0)
         self.gripper = Gripper(self) if self.infeed.cargo is None else TwinGripper(self)
-        self._later: list[tuple[Callable[[], object], Callable[[], Any]]] = []
-        session.program(self._step, every=EVERY)
+        self._later: list[tuple[float, Callable[[], object], Callable[[], Any]]] = []
+        self.changed: Callable[[], None] = lambda: None  # called when the gripper has acted
+        session.program(self._step, every=EVERY, on=())
 
     def when(self, condition: Callable[[], object], what: Callable[[], Any]) -> None:
         """Has something done once, as soon as the condition holds: a command, a change."""
-        self._later.append((condition, what))
+        self._do_later(self.session.now, condition, what)
 
     def at(self, seconds: float, what: Callable[[], Any]) -> None:
         """The same when the session's time has come."""
-        self.when(lambda: self.session.now >= seconds, what)
+        self._do_later(seconds, lambda: True, what)
 
-    def apart(self, conveyor: Conveyor, thing: Thing) -> float:
-        """mm from the tool to a thing."""
-        truth = (*conveyor.truth(thing), conveyor.origin["z"])
-        return float(math.dist(self.robot.actual_pose[:3], truth))
+    def _do_later(self, seconds: float, condition: Callable[[], object], what: Callable[[], Any]) -> None:
+        self._later.append((seconds, condition, what))
+        self.wake()
 
-    def _step(self) -> None:
-        for one in [one for one in self._later if one[0]()]:
+    def wake(self) -> None:
+        """Something new is to be done: the cell does not wait until what it knew of is due."""
+        self.session.wake(self._step)
+
+    def nearest(self, conveyor: Conveyor) -> tuple[Thing | None, float]:
+        """The thing on a belt that is nearest to the tool, and how far it is from there, mm."""
+        tool, z = self.robot.actual_pose[:3], conveyor.origin["z"]
+        found: tuple[Thing | None, float] = None, math.inf
+        for thing in conveyor.on_belt():
+            apart = math.dist(tool, (*conveyor.truth(thing), z))
+            if apart < found[1]:
+                found = thing, apart
+        return found
+
+    def _step(self) -> float:
+        """All that is due. Returns s until there may be something again."""
+        now = self.session.now
+        for one in [one for one in self._later if now >= one[0] and one[1]()]:
             self._later.remove(one)
-            one[1]()
+            one[2]()
         self.infeed.step()
         self.outfeed.step()
         self.gripper.step()
+        later = min((max(one[0] - now, 0.0) for one in self._later), default=math.inf)
+        return min(later, self.infeed.looks_again(), self.outfeed.looks_again(), self.gripper.looks_again())

@@ -74,7 +74,8 @@ def play(
     for at, belt, speed in ((0.0, "infeed", INFEED), (0.0, "outfeed", OUTFEED), *speeds):
         cell.at(begins + at, lambda belt=belt, speed=speed: change(belt, speed))
     if interrupt is not None:
-        cell.when(lambda: session.now >= begins + interrupt and cell.gripper.holds and abs(robot.y) < 60, hold_up)
+        held_midway = lambda: cell.gripper.holds and abs(robot.y) < 60  # noqa: E731
+        cell.at(begins + interrupt, lambda: cell.when(held_midway, hold_up))
     session.mark(WORKS)
     Picker(session, cell).run(begins + seconds)
     session.mark(ENDS)

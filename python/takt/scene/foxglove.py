@@ -7,7 +7,7 @@ machines moves it by transforms alone.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -59,7 +59,7 @@ def streams_of(recording: Recording, machine: Any) -> list[Stream]:
     times = np.linspace(start, end, max(2, math.ceil((end - start) * RATE_HZ) + 1))
     moved = list(_transforms(recording, machine, times))
     looks = list(_products(recording, scene))
-    solids = [(start, {"deletions": [], "entities": [*_entities(scene, start), *_tracks(machine, start)]}), *looks]
+    solids = [(start, {"deletions": [], "entities": [*entities(scene, start), *tracks(machine, start)]}), *looks]
     solids.sort(key=lambda one: one[0])
     return [
         Stream("/tf", TRANSFORMS, np.array([at for at, _ in moved]), (message for _, message in moved)),
@@ -98,7 +98,7 @@ def _transforms(recording: Recording, machine: Any, times: Array) -> Iterator[tu
             pose = rounded_poses(poses_of(matrix)).tolist()
             if last.get(node["name"]) != pose:
                 last[node["name"]] = pose
-                changed.append(_transform(node["name"], pose, time_s))
+                changed.append(transform(node["name"], pose, time_s))
         if changed:
             yield time_s, {"transforms": changed}
 
@@ -117,7 +117,8 @@ def _column(recording: Recording, component: str, field: str, times: Array) -> A
     return np.where(times >= recording[component]["time_s"][0] - 1e-9, column, np.nan)
 
 
-def _transform(name: str, pose: list[float], time_s: float) -> dict[str, Any]:
+def transform(name: str, pose: list[float], time_s: float) -> dict[str, Any]:
+    """Where a frame is in the world."""
     at = _pose(pose)
     return {
         "timestamp": _time(time_s),
@@ -131,7 +132,8 @@ def _transform(name: str, pose: list[float], time_s: float) -> dict[str, Any]:
 # --- what is on them ---
 
 
-def _entities(scene: Mapping[str, Any], time_s: float) -> Iterator[dict[str, Any]]:
+def entities(scene: Mapping[str, Any], time_s: float) -> Iterator[dict[str, Any]]:
+    """What is on each frame of a scene."""
     for node in scene["nodes"]:
         shapes: dict[str, list[dict[str, Any]]] = {}
         for solid in node["solids"]:
@@ -184,7 +186,8 @@ def _shapes(solid: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
         yield "triangles", {**placed, **corners, "colors": []}
 
 
-def _tracks(machine: Any, time_s: float) -> Iterator[dict[str, Any]]:
+def tracks(machine: Any, time_s: float) -> Iterator[dict[str, Any]]:
+    """Those of a machine, as lines."""
     parts = {part["name"] for part in machine.parameters["parts"]}
     for track in machine.describe()["plan"]["tracks"]:
         points = [_vector([x, y, 3.0]) for _, x, y in np.reshape(track["points"], (-1, 3)).tolist()]
@@ -203,14 +206,19 @@ def _products(recording: Recording, scene: Mapping[str, Any]) -> Iterator[tuple[
         for i, time_s in enumerate(told["time_s"].tolist() if size else ()):
             if not recording.start_s <= time_s <= recording.end_s:
                 continue
-            cubes = []
             rows = told["rows"][int(told["first"][i]) : int(told["first"][i + 1])]
-            for _, x, y, z, turn, taken, near in rows.tolist():
-                half = math.radians(turn) / 2
-                pose = [x, y, z - size[2] / 2, 0.0, 0.0, math.sin(half), math.cos(half)]
-                colour = COLOURS["taken" if taken else "near" if near else "product"]
-                cubes.append({"pose": _pose(pose), "size": _vector(size), "color": _colour(colour)})
-            yield time_s, {"deletions": [], "entities": [_entity(f"on {belt}", WORLD, time_s, {"cubes": cubes})]}
+            yield time_s, {"deletions": [], "entities": [products_on(belt, size, rows.tolist(), time_s)]}
+
+
+def products_on(belt: str, size: Any, rows: Iterable[Any], time_s: float) -> dict[str, Any]:
+    """The entity of all that lies on a belt: rows as those of `takt.lying.rows_of`."""
+    cubes = []
+    for _, x, y, z, turn, taken, near in rows:
+        half = math.radians(turn) / 2
+        pose = [x, y, z - size[2] / 2, 0.0, 0.0, math.sin(half), math.cos(half)]
+        colour = COLOURS["taken" if taken else "near" if near else "product"]
+        cubes.append({"pose": _pose(pose), "size": _vector(size), "color": _colour(colour)})
+    return _entity(f"on {belt}", WORLD, time_s, {"cubes": cubes})
 
 
 # --- numbers as Foxglove has them ---

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 PER_M = 1000.0  # mm
 GONE_MM = 100.0  # beneath the surfaces of all belts: it has fallen
 REST_S = 0.02  # from when a gripper lets go until its product lies where it will lie
+ROUNDING_M = 1e-6  # more than two ways to compute a place differ
 LOOK = 10  # cycles between two looks at belts' ends, at what fell and at what waits
 
 
@@ -170,8 +171,14 @@ class Gripper:
         if product is None:
             return 0.0
         data = self._cargo._data
-        rows = np.flatnonzero(data.efc_id[: data.ne] == self._welds[product.slot])[:3]
-        return float(np.linalg.norm(data.efc_force[rows]))
+        weld, ids = self._welds[product.slot], data.efc_id[: data.ne]
+        if not len(ids):
+            return 0.0
+        first = int((ids == weld).argmax())  # rows of one constraint follow one another, forces first
+        if ids[first] != weld:
+            return 0.0
+        force = data.efc_force[first : first + 3]
+        return math.sqrt(force.dot(force))
 
 
 class Cargo:
@@ -218,6 +225,9 @@ class Cargo:
                 belt["surface"] / PER_M,
                 None if barrier is None else barrier / PER_M,
             )
+        surfaces = [float(belt.origin[2, 3]) + belt.surface for belt in self._belts.values()]
+        self._floor = min(surfaces, default=-math.inf) - GONE_MM / PER_M  # what is beneath has fallen
+        self._place_of = np.array([[one.qpos + i for i in range(3)] for one in self._products], int).reshape(-1, 3)
         self.grippers: dict[str, Gripper] = {}
         for mechanism in twin["mechanisms"]:
             if mechanism.get("gripper"):
@@ -310,9 +320,8 @@ class Cargo:
             self._rests.remove(rests)
             self._judge(rests)
         if cycle % LOOK == 0:
-            for one in self._there():
-                if one.held is None:
-                    self._leave(one, cycle)
+            for one in self._may_leave():
+                self._leave(one, cycle)
         for belt in self._belts.values():
             if belt.barrier is not None:
                 self._sense(belt, measured)
@@ -369,6 +378,18 @@ class Cargo:
         self._data.qpos[one.qpos : one.qpos + 7] = self._park[one.qpos : one.qpos + 7]
         self._data.qvel[one.qvel : one.qvel + 6] = 0
 
+    def _may_leave(self) -> list[_Product]:
+        """Products that may be at the end of a belt, or beneath all of them: a look at all of them at once."""
+        free = [one for one in self._there() if one.held is None]
+        if not free:
+            return []
+        places = self._data.qpos[self._place_of[[one.slot for one in free]]]
+        may = places[:, 2] < self._floor + ROUNDING_M
+        for belt in self._belts.values():
+            along = (places - belt.origin[:3, 3]) @ belt.origin[:3, 0]
+            may |= along > belt.to_m - self._half[0] - ROUNDING_M
+        return [one for one, leaves in zip(free, may.tolist(), strict=True) if leaves]
+
     def _leave(self, one: _Product, cycle: int) -> None:
         """Products at the end of their belt are taken off; others may have fallen."""
         place = self._data.qpos[one.qpos : one.qpos + 3]
@@ -379,13 +400,10 @@ class Cargo:
                 self._forget(one)
                 self._wait(one)
                 return
-        if place[2] < min(self._lowest(), default=-math.inf) - GONE_MM / PER_M:
+        if place[2] < self._floor:
             self.fallen.append((one.number, cycle))
             self._forget(one)
             self._wait(one)
-
-    def _lowest(self) -> Iterator[float]:
-        return (float(belt.origin[2, 3]) + belt.surface for belt in self._belts.values())
 
     def _forget(self, one: _Product) -> None:
         self._rests = [rests for rests in self._rests if rests.product is not one]

@@ -24,6 +24,7 @@ from takt.twin.model import Array, Model, build
 if TYPE_CHECKING:
     from takt.recording import Recording
 
+MOST_KEPT = 4096  # answers about contacts
 FASTEST = 1e6  # m/s or rad/s: no machine, the physics has exploded
 
 
@@ -87,6 +88,7 @@ class Twin(Plant):
         # Views of MuJoCo's own memory: asking the data for them costs more than a step of a small model.
         self._qpos, self._qvel, self._torques = data.qpos, data.qvel, data.qfrc_applied
         self._warnings = data.warning.number
+        self._no_warnings = self._warnings.tobytes()
         self._poses = [view for tool in self.built.tools for view in tool.pose_in(data)]
         self._ahead = np.zeros(model.nv)
         self._places = np.array([joint.position for joint in self.built.joints])
@@ -95,6 +97,8 @@ class Twin(Plant):
         carries = twin["belts"] or twin.get("products")
         self.cargo = Cargo(mujoco, machine, self.built, self.axes, self._period_s) if carries else None
         self._allowed = self.cargo.allowed if self.cargo else np.zeros((model.ngeom, model.ngeom), bool)
+        # By the shapes of all contacts, as bytes: contacts that are not allowed. They hardly change between cycles.
+        self._suspects: dict[bytes, list[int]] = {}
         self._rows: list[tuple[Any, ...]] = []
         self._good = (data.qpos.copy(), data.qvel.copy())
         self._cycle = -1
@@ -127,7 +131,7 @@ class Twin(Plant):
                 at = qpos[self._places]
             step(model, data)
         # NaN is not below either.
-        if not qvel.dot(qvel) < FASTEST * FASTEST or self._warnings.any():
+        if not qvel.dot(qvel) < FASTEST * FASTEST or self._warnings.tobytes() != self._no_warnings:
             self._explode(cycle)
         servos.sense(qpos, qvel, measured)
         if self.cargo is not None:
@@ -162,8 +166,18 @@ class Twin(Plant):
     def _touch(self, cycle: int) -> None:
         model, data = self.built.model, self.built.data
         shapes = data.contact.geom
-        wrong = np.flatnonzero((data.contact.dist <= 0) & ~self._allowed[shapes[:, 0], shapes[:, 1]])
-        for i in wrong:
+        key = shapes.tobytes()
+        suspects = self._suspects.get(key)
+        if suspects is None:
+            if len(self._suspects) >= MOST_KEPT:
+                self._suspects.clear()
+            suspects = np.flatnonzero(~self._allowed[shapes[:, 0], shapes[:, 1]]).tolist()
+            self._suspects[key] = suspects
+        if not suspects:
+            return
+        for i in suspects:
+            if not data.contact.dist[i] <= 0:
+                continue
             contact = data.contact[int(i)]
             names = sorted(_called(model, int(geom)) for geom in contact.geom)
             pair = (names[0], names[1])
