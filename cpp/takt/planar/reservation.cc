@@ -120,6 +120,25 @@ ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around
   return {};
 }
 
+ObjectInfo AskTurn(std::uint32_t mover, const Move& move, const Reservations& r) noexcept {
+  const Reservation& own = r.movers[mover];
+  if (!own.turn.asks) return {};
+  const Area area = AreaOf(own, move);
+  const auto before_it = [&](std::size_t i) {
+    const std::uint64_t its = r.movers[i].turn.since, since = own.turn.since;
+    return its != 0 && (since == 0 || its < since || (its == since && i < mover));
+  };
+  for (std::size_t i = 0; i < r.movers.size(); ++i) {
+    const Reservation& other = r.movers[i];
+    if (i == mover || !other.present || other.level != own.level || !before_it(i)) continue;
+    const bool soon = r.movers[other.turn.blocker].moving && other.turn.blocker != mover;
+    if (soon && planar::Near(area, AreaOf(other, other.turn.move), kClearance)) {
+      return ObjectAt(ObjectKind::kMover, i);
+    }
+  }
+  return {};
+}
+
 void Take(std::uint32_t mover, const Move& move, Reservations& r) noexcept {
   Reservation& own = r.movers[mover];
   own.moving = true;
@@ -191,6 +210,15 @@ void describe(Description<Move>& d) {
   d.internal<&Move::kept_by_gaps>("Those of its network keep away from it by their gaps.");
 }
 
+void describe(Description<Turn>& d) {
+  d.named("MoverTurn");
+  d.about("A move of a mover that waits for its area.");
+  d.internal<&Turn::since>("Cycle from which on it has waited; 0: none waits.");
+  d.internal<&Turn::blocker>("The mover in its way.");
+  d.internal<&Turn::asks>("It asks just now.");
+  d.internal<&Turn::move>("Where it is to go.");
+}
+
 void describe(Description<Reservation>& d) {
   d.about("What a mover has reserved.");
   d.internal<&Reservation::present>("Whether it is in the group.");
@@ -203,6 +231,7 @@ void describe(Description<Reservation>& d) {
   d.internal<&Reservation::pose>("Where it is.");
   d.internal<&Reservation::move>("Where it goes.");
   d.internal<&Reservation::extent>("Of its area.");
+  d.internal<&Reservation::turn>("A move of it that waits for its area.");
 }
 
 void describe(Description<TrackReservation>& d) {
