@@ -118,7 +118,7 @@ ObjectInfo AskMove(std::uint32_t mover, const Move& move, const Grounds& g) noex
 
 Turn* TurnOf(std::uint32_t mover, Grounds& g) noexcept {
   const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
-  return group == 0 ? nullptr : &ReservedBy(group, g).movers[mover].turn;
+  return group == 0 ? nullptr : &ReservedBy(group, g).turns[mover];
 }
 
 void TakeMove(std::uint32_t mover, const Move& move, Grounds& g) noexcept {

@@ -82,6 +82,7 @@ bool Near(const Area& area, const Extent& extent, std::size_t track, const Surro
 Reservations MakeReservations(std::size_t movers, std::size_t tracks) {
   Reservations r;
   r.movers.resize(movers);
+  r.turns.resize(movers);
   r.tracks.resize(tracks);
   return r;
 }
@@ -93,11 +94,13 @@ Area AreaOf(const Reservation& mover) noexcept {
 void Settle(std::uint32_t mover, const Footprint& footprint, const Pose& pose, Reservations& r,
             std::uint32_t level) noexcept {
   r.movers[mover] = {.present = true, .level = level, .mover = footprint, .pose = pose};
+  r.turns[mover] = {};
   Reserve(r.movers[mover]);
 }
 
 void Leave(std::uint32_t mover, Reservations& r) noexcept {
   r.movers[mover] = {};
+  r.turns[mover] = {};
 }
 
 ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around, const Reservations& r) noexcept {
@@ -122,17 +125,17 @@ ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around
 
 ObjectInfo AskTurn(std::uint32_t mover, const Move& move, const Reservations& r) noexcept {
   const Reservation& own = r.movers[mover];
-  if (!own.turn.asks) return {};
+  if (!r.turns[mover].asks) return {};
   const Area area = AreaOf(own, move);
   const auto before_it = [&](std::size_t i) {
-    const std::uint64_t its = r.movers[i].turn.since, since = own.turn.since;
+    const std::uint64_t its = r.turns[i].since, since = r.turns[mover].since;
     return its != 0 && (since == 0 || its < since || (its == since && i < mover));
   };
   for (std::size_t i = 0; i < r.movers.size(); ++i) {
     const Reservation& other = r.movers[i];
     if (i == mover || !other.present || other.level != own.level || !before_it(i)) continue;
-    const bool soon = r.movers[other.turn.blocker].moving && other.turn.blocker != mover;
-    if (soon && planar::Near(area, AreaOf(other, other.turn.move), kClearance)) {
+    const bool soon = r.movers[r.turns[i].blocker].moving && r.turns[i].blocker != mover;
+    if (soon && planar::Near(area, AreaOf(other, r.turns[i].move), kClearance)) {
       return ObjectAt(ObjectKind::kMover, i);
     }
   }
@@ -231,7 +234,6 @@ void describe(Description<Reservation>& d) {
   d.internal<&Reservation::pose>("Where it is.");
   d.internal<&Reservation::move>("Where it goes.");
   d.internal<&Reservation::extent>("Of its area.");
-  d.internal<&Reservation::turn>("A move of it that waits for its area.");
 }
 
 void describe(Description<TrackReservation>& d) {
@@ -242,6 +244,7 @@ void describe(Description<TrackReservation>& d) {
 void describe(Description<Reservations>& d) {
   d.about("The areas of a group of movers.");
   d.internal<&Reservations::movers>("Of movers.");
+  d.internal<&Reservations::turns>("Moves that wait for their area.");
   d.internal<&Reservations::tracks>("Of tracks.");
 }
 

@@ -60,7 +60,6 @@ struct Reservation {
   Pose pose{};
   Move move{};
   Extent extent{};  // of its area
-  Turn turn{};
 };
 
 struct TrackReservation {
@@ -69,6 +68,7 @@ struct TrackReservation {
 
 struct Reservations {
   std::vector<Reservation> movers{};
+  std::vector<Turn> turns{};  // by mover; apart, as what is asked in each cycle is small so
   std::vector<TrackReservation> tracks{};
 };
 Reservations MakeReservations(std::size_t movers, std::size_t tracks);
