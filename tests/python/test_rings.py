@@ -105,10 +105,36 @@ def test_plans_of_many_movers(layout: TrackLayout, count: int) -> None:
     with Engine(machine(layout, starts)) as engine:
         put_on_tracks(engine, [(p.street, p.s) for p in starts], names)
         plan = takt.plan_routes(engine, {f"m{i}": (names[p.street], p.s) for i, p in enumerate(aims)})
-    assert plan.tried <= 1100  # PL-88: what is looked for besides, and what bounds the time
+    # PL-88: what is looked for besides, and what bounds the time.
+    assert plan.tried <= 1100 + 3 * 1.05 * max(30_000 / count, 100)
     for i, place in enumerate(aims):
         assert plan.way(f"m{i}")[-1] == names[place.street]
         assert plan.ends[i] == pytest.approx(place.s)
+
+
+# Starts and targets, street and mm, on places 100 mm apart; and the sum of steps of 100 mm of the joint optimum: the
+# least with which all get there if in each step each mover stays or goes on to the next place, on streets forth and
+# back, and no two stand nearer to each other than streets allow. Found by searching all states of three movers (A*).
+KNOWN = [
+    ([(0, 3305.593), (5, 1756.681), (2, 400.678)], [(0, 200.339), (4, 500.0), (0, 4507.627)], 340),
+    ([(2, 3505.932), (0, 4006.78), (3, 2066.684)], [(2, 1101.864), (0, 300.508), (2, 1903.22)], 255),
+    ([(2, 3806.441), (0, 4507.627), (5, 620.005)], [(2, 300.508), (5, 1756.681), (1, 800.0)], 268),
+    ([(0, 3906.61), (0, 4507.627), (2, 300.508)], [(5, 620.005), (4, 600.0), (2, 601.017)], 293),
+    ([(0, 601.017), (2, 200.339), (0, 2704.576)], [(3, 826.673), (0, 2303.898), (5, 2066.684)], 244),
+    ([(0, 2303.898), (3, 1343.344), (5, 1653.347)], [(2, 2604.407), (2, 3706.271), (5, 413.337)], 133),
+]
+
+
+@pytest.mark.parametrize("known", range(len(KNOWN)))
+def test_near_the_joint_optimum(layout: TrackLayout, known: int) -> None:
+    """PL-88: the sum of times, carried out at 100 mm in 0.1 s, ramps included, within 1.15 of the optimum."""
+    starts, aims, optimum = KNOWN[known]
+    names = [track.name for track in layout.tracks]
+    with Engine(machine(layout, [Place(*start) for start in starts])) as engine:
+        put_on_tracks(engine, starts, names)
+        plan = takt.plan_routes(engine, {f"m{i}": (names[k], s) for i, (k, s) in enumerate(aims)}, velocity=1000)
+        times = takt.Journey(engine, plan).wait(600).arrived_s
+    assert 0.99 < sum(times.values()) / (0.1 * optimum) < 1.15
 
 
 def test_a_plan_by_rules_is_carried_out(layout: TrackLayout) -> None:

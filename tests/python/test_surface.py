@@ -85,6 +85,40 @@ def check(engine: Engine, plan: takt.SurfacePlan) -> takt.SurfaceJourney:
 # --- plans that are carried out ---
 
 
+def in_a_group(starts: Mapping[str, Cell], stators: list[Cell], more: str = "") -> Engine:
+    """All movers in a group that is enabled."""
+    group = f"planar_groups: [{{name: cell, movers: [{', '.join(starts)}], environment: floor{more}}}]\n"
+    engine = engine_of(starts, stators, group)
+    engine.planar_group("cell").enable().wait()
+    return engine
+
+
+@pytest.mark.parametrize(("count", "more"), [(24, ""), (40, ""), (24, ", moves_wait: true")])
+def test_routes_are_carried_out_in_an_enabled_group(count: int, more: str) -> None:
+    """PL-30, PL-72: movers are sent only into what others have left, so their group refuses none of their commands."""
+    starts, targets = random_world(4, count, count)
+    engine = in_a_group(starts, square(4), more)
+    check(engine, takt.plan_surface(engine, targets, effort=300))
+    errors = {record.error_id for mover in engine.movers.values() for record in mover.history()}
+    assert errors == {0}
+
+
+def test_orders_are_carried_out_in_an_enabled_group() -> None:
+    """PL-72: with others sent after them, and one that is halted in the middle of it."""
+    starts, targets = random_world(3, 12, 5)
+    engine = in_a_group(starts, square(3))
+    watch = Watch(engine)
+    order = engine.route(targets)
+    engine.run(0.2)
+    again = engine.route({name: at(starts[name]) for name in ("m0", "m1")})
+    engine.run(0.3)
+    engine.mover("m2").halt().wait()
+    engine.wait(lambda: order.done and again.done, 30)
+    assert {"m0", "m1"} <= set(order.failed) <= {"m0", "m1", "m2"}
+    assert set(again.arrived_s) == {"m0", "m1"}
+    assert not watch.overlaps
+
+
 @pytest.mark.parametrize(("count", "worst"), [(10, 1.25), (20, 1.4), (26, 1.5)])
 def test_random_targets_are_reached_without_a_collision(count: int, worst: float) -> None:
     """By precedence, and not much later than planned."""
@@ -343,15 +377,10 @@ def test_rasters_that_cannot_be_are_named() -> None:
 
 
 def test_movers_that_cannot_go_are_named() -> None:
-    group = "planar_groups: [{name: cell, movers: [a], environment: floor}]\n"
-    engine = engine_of({"a": (0, 0), "b": (3, 3), "c": (2, 2)}, square(2), group)
+    engine = engine_of({"a": (0, 0), "b": (3, 3), "c": (2, 2)}, square(2))
     engine.mover("b").disable().wait()
     with pytest.raises(takt.RoutingError, match="mover b cannot be moved on the surface: it is Disabled"):
         takt.plan_surface(engine, {"b": at((1, 0))})
-    engine.planar_group("cell").enable().wait()
-    with pytest.raises(takt.RoutingError, match="mover a cannot be moved on the surface: it is in group cell"):
-        takt.plan_surface(engine, {"a": at((1, 0))})
-    engine.planar_group("cell").disable().wait()
     engine.mover("c").move_to_position(x=180, y=300)
     engine.run(0.05)
     with pytest.raises(takt.RoutingError, match="mover c is in motion"):

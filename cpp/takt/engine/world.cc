@@ -264,6 +264,7 @@ void World::MakePlanarGroups(const Machine& machine) {
     const planargroup::PlanarGroupParams& params = machine.planar_groups[i];
     for (const std::string& name : params.movers) grounds.group_of_mover[IndexNamed(machine.movers, name)] = i + 1;
     for (const std::string& name : params.tracks) grounds.group_of_track[IndexNamed(machine.tracks, name)] = i + 1;
+    grounds.grounds[i].waits = params.moves_wait;
     if (params.environment) {
       grounds.group_of_environment[IndexNamed(machine.environments, *params.environment)] = i + 1;
     }

@@ -39,6 +39,20 @@ void NoteLimit(Ticket ticket, const Command& command, State& s) {
   if (record) record->limited_by = s.limited_by;
 }
 
+// It was refused for what is in the way, and that may move: a border does not.
+bool MayBeGone(const Answer& answer) {
+  const ObjectKind kind = answer.object.kind;
+  return answer.status.error == ErrorId::kCollision && (kind == ObjectKind::kMover || kind == ObjectKind::kTrack);
+}
+
+// In its group such a command waits rather than to be refused.
+bool MayWait(const Context& c, const Command& command) {
+  const std::uint32_t group = c.grounds.Watching(c.grounds.group_of_mover[c.index]);
+  if (group == 0 || !c.grounds.grounds[group - 1].waits) return false;
+  return std::holds_alternative<MoveToPosition>(command) || std::holds_alternative<MoveOnTrack>(command) ||
+         std::holds_alternative<JoinTrack>(command) || std::holds_alternative<LeaveTrack>(command);
+}
+
 // What a mover is told whatever its part does; the rest would move it.
 template <typename T>
 constexpr bool kAlways =
@@ -47,7 +61,7 @@ constexpr bool kAlways =
 
 }  // namespace
 
-bool Begin(const Context& c, Ticket ticket, const Command& command, State& s) noexcept {
+bool Begin(const Context& c, Ticket ticket, const Command& command, State& s, ObjectInfo* in_the_way) noexcept {
   if (!HasGoodNumbers(command)) {
     Report(c, ticket, FeedbackState::kError, ErrorId::kParameter, 0, s);
     return false;
@@ -61,6 +75,10 @@ bool Begin(const Context& c, Ticket ticket, const Command& command, State& s) no
         return !kAlways<T> && IsAway(c, s) ? Refused(ErrorId::kPartDisabled) : CarryOut(given, body);
       },
       command);
+  if (in_the_way && MayBeGone(answer)) {
+    *in_the_way = answer.object;
+    return false;
+  }
   if (answer.status.failed()) {
     const bool by_mode = answer.status.error == ErrorId::kCommandMode;
     const double value = by_mode ? static_cast<double>(s.mode) : answer.value;
@@ -85,7 +103,11 @@ void Apply(const Context& c, Ticket ticket, const Command& command, State& s) no
     Report(c, ticket, waits ? FeedbackState::kBusy : FeedbackState::kError, why, 0, s);  // at once: clients wait for it
     return;
   }
-  if (!Begin(c, ticket, command, s)) return;
+  ObjectInfo in_the_way;
+  if (!Begin(c, ticket, command, s, MayWait(c, command) ? &in_the_way : nullptr)) {
+    if (in_the_way) WaitInTurn(c, ticket, command, in_the_way, s);
+    return;
+  }
   GoBeside(ticket, s);
   if (!TookOver(ticket, s)) return;
   End(c, kPassing, FeedbackState::kAborted, ErrorId::kNone, s);

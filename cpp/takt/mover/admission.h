@@ -74,8 +74,10 @@ inline planar::Pace PaceOf(const MoverParams& params, const trajectory::Limits& 
   return {limits, params.lateral(), std::max(most.acceleration, most.deceleration), most.jerk};
 }
 
-// Carries it out, or refuses it; reports either way. Whether it was accepted.
-bool Begin(const Context& c, Ticket ticket, const Command& command, State& s) noexcept;
+// Carries it out, or refuses it; reports either way. Whether it was accepted. With `in_the_way`, one that only another
+// mover or a track that is Moving is in the way of is not refused: nothing has happened, and this is what it was.
+bool Begin(const Context& c, Ticket ticket, const Command& command, State& s,
+           ObjectInfo* in_the_way = nullptr) noexcept;
 
 // Whether a mover may go along these tracks now; and then it does.
 planar::Verdict AskRoute(const Context& c, const planar::Route& route) noexcept;

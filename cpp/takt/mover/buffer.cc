@@ -6,6 +6,7 @@
 #include "takt/core/describe.h"
 #include "takt/core/maths.h"
 #include "takt/mover/admission.h"
+#include "takt/mover/formation.h"
 #include "takt/mover/on_parts.h"
 
 namespace takt::mover {
@@ -158,14 +159,48 @@ void PassReleases(const Context& c, State& s) {
   }
 }
 
+// The next one waits for this, if it is something.
+void HoldFor(const Context& c, const ObjectInfo& object, Buffer& b) {
+  if (object && !b.held_by) b.held_since = c.cycle.count;
+  b.held_by = object;
+  const bool mover = object.kind == ObjectKind::kMover;
+  if (mover) b.held_at = c.grounds.movers[object.number - 1].pose;
+  planar::Turn* turn = planar::TurnOf(c.index, c.grounds);
+  if (!turn) return;
+  if (mover) turn->blocker = object.number - 1;
+  turn->since = mover ? b.held_since + 1 : 0;
+}
+
+// Gives the next one its turn. False: it was refused, or waits for `in_the_way`.
+bool BeginInTurn(const Context& c, const Queued& next, State& s, ObjectInfo& in_the_way) {
+  planar::Turn* turn = planar::TurnOf(c.index, c.grounds);
+  if (turn) turn->asks = true;
+  const bool begun = Begin(c, next.ticket, next.command, s, &in_the_way);
+  if (turn) turn->asks = false;
+  HoldFor(c, in_the_way, s.buffer);
+  return begun;
+}
+
 // The next one waits for a part that is on its way.
 bool HoldForPart(const Context& c, State& s) {
-  Buffer& b = s.buffer;
-  const std::uint32_t part = PartAwaited(c, b.waiting[0].command, s);
-  const std::uint32_t number = part == planar::kNoPart ? 0 : part + 1;
-  if (number != 0 && number != b.held_by) b.held_since = c.cycle.count;
-  b.held_by = number;
-  return number != 0;
+  const std::uint32_t part = PartAwaited(c, s.buffer.waiting[0].command, s);
+  if (part == planar::kNoPart) return false;
+  HoldFor(c, ObjectAt(ObjectKind::kPart, part), s.buffer);
+  return true;
+}
+
+// The mover in the way of the next one stands as it stood, and so is in the way still: asking takes a plan and a look
+// at the whole group. Now and then it is asked all the same, as the mover itself may have changed.
+bool StandsInTheWay(const Context& c, const State& s) {
+  constexpr std::uint64_t kAskAnyway = 64;  // cycles
+  const Buffer& b = s.buffer;
+  const std::uint32_t group = c.grounds.Watching(c.grounds.group_of_mover[c.index]);
+  if (b.held_by.kind != ObjectKind::kMover || group == 0 || !IsResting(c, s)) return false;
+  if ((c.cycle.count - b.held_since) % kAskAnyway == 0) return false;
+  const planar::Reservation& its = c.grounds.grounds[group - 1].reserved.movers[b.held_by.number - 1];
+  const planar::Pose& at = its.pose;
+  return its.present && !its.moving && at.place.x == b.held_at.place.x && at.place.y == b.held_at.place.y &&
+         at.c == b.held_at.c;
 }
 
 // The next one begins, if it is its turn.
@@ -174,9 +209,8 @@ void GiveTurn(const Context& c, State& s) {
   if (b.count == 0) return;
   PrepareCorner(c, b.waiting[0], s);
   if (!IsNext(c, b.waiting[0], s)) return;
-  if (HoldForPart(c, s)) return;
+  if (HoldForPart(c, s) || StandsInTheWay(c, s)) return;
   const Queued next = b.waiting[0];
-  Pop(b);
   // What it takes over from without a stop is done when its end is passed; in the plane that is now.
   const Ticket before = std::exchange(s.tickets[kPlane], 0);
   const std::uint64_t begun = s.begun[kPlane];
@@ -184,10 +218,12 @@ void GiveTurn(const Context& c, State& s) {
   const planar::Rider& rider = c.rider();
   const double passing_at = rider.origin + rider.at.position + rider.direction * WayLeft(c.streets.network, rider);
   const std::int8_t direction = rider.direction;
-  if (!Begin(c, next.ticket, next.command, s)) {
-    s.tickets[kPlane] = before;
-    return AbortBuffered(c, s);
-  }
+  ObjectInfo in_the_way;
+  const bool begun_now = BeginInTurn(c, next, s, in_the_way);
+  if (!begun_now) s.tickets[kPlane] = before;
+  if (in_the_way) return;
+  Pop(b);
+  if (!begun_now) return AbortBuffered(c, s);
   EachBeside(next.ticket, s, [&](std::uint32_t bit) {
     for (Queued& waiting : b.waiting) waiting.beside &= ~bit;  // for this one they do wait
   });
@@ -222,6 +258,21 @@ bool Push(Ticket ticket, const Command& command, Buffer& buffer) noexcept {
   return true;
 }
 
+void WaitInTurn(const Context& c, Ticket ticket, const Command& command, const ObjectInfo& in_the_way,
+                State& s) noexcept {
+  if (IsPlaneResting(c, s)) {
+    for (const Slot slot : {kPlane, kPassing, kWait}) End(c, slot, FeedbackState::kAborted, ErrorId::kNone, s);
+    AbortBuffered(c, s);
+  } else {
+    const trajectory::Limits limits = StandardOf(c.params.xy);
+    EndAll(c, false, FeedbackState::kAborted, ErrorId::kNone, s);
+    BringToRest(c, &limits, s);
+  }
+  Push(ticket, command, s.buffer);
+  HoldFor(c, in_the_way, s.buffer);
+  Report(c, ticket, FeedbackState::kBusy, ErrorId::kNone, 0, s);
+}
+
 void GoBeside(Ticket ticket, State& s) noexcept {
   EachBeside(ticket, s, [&](std::uint32_t bit) {
     for (std::uint32_t i = 0; i < s.buffer.count; ++i) s.buffer.waiting[i].beside |= bit;
@@ -235,7 +286,19 @@ void AbortBuffered(const Context& c, State& s) noexcept {
   s.plane.tried = s.plane.passes;
   s.buffer.waiting = {};
   s.buffer.count = 0;
-  s.buffer.held_by = 0;
+  HoldFor(c, {}, s.buffer);
+}
+
+std::uint32_t WaitsFor(const Context& c, std::uint32_t mover) noexcept {
+  if (mover >= c.fleet.states.size()) return planar::kNobody;
+  const State* s = &c.fleet.states[mover];
+  if (IsPlanet(*s)) mover = s->formation.star, s = &c.fleet.states[mover];
+  if (!AtRest(*s)) return planar::kNobody;
+  const planar::Rider& rider = c.streets.riders[mover];
+  if (IsOnTrack(*s) && rider.waits == planar::Waits::kMover) return rider.waits_for;
+  if (!IsOnTrack(*s) && s->plane.held_by != planar::kNobody) return s->plane.held_by;
+  const bool waits = s->tickets[kPlane] == 0 && s->buffer.held_by.kind == ObjectKind::kMover;
+  return waits ? s->buffer.held_by.number - 1 : planar::kNobody;
 }
 
 void TakeTurns(const Context& c, State& s) noexcept {
@@ -284,7 +347,8 @@ void describe(Description<Buffer>& d) {
   d.internal<&B::for_release>("It waits for a release, too.");
   d.internal<&B::passing_at>("Where the way ends that went over into another one.");
   d.internal<&B::direction>("Of that way.");
-  d.internal<&B::held_by>("Number of the part that the next one waits for, from 1; 0: none.");
+  d.internal<&B::held_by>("What the next one waits for: a part, a mover or a track.");
+  d.internal<&B::held_at>("Where that stood, of a mover.");
   d.internal<&B::held_since>("Cycle since which it waits for that.");
 }
 

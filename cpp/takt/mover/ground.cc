@@ -99,7 +99,9 @@ ObjectInfo WhoComes(const Context& c, const PlaneMove& plane, const CoordinateMo
 ObjectInfo InTheWay(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, bool on_track) noexcept {
   ObjectInfo object = WhoComes(c, plane, turn, on_track);
   if (!object && IsWatched(c, c.index)) {
-    object = planar::AskMove(c.index, MoveOf(c, plane, turn, on_track), c.grounds);
+    const planar::Move move = MoveOf(c, plane, turn, on_track);
+    object = planar::AskMove(c.index, move, c.grounds);
+    if (planar::Turn* its = planar::TurnOf(c.index, c.grounds); its->asks) its->move = move;
   }
   EachPlanet(c, [&](std::uint32_t i) {
     if (!object && IsWatched(c, i)) object = planar::AskMove(i, MoveOfPlanet(c, i, plane, turn), c.grounds);

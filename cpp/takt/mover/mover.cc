@@ -257,6 +257,31 @@ bool IsHeldUpByPart(const Context& c, const State& s) {
   return wants && s.part != planar::kNoPart && !IsPartReady(c, s);
 }
 
+// The next command waits in its turn.
+void PublishHeld(const Buffer& buffer, Outputs& out) {
+  const ObjectInfo& object = buffer.held_by;
+  const bool mover = object.kind == ObjectKind::kMover;
+  out.delay = mover ? Delay::kMover : object.kind == ObjectKind::kTrack ? Delay::kTrack : Delay::kPart;
+  out.delay_since = buffer.held_since;
+  if (mover) out.waits_for = object.number;
+  Block(object.kind, object.number - 1, out);
+}
+
+// Whether movers wait for one another, this one among them or ahead of it, where they do not all ride on tracks.
+void PublishDeadlock(const Context& c, Outputs& out) {
+  if (out.waits_for == 0 || out.deadlocked || out.delay == Delay::kDeadlock) return;
+  std::uint32_t at = c.index;
+  for (std::size_t i = 0; i <= c.fleet.states.size(); ++i) {
+    at = WaitsFor(c, at);
+    if (at == planar::kNobody) return;
+    if (at == c.index) {
+      out.deadlocked = true;
+      return;
+    }
+  }
+  out.delay = Delay::kDeadlock;
+}
+
 // Why the mover does not go on.
 void PublishDelay(const Context& c, const State& s, Outputs& out) {
   const planar::Rider& rider = c.rider();
@@ -275,10 +300,8 @@ void PublishDelay(const Context& c, const State& s, Outputs& out) {
     out.delay = Delay::kMaster;
     out.delay_since = c.streets.riders[rider.gear.master].waits_since;
     Block(ObjectKind::kMover, rider.gear.master, out);
-  } else if (s.buffer.held_by != 0) {
-    out.delay = Delay::kPart;
-    out.delay_since = s.buffer.held_since;
-    Block(ObjectKind::kPart, s.buffer.held_by - 1, out);
+  } else if (s.buffer.held_by) {
+    PublishHeld(s.buffer, out);
   } else if (IsHeldUpByPart(c, s)) {
     out.delay = Delay::kPart;
     out.delay_since = s.since;
@@ -396,6 +419,7 @@ void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& ou
   }
   out.formation = BodyOf(c, s);
   PublishDelay(c, s, out);
+  PublishDeadlock(c, out);
   PublishWay(c, s, out);
   out.buffered = s.buffer.count;
   out.group = c.grounds.group_of_mover[c.index];

@@ -15,6 +15,7 @@ void describe(Enumeration<Delay>& e) {
           "It waits for its master, an axis or a mover, to come where it may go, or to go on: blocker.");
   e.value(Delay::kPart, "part", "It waits for a part that is on its way, or not enabled: blocker.");
   e.value(Delay::kDeadlock, "deadlock", "The movers ahead of it wait for one another: waits_for.");
+  e.value(Delay::kTrack, "track", "A track that is Moving is in its way: blocker.");
 }
 
 void describe(Description<Outputs>& d) {

@@ -22,6 +22,7 @@ enum class Delay : std::uint8_t {
   kMaster,    // its master is where it may not go, or is held up itself
   kPart,      // a part of the surface is on its way, or not enabled
   kDeadlock,  // the movers ahead of it wait for one another
+  kTrack,     // a track that is Moving is in its way
 };
 
 struct Outputs {

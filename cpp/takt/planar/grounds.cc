@@ -111,7 +111,14 @@ Surroundings Grounds::Around(std::uint32_t group) const noexcept {
 ObjectInfo AskMove(std::uint32_t mover, const Move& move, const Grounds& g) noexcept {
   const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
   if (group == 0) return {};
-  return Numbered(Ask(mover, move, g.Around(group), g.grounds[group - 1].reserved), group, g);
+  const Reservations& r = g.grounds[group - 1].reserved;
+  const ObjectInfo object = Ask(mover, move, g.Around(group), r);
+  return object ? Numbered(object, group, g) : AskTurn(mover, move, r);
+}
+
+Turn* TurnOf(std::uint32_t mover, Grounds& g) noexcept {
+  const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
+  return group == 0 ? nullptr : &ReservedBy(group, g).turns[mover];
 }
 
 void TakeMove(std::uint32_t mover, const Move& move, Grounds& g) noexcept {
@@ -293,6 +300,7 @@ void AdvanceTracks(Grounds& g) noexcept {
 void describe(Description<Ground>& d) {
   d.about("What a group of movers has reserved.");
   d.internal<&Ground::watches>("Only then it has.");
+  d.internal<&Ground::waits>("Moves wait in it instead of being refused.");
   d.internal<&Ground::reserved>("For whom what.");
 }
 

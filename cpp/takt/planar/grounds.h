@@ -35,6 +35,7 @@ struct MoverNow {
 // What is remembered of a group.
 struct Ground {
   bool watches = false;  // it is enabled: only then anything is reserved or refused
+  bool waits = false;    // moves of its movers wait for their area instead of being refused; as the machine file says
   Reservations reserved;
 };
 
@@ -78,6 +79,8 @@ struct Verdict {
 
 // With what a mover would collide in its group; none where that does not watch. And what follows for what is reserved.
 ObjectInfo AskMove(std::uint32_t mover, const Move& move, const Grounds& g) noexcept;
+// What its group knows of a move that waits in its turn; null: the group does not watch.
+Turn* TurnOf(std::uint32_t mover, Grounds& g) noexcept;
 void TakeMove(std::uint32_t mover, const Move& move, Grounds& g) noexcept;
 // As `movers` says it is now.
 void AdvanceMover(std::uint32_t mover, Grounds& g) noexcept;

@@ -82,6 +82,7 @@ bool Near(const Area& area, const Extent& extent, std::size_t track, const Surro
 Reservations MakeReservations(std::size_t movers, std::size_t tracks) {
   Reservations r;
   r.movers.resize(movers);
+  r.turns.resize(movers);
   r.tracks.resize(tracks);
   return r;
 }
@@ -93,11 +94,13 @@ Area AreaOf(const Reservation& mover) noexcept {
 void Settle(std::uint32_t mover, const Footprint& footprint, const Pose& pose, Reservations& r,
             std::uint32_t level) noexcept {
   r.movers[mover] = {.present = true, .level = level, .mover = footprint, .pose = pose};
+  r.turns[mover] = {};
   Reserve(r.movers[mover]);
 }
 
 void Leave(std::uint32_t mover, Reservations& r) noexcept {
   r.movers[mover] = {};
+  r.turns[mover] = {};
 }
 
 ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around, const Reservations& r) noexcept {
@@ -117,6 +120,25 @@ ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around
   }
   if (around.environment && own.level == 0 && !Carries(*around.environment, area))
     return ObjectAt(ObjectKind::kEnvironment, 0);
+  return {};
+}
+
+ObjectInfo AskTurn(std::uint32_t mover, const Move& move, const Reservations& r) noexcept {
+  const Reservation& own = r.movers[mover];
+  if (!r.turns[mover].asks) return {};
+  const Area area = AreaOf(own, move);
+  const auto before_it = [&](std::size_t i) {
+    const std::uint64_t its = r.turns[i].since, since = r.turns[mover].since;
+    return its != 0 && (since == 0 || its < since || (its == since && i < mover));
+  };
+  for (std::size_t i = 0; i < r.movers.size(); ++i) {
+    const Reservation& other = r.movers[i];
+    if (i == mover || !other.present || other.level != own.level || !before_it(i)) continue;
+    const bool soon = r.movers[r.turns[i].blocker].moving && r.turns[i].blocker != mover;
+    if (soon && planar::Near(area, AreaOf(other, r.turns[i].move), kClearance)) {
+      return ObjectAt(ObjectKind::kMover, i);
+    }
+  }
   return {};
 }
 
@@ -191,6 +213,15 @@ void describe(Description<Move>& d) {
   d.internal<&Move::kept_by_gaps>("Those of its network keep away from it by their gaps.");
 }
 
+void describe(Description<Turn>& d) {
+  d.named("MoverTurn");
+  d.about("A move of a mover that waits for its area.");
+  d.internal<&Turn::since>("Cycle from which on it has waited; 0: none waits.");
+  d.internal<&Turn::blocker>("The mover in its way.");
+  d.internal<&Turn::asks>("It asks just now.");
+  d.internal<&Turn::move>("Where it is to go.");
+}
+
 void describe(Description<Reservation>& d) {
   d.about("What a mover has reserved.");
   d.internal<&Reservation::present>("Whether it is in the group.");
@@ -213,6 +244,7 @@ void describe(Description<TrackReservation>& d) {
 void describe(Description<Reservations>& d) {
   d.about("The areas of a group of movers.");
   d.internal<&Reservations::movers>("Of movers.");
+  d.internal<&Reservations::turns>("Moves that wait for their area.");
   d.internal<&Reservations::tracks>("Of tracks.");
 }
 

@@ -41,6 +41,14 @@ struct Move {
   bool kept_by_gaps = false;
 };
 
+// A move that waits for its area in its turn (PL-72).
+struct Turn {
+  std::uint64_t since = 0;    // cycle from which on it has waited, from 1; 0: none waits
+  std::uint32_t blocker = 0;  // the mover in its way
+  bool asks = false;          // just now: it is held against the turns of others
+  Move move{};                // what it was refused
+};
+
 struct Reservation {
   bool present = false;  // in the group
   bool moving = false;   // to the target of `move`
@@ -60,6 +68,7 @@ struct TrackReservation {
 
 struct Reservations {
   std::vector<Reservation> movers{};
+  std::vector<Turn> turns{};  // by mover; apart, as what is asked in each cycle is small so
   std::vector<TrackReservation> tracks{};
 };
 Reservations MakeReservations(std::size_t movers, std::size_t tracks);
@@ -83,6 +92,10 @@ void Leave(std::uint32_t mover, Reservations& r) noexcept;
 // 1). None: the way is free. A track of its own network does not count for a mover that turns on it. What only touches
 // counts, except the border of the environment.
 ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around, const Reservations& r) noexcept;
+// Of a move whose way is free, and that asks in its turn: the mover that has waited longer for some of that area, and
+// will get it soon, as the mover in its way is leaving. So none that waits is overtaken for ever by others that do; and
+// none waits for one that cannot go.
+ObjectInfo AskTurn(std::uint32_t mover, const Move& move, const Reservations& r) noexcept;
 // From now on it has that reserved, in place of what it had.
 void Take(std::uint32_t mover, const Move& move, Reservations& r) noexcept;
 // Where it is now.
@@ -98,6 +111,7 @@ void TakeTrack(std::uint32_t track, Reservations& r) noexcept;
 void EndTrack(std::uint32_t track, Reservations& r) noexcept;
 
 void describe(Description<Move>&);
+void describe(Description<Turn>&);
 void describe(Description<Reservation>&);
 void describe(Description<TrackReservation>&);
 void describe(Description<Reservations>&);

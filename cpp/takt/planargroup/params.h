@@ -14,6 +14,7 @@ struct PlanarGroupParams {
   std::vector<std::string> movers;           // in it from the start
   std::vector<std::string> tracks;           // likewise
   std::optional<std::string> environment{};  // likewise
+  bool moves_wait = false;                   // for their area, instead of being refused
 };
 
 void describe(Description<PlanarGroupParams>&);

@@ -194,6 +194,11 @@ class Task:
 
     # --- how far it is ---
 
+    def cost(self, hop: Hop) -> float:
+        """mm of way that a hop leads on by, and of the row that it leads into."""
+        street = self.streets[hop.street]
+        return HOP + self.streets.length(hop.sweep) + (street.last - street.first if hop.to_row else 0.0)
+
     def is_done(self, a: Arrangement) -> bool:
         return (
             all(
@@ -320,27 +325,40 @@ class Search(NamedTuple):
     complete: bool  # there are no others
 
 
-def search(task: Task, effort: int) -> Search:
-    """An order of hops: always on from where least is left to go. Looks at so many arrangements at most."""
+def search(task: Task, effort: int, weight: float = math.inf) -> Search:
+    """An order of hops: always on from where least is left to go. Looks at so many arrangements at most.
+
+    With a weight, on from where the way gone and that weight times what is left are least together (weighted A*): the
+    smaller it is, the shorter the ways, and the more arrangements are looked at.
+    """
     start = task.start
     if task.is_done(start):
         return Search((), 0, True)
+    greedy = weight == math.inf
     came: dict[Arrangement, tuple[Arrangement, Hop] | None] = {start: None}
+    gone = {start: 0.0}
     count = itertools.count()
-    heap = [(task.far(start), 0, start)] if task.far(start) < math.inf else []
+    heap = [(task.far(start), 0, 0.0, start)] if task.far(start) < math.inf else []
     while heap:
-        _, _, a = heapq.heappop(heap)
+        _, _, way, a = heapq.heappop(heap)
+        if way > gone[a]:
+            continue  # it was reached by a shorter way since
+        if not greedy and task.is_done(a):
+            return Search(_hops_to(a, came), len(came), False)
         for hop in task.hops(a):
             b = task.after(hop, a)
-            if b is None or b in came:
+            if b is None:
                 continue
-            came[b] = (a, hop)
+            further = way + task.cost(hop)
+            if b in came and (greedy or further >= gone[b]):
+                continue
+            came[b], gone[b] = (a, hop), further
             far = task.far(b)
             if far == math.inf:
                 continue
-            if task.is_done(b):
+            if greedy and task.is_done(b):
                 return Search(_hops_to(b, came), len(came), False)
-            heapq.heappush(heap, (far, -next(count), b))
+            heapq.heappush(heap, (far if greedy else further + weight * far, -next(count), further, b))
         if len(came) > effort:
             return Search(None, len(came), False)
     return Search(None, len(came), True)

@@ -27,8 +27,9 @@ class Shift:
     most: Mapping[int, float]  # by mover: mm, no further than this
 
 
-def in_time(task: Task, hops: Sequence[Hop], speed: float) -> list[Hop]:
-    """The hops in an order in which whoever can be there first goes first, as long as the rest stays possible."""
+def in_time(task: Task, hops: Sequence[Hop], speed: float) -> tuple[list[Hop], float]:
+    """The hops in an order in which whoever can be there first goes first, as long as the rest stays possible; and the
+    sum of the times, in s, after which movers with a target are there, without ramps and queues."""
     streets = task.streets
     left = list(hops)
     a = task.start
@@ -65,7 +66,8 @@ def in_time(task: Task, hops: Sequence[Hop], speed: float) -> list[Hop]:
         placed.append((hop, pending.pop(i), end))
         for other in pending:
             pending[other] = max(pending[other], _over(streets, first[other], placed[-1], speed))
-    return order
+    times = (ready[i] + abs(aim.s - place[i].s) / speed for i, aim in task.targets.items())
+    return order, sum(times)
 
 
 def _over(streets: Streets, hop: Hop, earlier: tuple[Hop, float, float], speed: float) -> float:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from takt.counted import counted
-from takt.routing.arrangement import Place, Task, search
+from takt.routing.arrangement import Hop, Place, Task, search
 from takt.routing.loop import Loop, go_round
 from takt.routing.order import Shift, Step, ends_of, in_time, shifts_of, shorter, steps_of
 from takt.routing.rings import by_rules
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 EFFORT = 20_000  # arrangements looked at before a plan is given up
 ENOUGH = 20_000  # for one mover, where there is a plan by rules already; for more, as much less each ...
 LEAST_EFFORT = 500  # ... but for all together this
+WEIGHTS = (3.0, 1.5, 1.0)  # of what is left to go, in searches for orders with shorter ways ...
+BETTER = 30_000  # ... in which so many arrangements are looked at for one mover; for more, as much less each
 MOST_REORDERED = 250  # hops in a plan that is looked through for a better order; the time grows with their square
 DYNAMICS = ("velocity", "acceleration", "deceleration", "jerk")
 STANDS = 1e-3  # mm/s
@@ -144,11 +146,27 @@ def plan_routes(
     if hops is None:
         raise RoutingError(f"no plan was found after {counted(found.tried, 'arrangement')} of movers; there may be one")
     pace = dynamics.get("velocity") or max((_velocity(m.parameters) for m in movers.values()), default=1.0)
-    if len(hops) <= MOST_REORDERED:
-        hops = tuple(in_time(task, shorter(task, hops), pace))
+    hops, more = _best(task, hops, pace, effort)
     steps, shifts = steps_of(task, hops), shifts_of(task, hops)
     ends |= ends_of(task, hops, shifts)
-    return RoutePlan(names, dict(targets), task, steps, shifts, ends, found.tried, gap, dynamics)
+    return RoutePlan(names, dict(targets), task, steps, shifts, ends, found.tried + more, gap, dynamics)
+
+
+def _best(task: Task, hops: tuple[Hop, ...], pace: float, effort: int) -> tuple[tuple[Hop, ...], int]:
+    """Of this order of hops and others with shorter ways the one with the least sum of times; and how many arrangements
+    were looked at for them."""
+    if len(hops) > MOST_REORDERED:
+        return hops, 0
+    best, least = in_time(task, shorter(task, hops), pace)
+    tried = 0
+    for weight in WEIGHTS:
+        found = search(task, min(effort, BETTER // max(len(task.starts), 1)), weight)
+        tried += found.tried
+        if found.hops is not None and len(found.hops) <= MOST_REORDERED:
+            order, total = in_time(task, shorter(task, found.hops), pace)
+            if total < least:
+                best, least = order, total
+    return tuple(best), tried
 
 
 def _velocity(parameters: Mapping[str, object]) -> float:

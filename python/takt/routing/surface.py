@@ -167,7 +167,7 @@ def orders_of(session: Session, targets: Targets, movers: Iterable[str] | None) 
     """Targets as they are given, in one form. RoutingError: no such target, or one mover has two."""
     if not isinstance(targets, Mapping):
         points = tuple(_point(f"target {i}", target) for i, target in enumerate(targets, 1))
-        able = [name for name, mover in session.movers.items() if _cannot_move(session, mover) is None]
+        able = [name for name, mover in session.movers.items() if _cannot_move(mover) is None]
         wanted = able if movers is None else list(dict.fromkeys(movers))
         if len(points) > len(wanted):
             raise RoutingError(f"{counted(len(points), 'target')} for {counted(len(wanted), 'mover')}")
@@ -198,16 +198,16 @@ def orders_of(session: Session, targets: Targets, movers: Iterable[str] | None) 
 def free_of(session: Session, may_move: bool | Iterable[str]) -> list[str]:
     """Movers that may be moved aside."""
     if may_move is True:
-        return [name for name, mover in session.movers.items() if _cannot_move(session, mover) is None]
+        return [name for name, mover in session.movers.items() if _cannot_move(mover) is None]
     return list(may_move or ())
 
 
 def can_move(mover: Mover) -> bool:
-    return _cannot_move(mover.session, mover) is None
+    return _cannot_move(mover) is None
 
 
 def check_can_move(mover: Mover) -> None:
-    if (reason := _cannot_move(mover.session, mover)) is not None:
+    if (reason := _cannot_move(mover)) is not None:
         raise RoutingError(f"mover {mover.name} cannot be moved on the surface: {reason}", mover.name)
 
 
@@ -335,7 +335,7 @@ def _point(what: str, point: object) -> Point:
     return x, y
 
 
-def _cannot_move(session: Session, mover: Mover) -> str | None:
+def _cannot_move(mover: Mover) -> str | None:
     """Why it cannot be sent over the surface."""
     if mover.state.value != "Enabled":
         return f"it is {mover.state.value}"
@@ -343,10 +343,6 @@ def _cannot_move(session: Session, mover: Mover) -> str | None:
         return f"its command mode is {mover.command_mode.value}"
     if mover.formation:
         return "it is in a formation"
-    if mover.group:
-        group = list(session.planar_groups.values())[mover.group - 1]
-        if group.state.value != "Disabled":
-            return f"it is in group {group.name}, which refuses what the guard between movers lets wait: disable it"
     return None
 
 

@@ -3,6 +3,10 @@ moves.
 
 A place is its turn when the mover that visits it before has reached the middle of its own next place, or is ahead on
 its way straight through it, in the same lane: then it cannot be overtaken, and the guard beneath keeps both apart.
+
+A mover in an enabled group is sent only where others have left, so what it reserves there is free: else its command
+would be refused. From rest its commands are buffered ones, which wait; one further on that is refused while it moves
+is given again a little later.
 """
 
 from __future__ import annotations
@@ -10,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from takt.feedback import QUEUE_FULL, Feedback
 from takt.routing.raster import NEAR, Point
@@ -21,6 +25,8 @@ if TYPE_CHECKING:
 
 STANDS = 1e-3  # mm/s
 DYNAMICS = ("velocity", "acceleration", "jerk")
+COLLISION = 3024  # error number of a command that something is in the way of
+AGAIN = 8  # looks, until a command that was refused so is given again
 Before = tuple["Traveller", int]  # a visit of another mover
 
 
@@ -37,6 +43,9 @@ class Traveller:
         self.sent = 0  # the last place that it was told
         self.told: Point | None = None  # where its command in progress ends
         self.feedback: Feedback | None = None
+        self.grouped = is_grouped(mover)
+        self._before_that: tuple[Feedback | None, int, Point | None] | None = None  # what it goes on with if refused
+        self._pause = 0
         self.halts = False  # that is of a halt
         self.arrived_s = math.nan if self.directions else 0.0
 
@@ -87,8 +96,8 @@ class Traveller:
         if before is None or before[0] is self:
             return True
         other, its = before
-        if other.passed > its:
-            return True
+        if other.passed > its or self.grouped:
+            return other.passed > its
         direction = self.directions[visit - 1]
         if other.granted <= its or other.directions[its] != direction:
             return False
@@ -96,6 +105,9 @@ class Traveller:
 
     def go_on(self, dynamics: Mapping[str, Any]) -> None:
         """Sends it straight on as far as it may go."""
+        if self._pause > 0:
+            self._pause -= 1
+            return
         if self.rests or self.passed < self.sent:
             first = self.passed
         elif self.sent > 0 and self.feedback is not None:
@@ -111,7 +123,11 @@ class Traveller:
             self.sent = last  # it goes there already
             return
         x, y = self.points[last]
-        self.feedback = self.mover.move_to_position(x=x, y=y, use_orientation=False, **dynamics)
+        starts = self.rests
+        self._before_that = None if starts else (self.feedback, self.sent, self.told)
+        waits = self.grouped and starts and not self.mover.buffered  # else it takes over from what waits
+        mode: Literal["buffered", "aborting"] = "buffered" if waits else "aborting"
+        self.feedback = self.mover.move_to_position(x=x, y=y, use_orientation=False, buffer_mode=mode, **dynamics)
         self.sent, self.told = last, (x, y)
 
     def _would_run_up(self, first: int, dynamics: Mapping[str, Any]) -> bool:
@@ -137,6 +153,14 @@ class Traveller:
         if feedback.error_id == QUEUE_FULL:
             self.stay()
             return None
+        if self.grouped and feedback.error_id == COLLISION and feedback.object in self.mover.session.movers.values():
+            # Refused because of its group, which has changed nothing: it goes where it went.
+            self._pause = AGAIN
+            if self._before_that is None:
+                self.stay()
+                return None
+            (self.feedback, self.sent, self.told), self._before_that = self._before_that, None
+            return self.fault()
         return f"mover {self.mover.name} does not go its way any more: {feedback.sentence or 'it was halted'}"
 
     def stay(self) -> None:
@@ -172,6 +196,13 @@ class Traveller:
         while visit < self.sent and math.dist(self.points[self.passed], self.points[visit]) < needed:
             visit += 1
         return visit
+
+
+def is_grouped(mover: Mover) -> bool:
+    """It is in a group that watches."""
+    if not mover.group:
+        return False
+    return list(mover.session.planar_groups.values())[mover.group - 1].state.value == "Enabled"
 
 
 @cache

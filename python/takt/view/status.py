@@ -228,6 +228,7 @@ def _mover(v: Values, name_of: NamesOf, more: list[str], waits: list[str]) -> in
             "time": "stays for a time",
             "master": "waits for its master",
             "part": "waits for a part",
+            "track": "waits until nothing moves on a track",
         }
         waits.append(words.get(delay, "waits to be released"))
     return int(v["delay_since"]) if waits else 0

@@ -38,12 +38,13 @@ double Apart(const Box& a, const Box& b) {
 // turned, on tracks and beside them.
 class RandomWorld {
  public:
-  explicit RandomWorld(std::uint32_t seed) : random_(seed), rig(MachineText()) {
+  // Every other one with a group of all movers, whose moves wait for their area in turn.
+  explicit RandomWorld(std::uint32_t seed) : waits_(seed % 2 == 0), random_(seed), rig(MachineText()) {
     rig.each_cycle = [this] { Look(); };
     for (const track::TrackParams& track : rig.machine.tracks) rig.Give(track.name, "enable");
     for (const mover::MoverParams& mover : rig.machine.movers) rig.Give(mover.name, "enable");
     rig.Run(5);
-    if (Whole(0, 2) == 0) rig.Give("cell", "enable");
+    if (waits_ || Whole(0, 2) == 0) rig.Give("cell", "enable");
   }
 
   void Go(int steps) {
@@ -61,9 +62,10 @@ class RandomWorld {
     }
   }
 
-  int held = 0;   // cycles in which a mover in the plane was held by another one
-  int waits = 0;  // the same on tracks
-  int near = 0;   // cycles with two movers less than 5 mm apart
+  int in_turn = 0;  // cycles in which a command waited for its area
+  int held = 0;     // cycles in which a mover in the plane was held by another one
+  int waits = 0;    // the same on tracks
+  int near = 0;     // cycles with two movers less than 5 mm apart
   int done = 0, refused = 0;
   double closest = 1e9;  // mm
 
@@ -115,7 +117,10 @@ class RandomWorld {
     track("back", "starts_from: [along], elements: [" + line(1800, y - 200, 1800, y - 400) + ", " +
                       line(1600, -500, 1200, -500) + ", " + line(1000, -300, 1000, 900) + "]");
     track("branch", "starts_from: [along], elements: [" + line(1900, y + 100, 1900, y + 300) + "]");
-    text += "planar_groups: [{name: cell, movers: [m0, m1, m2], tracks: [along, back, branch]}]\n";
+    std::string movers = "m0, m1, m2";
+    for (int i = 3; waits_ && i < count; ++i) movers += ", m" + std::to_string(i);
+    text += "planar_groups: [{name: cell, movers: [" + movers + "], tracks: [along, back, branch]" +
+            (waits_ ? ", moves_wait: true" : "") + "}]\n";
     return text;
   }
 
@@ -229,6 +234,7 @@ class RandomWorld {
     for (std::size_t i = 0; i < count; ++i) {
       const mover::Outputs& o = OutputsOf(i);
       const bool on_track = o.command_mode == mover::CommandMode::kOnTrack;
+      if (o.waits_for != 0 && o.buffered > 0) ++in_turn;
       if (o.waits_for != 0) on_track ? ++waits : ++held;
       for (std::size_t k = 0; k < i; ++k) {
         const mover::Outputs& other = OutputsOf(k);
@@ -246,6 +252,7 @@ class RandomWorld {
     near += is_near ? 1 : 0;
   }
 
+  bool waits_;
   std::mt19937 random_;
   PartsRig rig;
   int led_ = -1, cycle_ = 0;
@@ -255,12 +262,13 @@ class RandomWorld {
 };
 
 TEST(MoversApart, WhateverTheyAreTold) {
-  int held = 0, waits = 0, near = 0, done = 0, refused = 0, seeds = 0;
+  int in_turn = 0, held = 0, waits = 0, near = 0, done = 0, refused = 0, seeds = 0;
   double closest = 1e9;
   for (std::uint32_t seed = 1; seed <= static_cast<std::uint32_t>(Trials(12)) && !HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
     RandomWorld world(seed);
     world.Go(150);
+    in_turn += world.in_turn;
     held += world.held;
     waits += world.waits;
     near += world.near;
@@ -271,13 +279,14 @@ TEST(MoversApart, WhateverTheyAreTold) {
   }
   std::printf(
       "%d worlds: %d commands done, %d refused for a collision; cycles in which movers were held %d, waited on "
-      "tracks %d, were less than 5 mm apart %d; closest %.2e mm\n",
-      seeds, done, refused, held, waits, near, closest);
+      "tracks %d, for their area %d, were less than 5 mm apart %d; closest %.2e mm\n",
+      seeds, done, refused, held, waits, in_turn, near, closest);
   EXPECT_GT(done, Trials(200));
   EXPECT_GT(refused, Trials(5));
   EXPECT_GT(held, Trials(1000));
   EXPECT_GT(waits, kSanitized ? -1 : 500);  // not in each world
   EXPECT_GT(near, Trials(100));
+  EXPECT_GT(in_turn, Trials(500));
 }
 
 }  // namespace

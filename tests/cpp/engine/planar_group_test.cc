@@ -169,14 +169,15 @@ class Hall {
   static constexpr std::uint32_t kMovers = 18;
   static constexpr std::uint32_t kTrack = kMovers + 1, kGroup = kTrack + 1;
 
-  explicit Hall(unsigned seed) : random_(seed), talk_(Make(random_)) {
+  // `waits`: moves wait for their area, and some are buffered.
+  Hall(unsigned seed, bool waits) : random_(seed), talk_(Make(random_, waits)), waits_(waits) {
     Must(kTrack, track::Command(track::Enable{}));
     for (std::uint32_t i = 0; i < kMovers; ++i) Must(i + 1, mover::Command(mover::Enable{}));
     Must(kGroup, planargroup::Command(planargroup::Enable{}));
   }
 
   // A corridor below with a track, stators around a hole above.
-  static Machine Make(std::mt19937& random) {
+  static Machine Make(std::mt19937& random, bool waits) {
     Machine machine;
     machine.name = "hall";
     environment::EnvironmentParams floor{"floor", {}};
@@ -191,7 +192,7 @@ class Hall {
     line.mover_width = line.mover_height = 120;
     line.elements.push_back({.from = planar::Place{200, 120}, .to = {1400, 120}});
     machine.tracks = {line};
-    planargroup::PlanarGroupParams group{"cell", {}, {"line"}, "floor"};
+    planargroup::PlanarGroupParams group{"cell", {}, {"line"}, "floor", waits};
     for (std::uint32_t i = 0; i < kMovers; ++i) {
       mover::MoverParams mover;
       mover.name = "m" + std::to_string(i);
@@ -238,6 +239,7 @@ class Hall {
 
   std::map<ObjectKind, int> refused;
   int done = 0, faults = 0, rides = 0, justified = 0;
+  int waited = 0, after_waiting = 0;  // cycles of movers; commands done that had waited for their area
 
  private:
   struct Point {
@@ -257,14 +259,16 @@ class Hall {
   struct Wish {
     std::uint32_t mover = 0;
     bool straight = false;  // from rest, without a turn
+    bool waited = false;    // for its area
     Point from{}, to{};
     double c = 0;
   };
 
   void Give(std::uint32_t i, const mover::Command& body, bool straight = false, Point to = {}) {
     const mover::Outputs& at = Of(i);
+    straight &= !mover::IsBuffered(body);
     const Ticket ticket = talk_.engine.Submit({.target = i + 1, .body = body});
-    wishes_[ticket] = {i, straight && !at.busy_xyc && !at.busy_c, {at.x, at.y}, to, at.c};
+    wishes_[ticket] = {i, straight && !at.busy_xyc && !at.busy_c, false, {at.x, at.y}, to, at.c};
   }
 
   void Command(std::uint32_t i) {
@@ -310,6 +314,7 @@ class Hall {
                                : std::max(at.y + Between(-300, 300), 260.0);
     const bool turns = Below(4) == 0;
     mover::MoveToPosition move{.x = x, .y = y, .c = at.c + Between(-5, 5), .use_orientation = turns};
+    if (waits_ && Below(3) == 0) move.buffer_mode = mover::Buffering::kBuffered;
     if (Below(3) == 0) move.velocity = Between(100, 2000);
     if (Below(3) == 0) move.acceleration = move.deceleration = Between(1000, 10000);
     Give(i, move, !turns, {x, y});
@@ -326,10 +331,16 @@ class Hall {
         Justify(wish->second, event.object);
       }
       done += event.state == FeedbackState::kDone ? 1 : 0;
+      after_waiting += event.state == FeedbackState::kDone && wish->second.waited ? 1 : 0;
       faults += event.error == ErrorId::kNoSetPoint ? 1 : 0;
       wishes_.erase(wish);
     }
     std::erase_if(talk_.last, [](const auto& entry) { return IsFinal(entry.second.state); });
+    for (auto& [ticket, wish] : wishes_) {
+      const bool waits = Of(wish.mover).buffered == 1 && Of(wish.mover).waits_for != 0 && !Of(wish.mover).busy_xyc;
+      wish.waited |= waits;
+      waited += waits ? 1 : 0;
+    }
     for (std::uint32_t i = 0; i < kMovers; ++i) rides += std::abs(Of(i).track_velocity) > 100 ? 1 : 0;
   }
 
@@ -414,16 +425,18 @@ class Hall {
 
   std::mt19937 random_;
   Talk talk_;
+  bool waits_;
   std::map<Ticket, Wish> wishes_;
 };
 
-// PL-30: whatever 18 movers are told, whatever halts them or fails, no two bodies ever touch, and none leaves the
-// stators; what is refused had a reason; and once all rest nothing is reserved but where they stand.
+// PL-30, PL-72: whatever 18 movers are told, whatever halts them or fails, no two bodies ever touch, and none leaves
+// the stators; what is refused had a reason, also where moves wait for their area instead; and once all rest nothing is
+// reserved but where they stand.
 TEST(PlanarGroupMachine, NothingEverTouches) {
   std::map<ObjectKind, int> refused;
-  int done = 0, faults = 0, rides = 0, justified = 0;
-  for (unsigned seed = 1; seed <= 3 && !HasFailure(); ++seed) {
-    Hall hall(seed);
+  int done = 0, faults = 0, rides = 0, justified = 0, waited = 0, after_waiting = 0;
+  for (unsigned seed = 1; seed <= 4 && !HasFailure(); ++seed) {
+    Hall hall(seed, seed == 4);
     for (int i = 0; i < 20'000 && !HasFailure(); ++i) hall.Step();
     hall.Settle();
     for (const auto& [kind, count] : hall.refused) refused[kind] += count;
@@ -431,6 +444,8 @@ TEST(PlanarGroupMachine, NothingEverTouches) {
     faults += hall.faults;
     rides += hall.rides;
     justified += hall.justified;
+    waited += hall.waited;
+    after_waiting += hall.after_waiting;
   }
   EXPECT_GT(refused[ObjectKind::kMover], 200);
   EXPECT_GT(refused[ObjectKind::kTrack], 20);
@@ -439,6 +454,8 @@ TEST(PlanarGroupMachine, NothingEverTouches) {
   EXPECT_GT(faults, 20);
   EXPECT_GT(rides, 1000);
   EXPECT_GT(justified, 100);
+  EXPECT_GT(waited, 1000);
+  EXPECT_GT(after_waiting, 20);
 }
 
 }  // namespace
