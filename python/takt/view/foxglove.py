@@ -50,9 +50,10 @@ class Link:
         self._channels: dict[str, Any] = {}
         self._last: dict[str, Any] = {}  # what was said last of each frame and belt
         self._complete = threading.Event()  # all is to be said again
+        listener: Any = _Listener(self._complete)  # the package's protocol asks for more than it needs
         try:
             self._server = foxglove.start_server(
-                name="takt", host=HOST, port=port, context=self._context, server_listener=_Listener(self._complete)
+                name="takt", host=HOST, port=port, context=self._context, server_listener=listener
             )
         except Exception as error:  # the package has no narrower one
             raise TaktError(f"port {port} cannot be used for Foxglove: {error}") from None
