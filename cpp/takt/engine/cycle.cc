@@ -255,15 +255,22 @@ struct MachineApplier {
     }
     Report(FeedbackState::kDone);
   }
-  // Modules and groups first, as long as they can tell what they were about.
+  // Groups first, as long as they can tell what they were about; modules, which know by themselves, last.
   void operator()(const EmergencyStop& c) const {
-    for (pickplace::State& state : world.pick_place_states) state.enables = false;
     for (std::size_t i = 0; i < world.groups.size(); ++i) {
       group::EmergencyStop(ContextOf(world, world.groups[i]), world.group_states[i]);
     }
     for (std::size_t i = 0; i < world.movers.size(); ++i) ToMover(i, mover::Disable{});
     for (std::size_t i = 0; i < world.axis_states.size(); ++i) {
       axis::EmergencyStop(ContextOf(world, i), world.axis_states[i]);
+    }
+    for (std::size_t i = 0; i < world.flex_cams.size(); ++i) {
+      const FlexCam& module = world.flex_cams[i];
+      flexcam::EmergencyStop(ContextOf(world, module), world.axis_states[module.slave], world.flex_cam_states[i]);
+    }
+    for (std::size_t i = 0; i < world.pick_places.size(); ++i) {
+      const PickPlace& module = world.pick_places[i];
+      pickplace::EmergencyStop(ContextOf(world, module), world.group_states[module.group], world.pick_place_states[i]);
     }
     if (c.hold) world.emergency.Add(ticket);
     EndEmergency();

@@ -7,6 +7,7 @@
 #include "takt/axis/coupling.h"
 #include "takt/axis/guidance.h"
 #include "takt/axis/homing.h"
+#include "takt/axis/sequence.h"
 #include "takt/flexcam/run.h"
 
 namespace takt::flexcam {
@@ -16,6 +17,12 @@ namespace {
 // A ramp of the module's, no stronger than the slave's own.
 double Within(double asked, double own) {
   return own > 0 ? std::min(asked, own) : asked;
+}
+
+// The slave's homing is the module's own only while that runs: each way out of it gives the axis' own back.
+void Enter(const Context& c, ModuleState to, State& s) {
+  if (s.state == ModuleState::kHoming && to != ModuleState::kHoming) c.slave.params.homing = c.homing;
+  s.state = to;
 }
 
 // Gives the slave a command; why it was refused, if it was.
@@ -53,8 +60,8 @@ void Brake(const Context& c, double deceleration, double jerk, bool hold, axis::
   const trajectory::Limits own = c.slave.params.planner_limits();
   const double within = Within(deceleration, own.deceleration);
   const double within_jerk = Within(jerk, own.jerk);
-  if (hold) {
-    Tell(c, axis::Stop{.deceleration = within, .jerk = within_jerk, .hold = true}, slave);
+  if (hold || slave.plc == axis::PlcState::kHoming) {  // a search takes no halt
+    Tell(c, axis::Stop{.deceleration = within, .jerk = within_jerk, .hold = hold}, slave);
   } else {
     Tell(c, axis::Halt{.deceleration = within, .jerk = within_jerk}, slave);
   }
@@ -100,11 +107,38 @@ ErrorId ErrorOf(ErrorId axis_error) {
 void Fail(const Context& c, ErrorId error, axis::State& slave, State& s) {
   if (s.error == ErrorId::kNone) s.error = error;
   if (s.state == ModuleState::kError) return;
-  s.state = ModuleState::kError;
+  Enter(c, ModuleState::kError, s);
   EndAction(c, FeedbackState::kError, error, s);
   EndJog(c, FeedbackState::kError, error, s);
   Abandon(c, s);
   if (IsOn(slave) && slave.emergency == axis::Emergency::kNone) HoldStopped(c, slave, s);
+}
+
+void FailAtSwitch(const Context& c, int sense, axis::State& slave, State& s) {
+  Fail(c, sense > 0 ? ErrorId::kModuleLimitSwitchPositive : ErrorId::kModuleLimitSwitchNegative, slave, s);
+}
+
+// Whether what the slave has begun at rest leads this way.
+bool Begins(const Context& c, int sense, const axis::State& slave) {
+  const double least = 1e-9 * c.slave.params.limits.velocity;  // what is less is rounding
+  if (axis::IsGuided(slave)) {
+    const KinematicState& demand = slave.guidance.demand;
+    const double way = demand.position - slave.origin - slave.setpoint.position;
+    return sense * demand.velocity > least || sense * way > least;
+  }
+  if (slave.active.kind == axis::RequestKind::kJog) {
+    return sense > 0 ? slave.active.forward && slave.jog_sense >= 0 : slave.active.backward && slave.jog_sense <= 0;
+  }
+  return sense * slave.motion.profile.At(axis::Elapsed(c.slave, slave)).velocity > least;
+}
+
+// Towards a switch that the module looks at nothing begins, as at those of the axis itself.
+void WatchBeginnings(const Context& c, axis::State& slave, State& s) {
+  const bool own = s.state == ModuleState::kJogPos || s.state == ModuleState::kJogNeg ||
+                   s.state == ModuleState::kHoming || s.state == ModuleState::kSync;
+  if (!own || !s.inputs.enable_hw_limit || !axis::AtRest(slave)) return;
+  if (s.inputs.hw_limit_positive && Begins(c, 1, slave)) return FailAtSwitch(c, 1, slave, s);
+  if (s.inputs.hw_limit_negative && Begins(c, -1, slave)) FailAtSwitch(c, -1, slave, s);
 }
 
 void WatchLimits(const Context& c, axis::State& slave, State& s) {
@@ -115,9 +149,9 @@ void WatchLimits(const Context& c, axis::State& slave, State& s) {
   const auto hits = [&](bool now, bool rose, double sense) { return rose || (now && sense * v > 0); };
   const bool looks = s.rose.enable_hw_limit;
   if (hits(s.inputs.hw_limit_positive, s.rose.hw_limit_positive || (looks && s.inputs.hw_limit_positive), 1)) {
-    Fail(c, ErrorId::kModuleLimitSwitchPositive, slave, s);
+    FailAtSwitch(c, 1, slave, s);
   } else if (hits(s.inputs.hw_limit_negative, s.rose.hw_limit_negative || (looks && s.inputs.hw_limit_negative), -1)) {
-    Fail(c, ErrorId::kModuleLimitSwitchNegative, slave, s);
+    FailAtSwitch(c, -1, slave, s);
   }
 }
 
@@ -177,7 +211,7 @@ void BeginHoming(const Context& c, axis::State& slave, State& s) {
     return Refuse(c, error, s);
   }
   Accept(c, s);
-  s.state = ModuleState::kHoming;
+  Enter(c, ModuleState::kHoming, s);
 }
 
 ErrorId MaySync(const Context& c, const axis::State& slave, const State& s) {
@@ -190,7 +224,7 @@ void BeginSync(const Context& c, axis::State& slave, State& s) {
   if (const ErrorId error = MaySync(c, slave, s); error != ErrorId::kNone) return Refuse(c, error, s);
   if (const Status status = axis::Guide(c.slave, slave); status.failed()) return Refuse(c, status.error, s);
   Accept(c, s);
-  s.state = ModuleState::kSync;
+  Enter(c, ModuleState::kSync, s);
   s.master.coasts = false;
   TakeUp(c, slave, s);
   BeginClosing(ClutchOf(c, slave, s.wanted, s), s.clutch);
@@ -219,7 +253,7 @@ void BeginStop(const Context& c, axis::State& slave, State& s) {
     s.request = Action::kNone;
   }
   Abandon(c, s);
-  s.state = ModuleState::kStop;
+  Enter(c, ModuleState::kStop, s);
 }
 
 void InStop(const Context& c, axis::State& slave, State& s) {
@@ -233,17 +267,19 @@ void InStop(const Context& c, axis::State& slave, State& s) {
     return;
   }
   LetGoOfStop(slave, s);
-  if (!slave.loop_closed || slave.active.kind == axis::RequestKind::kNone) s.state = ModuleState::kReady;
+  if (!slave.loop_closed || slave.active.kind == axis::RequestKind::kNone) Enter(c, ModuleState::kReady, s);
 }
 
 void InReady(const Context& c, axis::State& slave, State& s) {
-  if (s.jog.ticket == 0 || !IsOn(slave)) return;
+  if (s.jog.ticket == 0) return;
+  // Switched off since: a key that is held does not move it once it is on again.
+  if (!IsOn(slave)) return EndJog(c, FeedbackState::kAborted, ErrorId::kPowerOff, s);
   if (!s.jog.keys.positive && !s.jog.keys.negative) return EndJog(c, FeedbackState::kDone, ErrorId::kNone, s);
   if (const ErrorId error = TellJog(c, slave, s); error != ErrorId::kNone) {
     s.warning = error;
     return EndJog(c, FeedbackState::kError, error, s);
   }
-  s.state = s.jog.keys.positive ? ModuleState::kJogPos : ModuleState::kJogNeg;
+  Enter(c, s.jog.keys.positive ? ModuleState::kJogPos : ModuleState::kJogNeg, s);
 }
 
 void InJog(const Context& c, axis::State& slave, State& s) {
@@ -256,17 +292,28 @@ void InJog(const Context& c, axis::State& slave, State& s) {
     if (s.jog.keys.positive != slave.active.forward || s.jog.keys.negative != slave.active.backward) {
       TellJog(c, slave, s);
     }
-    if (slave.jog_sense != 0) s.state = slave.jog_sense > 0 ? ModuleState::kJogPos : ModuleState::kJogNeg;
+    if (slave.jog_sense != 0) Enter(c, slave.jog_sense > 0 ? ModuleState::kJogPos : ModuleState::kJogNeg, s);
     return;
   }
   EndJog(c, held ? FeedbackState::kAborted : FeedbackState::kDone, ErrorId::kNone, s);
-  s.state = ModuleState::kReady;
+  Enter(c, ModuleState::kReady, s);
+}
+
+// Something has ended the search before its time: a stop of the axis or of the machine, power off.
+bool IsStopped(const axis::State& slave) {
+  using K = axis::RequestKind;
+  const K kind = slave.active.kind;
+  return !IsOn(slave) || slave.plc == axis::PlcState::kStopping || kind == K::kStop || kind == K::kHalt ||
+         (kind == K::kPower && !slave.active.enable);
 }
 
 void InHoming(const Context& c, const axis::State& slave, State& s) {
+  if (IsStopped(slave)) {
+    Enter(c, ModuleState::kReady, s);
+    return EndAction(c, FeedbackState::kAborted, slave.loop_closed ? ErrorId::kNone : ErrorId::kPowerOff, s);
+  }
   if (slave.plc == axis::PlcState::kHoming || IsBusyItself(slave)) return;
-  s.state = ModuleState::kReady;
-  c.slave.params.homing = c.homing;
+  Enter(c, ModuleState::kReady, s);
   if (slave.homing.homed) return EndAction(c, FeedbackState::kDone, ErrorId::kNone, s);
   EndAction(c, FeedbackState::kError, slave.error == ErrorId::kNone ? ErrorId::kNoReference : slave.error, s);
 }
@@ -293,14 +340,14 @@ void InSync(const Context& c, axis::State& slave, State& s) {
   if (s.clutch.phase == ClutchPhase::kReleased) {
     if (slave.active.kind != axis::RequestKind::kNone) return;
     Abandon(c, s);
-    s.state = ModuleState::kReady;
+    Enter(c, ModuleState::kReady, s);
     return;
   }
   if (!axis::IsGuided(slave)) {  // a command of its own has taken the slave away, or it is off
     if (slave.emergency != axis::Emergency::kNone) return Fail(c, ErrorId::kEmergencyStop, slave, s);
     Abandon(c, s);
     if (!IsOn(slave)) s.warning = ErrorId::kPowerOff;
-    s.state = ModuleState::kReady;
+    Enter(c, ModuleState::kReady, s);
     return;
   }
   if (!s.master.known && !s.master.coasts) return Fail(c, ErrorId::kMasterOff, slave, s);
@@ -334,7 +381,7 @@ void InSync(const Context& c, axis::State& slave, State& s) {
     axis::LetGoOfGuidance(c.slave, slave);
     if (s.action == Action::kSyncOut) EndAction(c, FeedbackState::kDone, ErrorId::kNone, s);
     Abandon(c, s);
-    s.state = ModuleState::kReady;
+    Enter(c, ModuleState::kReady, s);
   } else if (s.clutch.phase == ClutchPhase::kClosed && slave.guidance.chase.in_step && s.action == Action::kSyncIn) {
     EndAction(c, FeedbackState::kDone, ErrorId::kNone, s);
   }
@@ -349,7 +396,7 @@ void InError(const Context& c, axis::State& slave, State& s) {
   }
   const bool stands = !slave.loop_closed || axis::AtRest(slave);
   if (s.error == ErrorId::kNone && slave.error == ErrorId::kNone && stands && !slave.reset_pending) {
-    s.state = ModuleState::kReady;
+    Enter(c, ModuleState::kReady, s);
     const bool stopped = slave.emergency != axis::Emergency::kNone;  // then power has to be asked for anew
     if (s.inputs.regulator_on && !slave.enable && !stopped) Tell(c, axis::Power{.enable = true}, slave);
   }
@@ -362,10 +409,10 @@ void WatchLease(const Context& c, State& s) {
 }
 
 // READY and SERVICE are one another's: what the slave does by itself is a service.
-void ReadyOrService(const axis::State& slave, State& s) {
+void ReadyOrService(const Context& c, const axis::State& slave, State& s) {
   if (s.state != ModuleState::kReady && s.state != ModuleState::kService) return;
   const bool service = s.inputs.internal_control || IsBusyItself(slave);
-  s.state = service ? ModuleState::kService : ModuleState::kReady;
+  Enter(c, service ? ModuleState::kService : ModuleState::kReady, s);
 }
 
 // Takes the slave off the cam and leaves it alone. An error stays one.
@@ -376,11 +423,11 @@ void Disable(const Context& c, axis::State& slave, State& s) {
   if (s.state == ModuleState::kJogPos || s.state == ModuleState::kJogNeg) {
     slave.active.forward = slave.active.backward = false;
   }
-  if (s.state == ModuleState::kHoming) c.slave.params.homing = c.homing;
+  if (s.state == ModuleState::kHoming) Brake(c, s.settings.halt_deceleration, s.settings.jerk, false, slave);
   LetGoOfStop(slave, s);
   EndJog(c, FeedbackState::kAborted, ErrorId::kNone, s);
   Abandon(c, s);
-  s.state = ModuleState::kInit;
+  Enter(c, ModuleState::kInit, s);
 }
 
 void StepState(const Context& c, axis::State& slave, State& s) {
@@ -405,16 +452,15 @@ void StepState(const Context& c, axis::State& slave, State& s) {
 
 void RunStates(const Context& c, axis::State& slave, State& s) {
   if (s.state == ModuleState::kInit) s.state = s.error == ErrorId::kNone ? ModuleState::kReady : ModuleState::kError;
-  const bool homed = s.state == ModuleState::kHoming;
   WatchLimits(c, slave, s);
   const bool stops = s.inputs.stop || s.inputs.halt || s.rose.stop || s.rose.halt;
   if (s.state != ModuleState::kError && s.state != ModuleState::kStop && stops) {
     BeginStop(c, slave, s);
   }
-  if (homed && s.state != ModuleState::kHoming) c.slave.params.homing = c.homing;
-  ReadyOrService(slave, s);
+  ReadyOrService(c, slave, s);
   Requests(c, slave, s);
   StepState(c, slave, s);
+  WatchBeginnings(c, slave, s);
   Refuse(c, ErrorId::kState, s);
   // A key that was pressed when something else began does not move anything later.
   const bool jogs =
@@ -448,6 +494,15 @@ bool IsOn(const axis::State& slave) noexcept {
 void EndJog(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
   if (s.jog.ticket != 0) Report(c, s.jog.ticket, feedback, error);
   s.jog = {};
+}
+
+// Whatever it was about is over, also what was asked for in this cycle and has not begun.
+void EmergencyStop(const Context& c, axis::State& slave, State& s) noexcept {
+  Refuse(c, ErrorId::kEmergencyStop, s);
+  const bool moves = s.state == ModuleState::kJogPos || s.state == ModuleState::kJogNeg ||
+                     s.state == ModuleState::kHoming || s.state == ModuleState::kSync;
+  if (moves) return Fail(c, ErrorId::kEmergencyStop, slave, s);
+  EndJog(c, FeedbackState::kAborted, ErrorId::kEmergencyStop, s);
 }
 
 bool UsesCam(const State& s, std::uint32_t index) noexcept {

@@ -35,6 +35,9 @@ void Apply(const Context& c, Ticket ticket, double lease_s, const Command& comma
 bool Release(const Context& c, Ticket ticket, State& s) noexcept;
 bool Renew(const Context& c, Ticket ticket, State& s) noexcept;
 
+// Behind that of its slave: a module that moved it is in error, and does nothing that was asked for before.
+void EmergencyStop(const Context& c, axis::State& slave, State& s) noexcept;
+
 // move: behind the master, before the slave.
 void Step(const Context& c, axis::State& slave, State& s) noexcept;
 

@@ -73,6 +73,12 @@ void EndHoming(const Context& c, FeedbackState feedback, ErrorId error, group::S
 }
 
 void InHoming(const Context& c, group::State& g, State& s) noexcept {
+  // Somebody else has stopped the group, switched it off or taken it away, or moves it.
+  if (g.state != group::GroupState::kStandby || g.task != group::Task::kNone || !IsOn(c, g)) {
+    const bool off = !group::AllMembers(c.group, g, [](const axis::State& m) { return m.loop_closed; });
+    EndHoming(c, FeedbackState::kAborted, off ? ErrorId::kPowerOff : ErrorId::kNone, g, s);
+    return Enter(PickPlaceState::kReady, s);
+  }
   if (!group::AllMembers(c.group, g, [](const axis::State& m) { return !IsLooking(m); })) return;
   for (std::size_t k = 0; k < group::kMaxAxes && s.homing.place > 0; ++k) {
     if (PlaceInOrder(c, g, s, k) != s.homing.place || group::MemberOf(c.group, g, k).homing.homed) continue;

@@ -178,6 +178,11 @@ void InJog(const Context& c, group::State& g, State& s) noexcept {
     s.halting = Tell(c, halt, g) == ErrorId::kNone;
     s.given = 0;
   }
+  if (g.ends && !s.halting && g.reason == kinematics::Reason::kNone) {  // somebody else has stopped it
+    EndJog(c, FeedbackState::kAborted, ErrorId::kNone, s);
+    s.given = 0;
+    return Enter(s.back, s);
+  }
   if (!IsFree(c, g)) return;
   s.halting = false;
   if (held && !refused) {  // it has come to the end of its range

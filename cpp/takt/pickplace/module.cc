@@ -46,6 +46,12 @@ void WatchFaults(const Context& c, group::State& g, State& s) {
   }
 }
 
+// What the module is about with its group.
+bool IsBusy(const State& s) {
+  return Jogs(s) || s.state == PickPlaceState::kHoming || s.state == PickPlaceState::kPreparingPath ||
+         s.state == PickPlaceState::kMovePp || s.state == PickPlaceState::kPathInterrupt;
+}
+
 void ForgetAll(const Context& c, FeedbackState feedback, ErrorId error, group::State& g, State& s) {
   Report(c, s.hold.ticket, feedback, error);
   EndOrders(c, feedback, error, s);
@@ -249,6 +255,26 @@ void ReadyOrService(const Context& c, const group::State& g, State& s) {
   Enter(wanted, s);
 }
 
+// Power was asked for, and the group is to be enabled once that is there.
+bool WillBeOn(const Context& c, const group::State& g, const State& s) {
+  return s.enables && group::AllMembers(c.group, g, [](const axis::State& m) { return m.enable; });
+}
+
+// The group was taken away, stopped or switched off by somebody else: what the module was about is over. It does not go
+// on by itself when the group is there again.
+void WatchGroup(const Context& c, group::State& g, State& s) {
+  if ((!IsBusy(s) && s.jog.ticket == 0) || IsOn(c, g) || WillBeOn(c, g, s)) return;
+  if (s.state == PickPlaceState::kError || s.state == PickPlaceState::kHoming) return;  // see InError, InHoming
+  const bool off = !group::AllMembers(c.group, g, [](const axis::State& m) { return m.loop_closed; });
+  const ErrorId error = off ? ErrorId::kPowerOff : ErrorId::kNone;
+  if (!IsBusy(s)) return EndJog(c, FeedbackState::kAborted, error, s);
+  if (s.hold.returning) EndReturn(c, FeedbackState::kAborted, s);
+  const PickPlaceState to = Jogs(s) && s.back == PickPlaceState::kStop ? s.back : PickPlaceState::kReady;
+  ForgetAll(c, FeedbackState::kAborted, error, g, s);
+  s.halting = s.lifting = s.rises = false;
+  Enter(to, s);
+}
+
 void WatchLease(const Context& c, State& s) {
   if (s.jog.lease_s <= 0 || c.group.cycle.count < s.jog.lease_end_cycle) return;
   s.jog.keys = {};
@@ -300,6 +326,7 @@ void RunStates(const Context& c, group::State& g, State& s) {
   if (s.state != PickPlaceState::kError && s.state != PickPlaceState::kStop && stops) BeginStop(c, g, s);
   if (s.halting && IsFree(c, g)) s.halting = false;
   WatchHold(c, g, s);
+  WatchGroup(c, g, s);
   ReadyOrService(c, g, s);
   if (s.abort) Abort(c, g, s);
   StepState(c, g, s);
@@ -343,6 +370,12 @@ void Fail(const Context& c, ErrorId error, group::State& g, State& s) noexcept {
   if (s.state == PickPlaceState::kError) return;
   Leave(c, FeedbackState::kError, error, g, s);
   Enter(PickPlaceState::kError, s);
+}
+
+void EmergencyStop(const Context& c, group::State& g, State& s) noexcept {
+  s.enables = false;
+  if (IsBusy(s) || s.order_count > 0 || s.loop.active || s.lifting) return Fail(c, ErrorId::kEmergencyStop, g, s);
+  EndJog(c, FeedbackState::kAborted, ErrorId::kEmergencyStop, s);
 }
 
 State MakeState(const PickPlaceParams& params) noexcept {

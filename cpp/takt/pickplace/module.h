@@ -40,6 +40,10 @@ void Apply(const Context& c, Ticket ticket, double lease_s, const Command& comma
 bool Release(const Context& c, Ticket ticket, State& s) noexcept;
 bool Renew(const Context& c, Ticket ticket, State& s) noexcept;
 
+// Behind that of its group and axes: a module that was about something is in error, and does nothing that was asked for
+// before.
+void EmergencyStop(const Context& c, group::State& group, State& s) noexcept;
+
 // move: just before the group.
 void Step(const Context& c, group::State& group, State& s) noexcept;
 
