@@ -190,6 +190,7 @@ void GuardSwitches(const Context& c, const KinematicState& before, State& s) {
   const KinematicState next = s.setpoint;
   s.setpoint = before;
   const ErrorId at_switch = up ? ErrorId::kLimitSwitchPositive : ErrorId::kLimitSwitchNegative;
+  if (!own && !barred) s.fault_of = FollowerThatBars(c, s, up ? 1 : -1);
   Fail(c, own ? at_switch : barred ? ErrorId::kDirection : ErrorId::kAxisFault, false, s);
   if (IsGuided(s)) {  // braked by its component, with others: there is no motion of its own
     s.setpoint = next;
@@ -321,18 +322,6 @@ void FinishReset(const Context& c, State& s) {
   Report(c, s.reset_ticket, FeedbackState::kDone);
 }
 
-// Limit switches and faults may have ramps of their own, but none that are gentler than the axis' (AX-112). A SW limit
-// is braked for in time: with the limits of the axis.
-trajectory::Limits StopLimits(const AxisParams& p, ErrorId error) {
-  trajectory::Limits limits = p.planner_limits();
-  if (error == ErrorId::kSoftLimitPositive || error == ErrorId::kSoftLimitNegative) return limits;
-  const bool at_switch = error == ErrorId::kLimitSwitchPositive || error == ErrorId::kLimitSwitchNegative;
-  const StopRamp& ramp = at_switch ? p.limit_stop : p.fault_stop;
-  limits.deceleration = std::max(limits.deceleration, ramp.deceleration.value_or(0));
-  if (limits.jerk != 0 && ramp.jerk) limits.jerk = *ramp.jerk == 0 ? 0 : std::max(limits.jerk, *ramp.jerk);
-  return limits;
-}
-
 // A ramp of its own is stronger than any that planning would take for the axis'.
 void BrakeInFault(const Context& c, ErrorId error, State& s) {
   const trajectory::Limits own = c.params.planner_limits();
@@ -378,6 +367,16 @@ double TorqueLimit(const AxisParams& p, const State& s) {
 }
 
 }  // namespace
+
+trajectory::Limits StopLimits(const AxisParams& p, ErrorId error) noexcept {
+  trajectory::Limits limits = p.planner_limits();
+  if (error == ErrorId::kSoftLimitPositive || error == ErrorId::kSoftLimitNegative) return limits;
+  const bool at_switch = error == ErrorId::kLimitSwitchPositive || error == ErrorId::kLimitSwitchNegative;
+  const StopRamp& ramp = at_switch ? p.limit_stop : p.fault_stop;
+  limits.deceleration = std::max(limits.deceleration, ramp.deceleration.value_or(0));
+  if (limits.jerk != 0 && ramp.jerk) limits.jerk = *ramp.jerk == 0 ? 0 : std::max(limits.jerk, *ramp.jerk);
+  return limits;
+}
 
 State MakeState(const AxisParams& params) noexcept {
   State s;
@@ -512,7 +511,9 @@ void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
   if (s.plc != PlcState::kErrorStop) {
     const bool has_ramp = IsGuided(s) && s.fault_ramp.deceleration > 0;  // of the component in control
     const trajectory::Limits braking = FaultLimits(c, s);
-    EndActive(c, FeedbackState::kError, error, s);
+    // A fault that brakes on the way to power off does not end that: it opens the loop all the same, at rest.
+    const bool switching_off = s.active.kind == RequestKind::kPower && !s.active.enable && !opens;
+    if (!switching_off) EndActive(c, FeedbackState::kError, error, s);
     AbortBuffer(c, s);
     AbortOverlay(c, FeedbackState::kError, error, s);
     Enter(s, PlcState::kErrorStop);

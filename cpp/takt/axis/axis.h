@@ -72,6 +72,10 @@ bool Control(const Context& context, State& state, ServoOutputs& outputs) noexce
 // brakes.
 void Fail(const Context& context, ErrorId error, bool open_loop, State& state) noexcept;
 
+// Limit switches and faults may have ramps of their own, but none that are gentler than the axis' (AX-112). A SW limit
+// is braked for in time: with the limits of the axis.
+trajectory::Limits StopLimits(const AxisParams& params, ErrorId error) noexcept;
+
 // GT_EStop: the drive is switched off and the brake falls at once; faults are cleared, the axis is Disabled (AX-38),
 // and power is refused until the stop is released (AX-100) ...
 void EmergencyStop(const Context& context, State& state) noexcept;

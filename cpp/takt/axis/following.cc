@@ -1,5 +1,6 @@
 #include "takt/axis/following.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "takt/axis/coordinates.h"
@@ -39,13 +40,21 @@ std::string CannotFollow(const AxisParams& follower, const AxisParams& master) {
 
 namespace {
 
-// Of the axis with this number among all of a machine. The two are the same axis if their parameters are.
+// Visits all that follow this axis, with those that follow them: visit(params, state, ratio to this axis).
 template <typename Visit>
-void ForFollowers(const Context& c, const Visit& visit) {
+void ForFollowers(const Context& c, const AxisParams& leader, double ratio, const Visit& visit) {
   for (std::size_t i = 0; i < c.machine.params.size(); ++i) {
     const AxisParams& p = c.machine.params[i];
-    if (p.follows && p.follows->axis == c.params.name) visit(p, c.machine.states[i]);
+    if (!p.follows || p.follows->axis != leader.name) continue;
+    const State& follower = c.machine.states[i];
+    visit(p, follower, ratio * p.follows->ratio);
+    if (follower.leads) ForFollowers(c, p, ratio * p.follows->ratio, visit);
   }
+}
+
+template <typename Visit>
+void ForFollowers(const Context& c, const Visit& visit) {
+  ForFollowers(c, c.params, 1, visit);
 }
 
 // Where the master has it without a skew.
@@ -60,6 +69,7 @@ bool IsStraight(const AxisParams& p, const State& s) {
 
 void EndStraightening(const Context& c, FeedbackState end, State& s) {
   s.skew.straightens = false;
+  s.skew.stops = false;
   if (s.skew.ticket != 0) Report(c, s.skew.ticket, end);
   s.skew.ticket = 0;
 }
@@ -72,6 +82,11 @@ KinematicState Skew(const Context& c, State& s) {
   s.skew.commanded = now.position;
   if (t >= s.skew.way.duration()) EndStraightening(c, FeedbackState::kDone, s);
   return now;
+}
+
+// The sense in which straightening moves the axis; 0: it stands straight.
+int SenseOfStraightening(const State& s) {
+  return s.skew.commanded < 0 ? 1 : s.skew.commanded > 0 ? -1 : 0;
 }
 
 bool BeginStraightening(const Context& c, double velocity, State& s) {
@@ -118,6 +133,8 @@ void WatchSquaring(const Context& c, State& s) {
   s.follow_offset = offset;
   ShiftCoordinates(ratio * c.master->setpoint.position - Due(c, s), s);  // it is called as its master is
   s.homing.homed = true;
+  const Status status = MayMove(c, s, SenseOfStraightening(s));
+  if (status.failed()) return Fail(c, status.error, false, s);
   BeginStraightening(c, 0.1 * c.params.limits.velocity, s);
 }
 
@@ -141,6 +158,11 @@ bool Follow(const Context& c, State& s) noexcept {
   if (!s.coupled && !Couple(c, s)) return false;
   const State& master = *c.master;
   const double ratio = c.params.follows->ratio;
+  // What stops one member stops its straightening, too: it goes on only while both are well and nothing stops them.
+  const bool stops = s.plc != PlcState::kSynchronizedMotion ||
+                     (master.plc != PlcState::kStandstill && master.plc != PlcState::kHoming &&
+                      master.plc != PlcState::kSynchronizedMotion);
+  if (s.skew.straightens && stops) StopStraightening(c, StopLimits(c.params, s.error), s);
   const KinematicState skew = Skew(c, s);
   s.setpoint = {Due(c, s) + skew.position, ratio * master.setpoint.velocity + skew.velocity,
                 ratio * master.setpoint.acceleration + skew.acceleration};
@@ -174,7 +196,7 @@ void WatchSkew(const Context& c, State& s) noexcept {
 Status FollowersReady(const Context& c, const State& s) noexcept {
   bool ready = true;
   if (!s.leads) return Status::Ok();
-  ForFollowers(c, [&](const AxisParams& p, const State& follower) {
+  ForFollowers(c, [&](const AxisParams& p, const State& follower, double) {
     ready &= follower.coupled && follower.plc == PlcState::kSynchronizedMotion && IsStraight(p, follower);
   });
   return ready ? Status::Ok() : Status::Failed(ErrorId::kNotInStep);
@@ -183,7 +205,7 @@ Status FollowersReady(const Context& c, const State& s) noexcept {
 bool FollowersFound(const Context& c, const State& s) noexcept {
   bool found = true;
   if (!s.leads) return found;
-  ForFollowers(c, [&](const AxisParams& p, const State& follower) {
+  ForFollowers(c, [&](const AxisParams& p, const State& follower, double) {
     found &= !p.follows->square || follower.skew.edge_cycle >= s.homing.begin_cycle;
   });
   return found;
@@ -192,7 +214,7 @@ bool FollowersFound(const Context& c, const State& s) noexcept {
 bool FollowersSquared(const Context& c, const State& s) noexcept {
   bool straight = true;
   if (!s.leads || !s.homing.found) return straight;
-  ForFollowers(c, [&](const AxisParams& p, const State& follower) {
+  ForFollowers(c, [&](const AxisParams& p, const State& follower, double) {
     straight &= !p.follows->square || !follower.skew.straightens;
   });
   return straight;
@@ -201,17 +223,58 @@ bool FollowersSquared(const Context& c, const State& s) noexcept {
 bool FollowerOnLimit(const Context& c, const State& s, int sense) noexcept {
   bool on = false;
   if (!s.leads) return on;
-  ForFollowers(c, [&](const AxisParams& p, const State& follower) {
-    on |= (p.follows->ratio > 0) == (sense > 0) ? follower.limit_positive : follower.limit_negative;
+  ForFollowers(c, [&](const AxisParams&, const State& follower, double ratio) {
+    on |= (ratio > 0) == (sense > 0) ? follower.limit_positive : follower.limit_negative;
   });
   return on;
+}
+
+std::uint32_t FollowerThatBars(const Context& c, const State& s, int sense) noexcept {
+  std::uint32_t found = kNoAxis;
+  if (!s.leads) return found;
+  ForFollowers(c, [&](const AxisParams&, const State& follower, double ratio) {
+    const bool up = (ratio > 0) == (sense > 0);
+    const bool bars =
+        up ? follower.limit_positive || follower.bars_positive : follower.limit_negative || follower.bars_negative;
+    if (bars && found == kNoAxis) found = static_cast<std::uint32_t>(&follower - c.machine.states.data());
+  });
+  return found;
+}
+
+Status MayMove(const Context& c, const State& s, int sense) noexcept {
+  if (sense == 0) return Status::Ok();
+  const bool own = sense > 0 ? s.limit_positive : s.limit_negative;
+  if (own || FollowerOnLimit(c, s, sense)) return Status::Failed(ErrorId::kAwayFromLimitOnly);
+  return Bars(c, s, sense) ? Status::Failed(ErrorId::kDirection) : Status::Ok();
+}
+
+bool FollowersStraighten(const Context& c, const State& s) noexcept {
+  bool moves = false;
+  if (!s.leads) return moves;
+  ForFollowers(c, [&](const AxisParams&, const State& follower, double) { moves |= follower.skew.straightens; });
+  return moves;
+}
+
+void StopStraightening(const Context& c, const trajectory::Limits& limits, State& s) noexcept {
+  SkewState& skew = s.skew;
+  if (!skew.straightens || skew.stops) return;
+  const double t = static_cast<double>(c.cycle.count - skew.start_cycle) * c.cycle.period_s;
+  const KinematicState before = skew.way.At(std::max(0.0, t - c.cycle.period_s));
+  if (c.planner.Stop(before, limits, skew.way).failed()) skew.way = trajectory::Profile{{before.position, 0, 0}};
+  skew.start_cycle = c.cycle.count - 1;
+  skew.stops = true;
+  const bool fails = s.error != ErrorId::kNone;
+  if (skew.ticket != 0) {
+    Report(c, skew.ticket, fails ? FeedbackState::kError : FeedbackState::kAborted, s.error);
+  }
+  skew.ticket = 0;
 }
 
 bool Bars(const Context& c, const State& s, int sense) noexcept {
   bool bars = sense > 0 ? s.bars_positive : s.bars_negative;
   if (!s.leads) return bars;
-  ForFollowers(c, [&](const AxisParams& p, const State& follower) {
-    bars |= (p.follows->ratio > 0) == (sense > 0) ? follower.bars_positive : follower.bars_negative;
+  ForFollowers(c, [&](const AxisParams&, const State& follower, double ratio) {
+    bars |= (ratio > 0) == (sense > 0) ? follower.bars_positive : follower.bars_negative;
   });
   return bars;
 }
@@ -230,10 +293,7 @@ Status CarryOut(const Context& c, Ticket ticket, const Straighten& straighten, S
   const bool stands = AtRest(master) && master.active.kind == RequestKind::kNone && !master.superimposed;
   if (!s.coupled || s.plc != PlcState::kSynchronizedMotion || !stands) return Status::Failed(ErrorId::kState);
   if (s.skew.straightens) return Status::Failed(ErrorId::kState);
-  const bool onto_switch = s.skew.commanded < 0 ? s.limit_positive : s.skew.commanded > 0 && s.limit_negative;
-  if (onto_switch) return Status::Failed(ErrorId::kAwayFromLimitOnly);
-  const bool barred = s.skew.commanded < 0 ? s.bars_positive : s.skew.commanded > 0 && s.bars_negative;
-  if (barred) return Status::Failed(ErrorId::kDirection);
+  if (const Status status = MayMove(c, s, SenseOfStraightening(s)); status.failed()) return status;
   if (!BeginStraightening(c, straighten.velocity.value_or(kShare * c.params.limits.velocity), s)) {
     return Status::Failed(ErrorId::kPlanning);
   }

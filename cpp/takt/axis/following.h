@@ -34,6 +34,19 @@ Status FollowersReady(const Context& context, const State& state) noexcept;
 // Whether an axis that follows this one is on a limit switch that lies ahead in this sense.
 bool FollowerOnLimit(const Context& context, const State& state, int sense) noexcept;
 
+// The first follower that is on a limit switch ahead or may not move in this sense; kNoAxis: none.
+std::uint32_t FollowerThatBars(const Context& context, const State& state, int sense) noexcept;
+
+// The gate of every motion that begins: whether the axis and all that follow it, followers of followers too, may move
+// in this sense. kAwayFromLimitOnly: a limit switch ahead is on. kDirection: not enabled. 0: it does not move.
+Status MayMove(const Context& context, const State& state, int sense) noexcept;
+
+// Whether an axis that follows this one is being straightened, or comes to rest from that.
+bool FollowersStraighten(const Context& context, const State& state) noexcept;
+
+// Brakes the straightening of a follower; what is left of its skew stays. Its command ends.
+void StopStraightening(const Context& context, const trajectory::Limits& limits, State& state) noexcept;
+
 // Whether MC_Power enables no motion in this sense, of this axis or of one that follows it (AX-111).
 bool Bars(const Context& context, const State& state, int sense) noexcept;
 

@@ -322,10 +322,11 @@ Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) no
   if (r.kind == RequestKind::kStepDistanceCoded && !c.params.encoder.coded_marks) {
     return Status::Failed(ErrorId::kNoCodedMarks);
   }
-  if (Searches(r.kind) && !BySwitch(r.kind) && LimitAhead(s, FirstSense(r, s))) {
-    return Status::Failed(ErrorId::kAwayFromLimitOnly);
+  if (Searches(r.kind)) {  // a search of a switch turns round at a limit switch of its own
+    const int sense = FirstSense(r, s);
+    const Status status = MayMove(c, s, sense);
+    if (status.failed()) return status;
   }
-  if (Searches(r.kind) && Bars(c, s, FirstSense(r, s))) return Status::Failed(ErrorId::kDirection);
   // As define_position: no place beyond a SW limit.
   const bool names = r.homing.sets_position && r.kind != RequestKind::kFinishHoming &&
                      r.kind != RequestKind::kStepAbsolute && r.kind != RequestKind::kStepDistanceCoded;

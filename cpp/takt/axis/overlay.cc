@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "takt/axis/fit.h"
+#include "takt/axis/following.h"
 #include "takt/axis/overlay_plan.h"
 #include "takt/axis/promise.h"
 #include "takt/axis/request_maker.h"
@@ -126,13 +127,6 @@ Status MayBeOnTop(const Context& c, const State& s) {
   if (s.plc == PlcState::kStopping) return Status::Failed(ErrorId::kAxisStopping);
   const bool wrong = c.params.follows || s.plc == PlcState::kHoming || !Carries(s.active);
   return wrong ? Status::Failed(ErrorId::kState) : Status::Ok();
-}
-
-Status CheckSwitches(double way, const State& s) {
-  const bool onto = (s.limit_positive && way > 0) || (s.limit_negative && way < 0);
-  if (onto) return Status::Failed(ErrorId::kAwayFromLimitOnly);
-  const bool barred = (s.bars_positive && way > 0) || (s.bars_negative && way < 0);
-  return barred ? Status::Failed(ErrorId::kDirection) : Status::Ok();
 }
 
 void RememberBase(State& s) {
@@ -320,7 +314,8 @@ Status CarryOut(const Context& c, Ticket ticket, const MoveSuperimposed& command
   const KinematicState from = AddedMotion(c, s);
   const double begin = command.update && s.superimposed && !s.overlay.halting ? s.overlay.begin : from.position;
   const double target = begin + command.distance;
-  if (const Status status = CheckSwitches(target - from.position, s); status.failed()) return status;
+  const double way = target - from.position;
+  if (const Status status = MayMove(c, s, way > 0 ? 1 : way < 0 ? -1 : 0); status.failed()) return status;
   if (!EndsInside(c, target, s)) return Status::Failed(ErrorId::kTargetBehindLimit);
   Request r;
   Refusal why;

@@ -231,6 +231,7 @@ void ConcludePower(const Context& c, State& s) {
 // Done when the next command may be given: at rest, and where it is not held, out of Stopping, which is seen for one
 // cycle at least.
 void ConcludeStop(const Context& c, State& s) {
+  if (FollowersStraighten(c, s)) return;  // they come to rest, too
   const bool stays = s.active.hold || c.cycle.count == s.motion.arrived_cycle;
   if (!s.reported && (s.active.hold || !stays)) {
     Report(c, s.active.ticket, FeedbackState::kDone);

@@ -46,6 +46,7 @@ void describe(Description<SkewState>& d) {
   d.internal<&K::known>("Where it belongs is known.");
   d.internal<&K::ticket>("Of the command that straightens it.");
   d.internal<&K::straightens>("It is being straightened.");
+  d.internal<&K::stops>("That comes to rest on the way.");
   d.internal<&K::start_cycle>("Since when.");
   d.internal<&K::way>("From the skew to 0.");
   d.internal<&K::edge>(unit::u, "Where its reference switch was found.");

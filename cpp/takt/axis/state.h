@@ -54,6 +54,7 @@ struct SkewState {
   bool known = false;        // where it belongs: at load, or when both loops were closed for the first time
   Ticket ticket = 0;         // of the command that straightens it; 0: none
   bool straightens = false;  // with or without a command
+  bool stops = false;        // it comes to rest on the way
   std::uint64_t start_cycle = 0;
   trajectory::Profile way;  // from the skew to 0
 

@@ -169,7 +169,8 @@ void StopMasters(World& w, std::uint32_t follower) {
     axis::State& its = w.axis_states[master];
     const bool moves = !axis::AtRest(its) || its.active.kind != axis::RequestKind::kNone || its.superimposed;
     if (!moves || its.plc == axis::PlcState::kErrorStop) return;
-    its.fault_of = follower;
+    // Of a chain of followers the one whose own fault it is.
+    its.fault_of = s.error == ErrorId::kAxisFault && s.fault_of != axis::kNoAxis ? s.fault_of : follower;
     axis::Fail(ContextOf(w, master), ErrorId::kAxisFault, false, its);
   };
   if (w.axis_masters[follower]) stop(*w.axis_masters[follower]);
@@ -211,6 +212,9 @@ void ApplyToMember(World& w, std::size_t i, const Command& command, const axis::
   if (alone) return apply(i, command.ticket);
   const std::size_t leader = LeaderOf(w, i);
   if (std::holds_alternative<axis::Stop>(body) || std::holds_alternative<axis::Halt>(body)) {
+    for (std::size_t k = 0; k < w.axis_states.size(); ++k) {  // the leader stands where a follower is straightened
+      if (w.axis_states[k].skew.straightens && LeaderOf(w, k) == leader) apply(k, 0);
+    }
     return apply(leader, command.ticket);
   }
   const auto* power = std::get_if<axis::Power>(&body);
@@ -246,7 +250,7 @@ struct MachineApplier {
       axis::State& state = world.axis_states[i];
       if (c.open_loops) {
         axis::Apply(ContextOf(world, i), 0, 0, axis::Power{.enable = false}, state);
-      } else if (state.loop_closed && state.plc != axis::PlcState::kErrorStop) {
+      } else if ((state.loop_closed || state.enable) && state.plc != axis::PlcState::kErrorStop) {
         axis::Apply(ContextOf(world, i), 0, 0, axis::Stop{}, state);
       }
     }
