@@ -82,35 +82,6 @@ def test_straightening_does_not_run_onto_a_limit_switch() -> None:
         assert follower.set_position < -38
 
 
-# --- while drives get ready ---
-
-
-@pytest.mark.parametrize(
-    "stop",
-    [
-        lambda e: e.command("machine", "stop_all"),
-        lambda e: e.axis("x").stop(hold=True),
-        lambda e: e.axis("x").stop(),
-        lambda e: e.axis("x").halt(),
-    ],
-)
-@pytest.mark.parametrize("after_s", [0.0, 0.001, 0.2])
-def test_a_stop_while_the_brake_opens_ends_what_waits(stop: Stop, after_s: float) -> None:
-    with engine_of([{"name": "x", "drive": {"brake_opens_s": 0.3}}], on=False) as engine:
-        axis = engine.axis("x")
-        power = axis.power()
-        engine.step(2)
-        engine.run(after_s)
-        move = axis.move_relative(distance=50, buffer_mode="buffered")
-        engine.step(5)
-        stopped = stop(engine)
-        engine.run(3)
-        assert power.done
-        assert stopped.done
-        assert move.aborted
-        assert axis.set_position == 0
-
-
 # --- power off ---
 
 

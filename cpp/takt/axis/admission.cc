@@ -150,13 +150,6 @@ Status SwitchOff(const Context& c, const Request& r, State& s) {
   return Status::Ok();
 }
 
-// While the drive gets ready or the brake opens nothing moves yet: a stop ends what waits for that, and takes its place
-// (EN-32).
-Status StopWaiting(const Context& c, const Request& r, State& s) {
-  AbortBuffer(c, s);
-  return Enqueue(c, r, s);
-}
-
 Status Admit(const Context& c, const Request& r, State& s) {
   if (r.kind == RequestKind::kPower) return r.enable ? SwitchOn(c, r, s) : SwitchOff(c, r, s);
   if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
@@ -164,7 +157,6 @@ Status Admit(const Context& c, const Request& r, State& s) {
   const bool stops = r.kind == RequestKind::kHalt || r.kind == RequestKind::kStop;
   if (c.params.follows && stops) StopStraightening(c, r.limits(), s);
   if (c.params.follows) return Status::Failed(ErrorId::kState);
-  if (stops && SwitchingOn(s)) return StopWaiting(c, r, s);
   const bool moves = s.active.kind != RequestKind::kNone || s.superimposed;
   const bool buffered = r.buffer_mode != BufferMode::kAborting && moves;
   if (!s.loop_closed) {
