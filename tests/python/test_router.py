@@ -182,7 +182,7 @@ def test_stops_of_the_machine_end_the_orders(verb: str, arguments: dict[str, boo
     engine.run(1.0)
     stopped = [(m.x, m.y, m.velocity_x, m.velocity_y) for m in engine.movers.values()]
     assert order.done
-    with pytest.raises(takt.RoutingError, match="mover [ab]"):
+    with pytest.raises(takt.RoutingError, match=r"mover [ab]"):
         order.wait()
     if arguments.get("hold"):
         with pytest.raises(

@@ -12,7 +12,7 @@ from typing import Any
 
 import buses
 import pytest
-from buses import PERIOD_S, Said, described, drives, eventually
+from buses import Said, described, drives, eventually
 from takt import drive
 from takt.drives.ethercat_bus import EthercatBus
 
