@@ -13,14 +13,14 @@ from pathlib import Path
 
 import pytest
 import takt
-from buses import eventually
+from buses import PERIOD_S, eventually
 from machines import new_url, running
 from takt import drive
 from takt.cli import main
 from takt.drives.ethercat_bus import drift_of
 from takt.drives.ethercat_link import OPERATIONAL, Wire
 from takt.errors import TaktError
-from wires import BUS, DRIVES, MASTER, PERIOD_S, bus_of, emulated, machine, own_network, run, tell
+from wires import BUS, DRIVES, MASTER, bus_of, emulated, machine, own_network, run, tell
 
 pytest.importorskip("pysoem")
 
