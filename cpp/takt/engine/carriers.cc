@@ -68,8 +68,6 @@ double CarrierTravelAt(void* owner, std::uint32_t number, double position) noexc
 }  // namespace
 
 group::Carriers CarriersFor(Rider& rider) noexcept {
-  const World& w = *rider.world;
-  if (w.belts.empty() && w.poses.empty() && w.groups.size() < 2 && w.pick_places.empty()) return {};
   return {FindCarrier, CarrierAt, CarrierTravelAt, &rider};
 }
 

@@ -19,8 +19,6 @@ struct Carriers {
   double (*travel_at)(void* owner, std::uint32_t carrier, double position) noexcept = nullptr;
   void* owner = nullptr;
 
-  // Whether there may be any; a group without is made with none of the above.
-  bool any() const noexcept { return find != nullptr; }
   std::uint32_t Find(std::string_view name) const noexcept { return find ? find(owner, name) : 0; }
   kinematics::Carrier At(std::uint32_t carrier) const noexcept {
     return at && carrier != 0 ? at(owner, carrier) : kinematics::Carrier{};

@@ -52,7 +52,7 @@ double BlendVelocity(const Request& move, double before, double after) {
 // How a motion along both speeds up.
 path::Ramp RampOf(const Context& c, const Stretch& before, const Stretch& after) {
   const LookAhead& ahead = c.ahead;
-  if (!PlansAhead(c) || IsCarried(ahead, before) || IsCarried(ahead, after)) return {};
+  if (!c.params.path.planned_ahead || IsCarried(ahead, before) || IsCarried(ahead, after)) return {};
   const trajectory::AlongPath l = trajectory::Least(before.limits, after.limits);
   const double a = std::min(l.acceleration, l.deceleration);
   if (!(a < kUnlimited && l.jerk < kUnlimited)) return {};

@@ -23,8 +23,7 @@ void describe(Description<PathLimits>& d) {
   d.required<&L::jerk>(unit::mm_s3, kJerks, "Largest jerk.");
   d.defaulted<&L::planned_ahead>(
       "Whether paths that stand are planned ahead, as fast as their exact limits allow; false: as the mean of a motion "
-      "whose acceleration may step; unset: planned ahead if the machine has nothing that can carry (belts, poses, "
-      "further groups) and no pick and place module.");
+      "whose acceleration may step.");
 }
 
 void describe(Description<ToolLimits>& d) {

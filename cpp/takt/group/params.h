@@ -19,7 +19,7 @@ struct PathLimits {
   double acceleration = 0;               // mm/s²
   std::optional<double> deceleration{};  // mm/s²; unset: as acceleration
   double jerk = 0;                       // mm/s³
-  std::optional<bool> planned_ahead{};   // by laws known to rest (trajectory/path_timing.h); unset: if nothing carries
+  bool planned_ahead = false;            // by laws that are known to rest (trajectory/path_timing.h)
 };
 
 // Of the tool along X, Y and Z and about them, seen from the world; unset: none but those of the axes.

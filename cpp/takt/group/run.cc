@@ -182,28 +182,21 @@ void LetGoOfMembers(const Context& c, State& s) noexcept {
   s.guides = false;
 }
 
-bool PlansAhead(const Context& c) noexcept {
-  return c.params.path.planned_ahead.value_or(!c.carriers.any());
-}
-
 bool IsTimed(const Context& c, const Request& move, const Stretch& stretch) noexcept {
   return move.cargo.carrier == 0 && move.master == 0 && !IsCarried(c.ahead, stretch);
 }
 
 void BeginTiming(const Context& c, State& s) noexcept {
   c.ahead.timing.Clear();
-  if (!PlansAhead(c) || Jogs(s) || s.master.axis != 0 || s.track.ticket != 0) return;
+  if (!c.params.path.planned_ahead || Jogs(s) || s.master.axis != 0 || s.track.ticket != 0) return;
   // A move onto what moves may follow.
   if (std::ranges::any_of(s.cargoes, [](const Cargo& cargo) { return cargo.carrier != 0; })) return;
-  // When it is through is known to the next stop only, and a module wants to know it to the end.
-  const bool to_the_end = c.carriers.any();
   for (std::uint64_t i = c.ahead.first; i < c.ahead.end(); ++i) {
-    const bool stops = c.ahead[i].stops && i + 1 < c.ahead.end();
-    if (IsCarried(c.ahead, c.ahead[i]) || (stops && to_the_end)) return;
+    if (IsCarried(c.ahead, c.ahead[i]) || (c.ahead[i].stops && i + 1 < c.ahead.end())) return;
   }
   for (std::uint64_t i = s.done; i < s.done + s.queue.count; ++i) {
     const Request& move = MoveAt(s, i);
-    if (move.cargo.carrier != 0 || move.master != 0 || (!move.blends() && i > s.done && to_the_end)) return;
+    if (move.cargo.carrier != 0 || move.master != 0 || (!move.blends() && i > s.done)) return;
   }
   c.ahead.timing.Begin(s.pace);
 }

@@ -11,8 +11,6 @@ void LetGoOfMembers(const Context& c, State& s) noexcept;
 
 // Returns whether PathTiming can time a move: it is not carried and follows no master.
 bool IsTimed(const Context& c, const Request& move, const Stretch& stretch) noexcept;
-// Whether paths are planned ahead as far as PathTiming can (IsTimed).
-bool PlansAhead(const Context& c) noexcept;
 // At rest, before a motion: starts PathTiming if the group plans ahead and all that is known of the path is such.
 void BeginTiming(const Context& c, State& s) noexcept;
 

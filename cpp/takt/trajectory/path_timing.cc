@@ -310,7 +310,9 @@ void PathTiming::TakePlan(std::uint64_t number) noexcept {
     late_ = std::min(2 * (next_.begin - ordered_), kMostLead);
     return;
   } else {
-    wait_until_ = tick_ + std::max(kOrderAgain, static_cast<std::uint64_t>(kAgainShare * rest_s() / period_s_));
+    // The law in force may be that of a low speed factor, which lasts for a long time.
+    const double wait_s = kAgainShare * std::min(rest_s(), kRenew_s);
+    wait_until_ = tick_ + std::max(kOrderAgain, static_cast<std::uint64_t>(wait_s / period_s_));
     no_plan_ = from_rest_;
   }
   late_ = 0;
