@@ -39,21 +39,38 @@ def test_stop_holds(engine: takt.Engine, x: takt.Axis) -> None:
     assert not any(stop().outputs.values())
 
 
-def test_a_second_stop_is_refused(engine: takt.Engine, x: takt.Axis) -> None:
-    """AX-37: no block but MC_Reset is carried out in Stopping (the manual's figure 8.1, note 1); the stop that holds
-    the axis still does."""
-    first, second = plc.MC_Stop(x), plc.MC_Stop(x)
+def test_two_stops_hold_until_both_let_go(engine: takt.Engine, x: takt.Axis) -> None:
+    """AX-37, EN-32: the manual's figure 8.1, note 1, carries out no block but MC_Reset in Stopping; a stop that would
+    be refused there, while another one brakes gently, stops nothing. No other transition comes from that."""
+    first, second = plc.MC_Stop(x, Deceleration=20.0), plc.MC_Stop(x)
     x.move_velocity(velocity=300.0).wait(until="reached")
     first(Execute=True)
     engine.step(3)
-    until(engine, second, lambda: not second.Busy, Execute=True)
-    assert (second.Error, second.ErrorID) == (True, 6)
-    until(engine, first, lambda: first.Done)
-    second(Execute=False)
-    assert not any(second.outputs.values())
-    engine.step(50)
-    assert (first().Done, x.state) == (True, takt.PlcState.STOPPING)
-    first(Execute=False)
+    until(engine, second, lambda: second.Done, Execute=True)
+    assert x.set_velocity == 0
+    assert first().Done
+    for block, other in ((second, first), (first, None)):
+        assert x.state is takt.PlcState.STOPPING
+        assert x.move_velocity(velocity=10.0).wait_final().error_id == 6
+        block(Execute=False)
+        engine.step(5)
+        assert not any(block().outputs.values())
+        assert other is None or other().Done
+    assert x.state is takt.PlcState.STANDSTILL
+
+
+def test_execute_outlasts_power(engine: takt.Engine, x: takt.Axis) -> None:
+    """AX-37: power off ends the braking, not the hold; the falling edge of Execute lets go whatever is shown."""
+    stop = plc.MC_Stop(x)
+    x.move_velocity(velocity=300.0).wait(until="reached")
+    stop(Execute=True)
+    engine.step(2)
+    x.power(enable=False).wait()
+    assert stop().CommandAborted
+    x.power().wait()
+    engine.step(2)
+    assert x.state is takt.PlcState.STOPPING
+    stop(Execute=False)
     engine.step(5)
     assert x.state is takt.PlcState.STANDSTILL
 

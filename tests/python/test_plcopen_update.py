@@ -226,9 +226,58 @@ def test_a_cam_stays_where_it_is(s: takt.Engine, absolute: bool, change: str) ->
 
 
 @pytest.mark.parametrize(
+    ("block_of", "inputs", "changes"),
+    [
+        (MC_MoveVelocity, {}, {"Velocity": 100.0}),
+        (MC_MoveAbsolute, {"Position": 900.0}, {"Velocity": 100.0}),
+        (MC_MoveRelative, {"Distance": 900.0}, {"Distance": 900.0}),
+        (MC_MoveContinuousAbsolute, {"Position": 900.0, "EndVelocity": 5.0}, {"Velocity": 100.0}),
+        (MC_MoveContinuousRelative, {"Distance": 900.0, "EndVelocity": 5.0}, {"Velocity": 100.0}),
+        (MC_TorqueControl, {"Velocity": 50.0}, {"Torque": 0.1}),
+        (MC_MoveSuperimposed, {"Distance": 900.0}, {"VelocityDiff": 50.0}),
+        (MC_GearIn, {"Master": "y"}, {"RatioNumerator": 1.0}),
+    ],
+)
+@pytest.mark.parametrize("stop", ["halt", "stop", "stop_all", "profile", "power"])
+def test_a_change_never_takes_over_from_another_command(
+    s: takt.Engine, block_of: Any, inputs: dict[str, Any], changes: dict[str, float], stop: str
+) -> None:
+    """AX-111: an input that changes in every cycle does not swallow what another program has given meanwhile."""
+    x = s.axis("x")
+    s.axis("y").move_velocity(velocity=20)
+    (name, value) = next(iter(changes.items()))
+    block = block_of(x, ContinuousUpdate=True, Execute=True, **inputs)
+    for step in range(300):
+        block(**{name: value + 0.001 * (step % 7)})
+        s.step()
+    others = {
+        "halt": x.halt,
+        "stop": x.stop,
+        "stop_all": lambda: s.command("machine", "stop_all"),
+        "profile": lambda: x.position_profile(profile="way"),
+        "power": lambda: x.power(enable=False),
+    }
+    other = others[stop]()
+    for step in range(3000):
+        block(**{name: value + 0.001 * (step % 7)})
+        s.step()
+    assert other.done
+    assert x.set_velocity == 0
+    assert block.CommandAborted
+    assert not block.Busy
+
+
+@pytest.mark.parametrize(
     ("verb", "arguments"),
     [
         ("move_continuous_relative", {"distance": 20.0, "end_velocity": 10.0}),
+        ("move_continuous_absolute", {"position": 20.0, "end_velocity": 10.0}),
+        ("move_absolute", {"position": 2000.0}),
+        ("move_additive", {"distance": 2000.0}),
+        ("move_velocity", {"velocity": 20.0}),
+        ("torque_control", {"torque": 0.1, "velocity": 20.0}),
+        ("gear_in", {"master": "y"}),
+        ("combine_axes", {"master1": "y", "master2": "y"}),
         ("move_superimposed", {"distance": 20.0}),
         ("position_profile", {"profile": "way"}),
         ("velocity_profile", {"profile": "speed"}),
@@ -237,19 +286,21 @@ def test_a_cam_stays_where_it_is(s: takt.Engine, absolute: bool, change: str) ->
     ],
 )
 def test_what_is_not_there_cannot_be_changed(s: takt.Engine, verb: str, arguments: dict[str, Any]) -> None:
-    """AX-111: `update` begins as without where no such command is in control, and is refused where that is."""
+    """AX-111: `update` takes nothing from another command: aborted where no such command is in control."""
     x = s.axis("x")
     for bad in ({"update": "perhaps"}, {"update": True, next(iter(arguments)): float("nan")}):
         assert s.command("x", verb, arguments | bad).wait_final().error
-    ended = []
-    for update in (False, True):
-        x.move_absolute(position=100).wait()
-        s.command("x", verb, arguments | {"update": update})
-        s.run(0.4)
-        ended.append((x.set_position, x.set_velocity, x.state))
+    assert s.command("x", verb, arguments | {"update": True}).wait_final().aborted
+    for other in (x.halt, lambda: x.stop(hold=True)):
+        s.command("x", verb, arguments)
+        s.run(0.1)
+        taken = other()
+        assert s.command("x", verb, arguments | {"update": True}).wait_final().aborted
+        s.run(3)
+        assert taken.done
+        if taken.level_sensitive:
+            taken.release()
         x.stop().wait()
-    assert ended[0][2] is ended[1][2]
-    assert ended[0][:2] == pytest.approx(ended[1][:2], abs=1e-6)
     x.power(enable=False).wait()
-    assert s.command("x", verb, arguments | {"update": True}).wait_final().error_id == 10
+    assert s.command("x", verb, arguments | {"update": True}).wait_final().final
     assert x.state.value == "Disabled"

@@ -139,3 +139,172 @@ def test_a_switch_of_any_follower_counts_for_its_leader(switched: str, verb: str
         engine.run(0.5)
         assert leader.set_position == stands
         leader.move_relative(distance=-10).wait()
+
+
+# --- several stops, and what a stop that holds outlasts (AX-37) ---
+
+
+@pytest.mark.parametrize("second", [{}, {"hold": True}, {"deceleration": 1}, {"jerk": 1000.0}])
+@pytest.mark.parametrize("first", [{"deceleration": 5}, {"hold": True, "deceleration": 5}, {}])
+def test_the_stop_that_brakes_sooner_brakes_and_both_are_done(first: dict[str, Any], second: dict[str, Any]) -> None:
+    """EN-32: a gentle stop locks no other one out, a gentler one softens none."""
+    with engine_of([{"name": "x"}]) as engine:
+        axis = engine.axis("x")
+        axis.move_velocity(velocity=300)
+        engine.run(0.5)
+        one = axis.stop(**first)
+        engine.run(0.02)
+        before = axis.set_velocity
+        two = axis.stop(**second)
+        axis.move_relative(distance=1, buffer_mode="buffered")
+        soon = first == {} or not ({"deceleration", "jerk"} & set(second))
+        engine.run(0.3)
+        assert (axis.set_velocity == 0) is soon
+        assert axis.set_velocity < before
+        engine.wait(lambda: axis.set_velocity == 0, timeout=70)
+        engine.step(3)
+        assert one.done
+        assert two.done
+        held = [stop for stop, given in ((one, first), (two, second)) if given.get("hold")]
+        for stop in held:
+            assert axis.state == takt.PlcState.STOPPING
+            assert axis.move_relative(distance=1).wait_final().error_id == 6
+            stop.release()
+            engine.step(2)
+        assert axis.state != takt.PlcState.STOPPING
+
+
+def test_stop_all_counts_during_a_gentle_stop() -> None:
+    with engine_of([{"name": "x"}]) as engine:
+        axis = engine.axis("x")
+        axis.move_velocity(velocity=300)
+        engine.run(0.5)
+        axis.stop(deceleration=5, hold=True)
+        engine.run(0.1)
+        waits = axis.move_relative(distance=1, buffer_mode="buffered")
+        engine.command("machine", "stop_all")
+        engine.run(0.3)
+        assert axis.set_velocity == 0
+        assert axis.state == takt.PlcState.STOPPING
+        assert waits.aborted
+
+
+@pytest.mark.parametrize("moment", ["moving", "standing"])
+@pytest.mark.parametrize(
+    "between",
+    [
+        lambda e: e.axis("x").power(enable=False),
+        lambda e: e.command("machine", "stop_all", {"open_loops": True}),
+        lambda e: e.command("machine", "emergency_stop"),
+        lambda e: e.command("machine", "fail_all_axes"),
+        lambda e: e.axis("x").stop(),
+        lambda e: e.command("machine", "stop_all"),
+    ],
+)
+def test_a_stop_that_holds_outlasts_whatever_comes(between: Stop, moment: str) -> None:
+    """Stopping lasts as long as Execute (AX-37): two holders, of which the last one lets the axis go."""
+    with engine_of([{"name": "x"}, {"name": "y"}]) as engine:
+        axis = engine.axis("x")
+        axis.move_velocity(velocity=100)
+        engine.run(0.3)
+        holders = [axis.stop(hold=True), axis.stop(hold=True)]
+        engine.run(0.5 if moment == "standing" else 0.01)
+        between(engine)
+        engine.run(0.5)
+        stands = axis.set_position
+        axis.reset()
+        engine.step(3)
+        axis.power().wait()
+        engine.step(2)
+        for holder in holders:
+            assert axis.state == takt.PlcState.STOPPING
+            for verb, arguments in (
+                ("move_velocity", {"velocity": 20}),
+                ("move_superimposed", {"distance": 2}),
+                ("gear_in", {"master": "y"}),
+                ("jog", {"forward": True, "velocity": 20}),
+                ("torque_control", {"torque": 0.1, "velocity": 20}),
+                ("step_direct", {"position": 3}),
+            ):
+                assert engine.command("x", verb, arguments).wait_final().error
+            engine.run(0.1)
+            assert axis.set_position == stands
+            holder.release()
+            engine.step(3)
+        assert axis.state == takt.PlcState.STANDSTILL
+        axis.move_relative(distance=2).wait()
+
+
+def test_nothing_slips_in_before_a_held_axis_is_stopping_again() -> None:
+    """In no cycle between power and Stopping a motion is taken."""
+    with engine_of([{"name": "x", "drive": {"brake_opens_s": 0.005}}]) as engine:
+        axis = engine.axis("x")
+        axis.stop(hold=True).wait()
+        axis.power(enable=False).wait()
+        power = axis.power()
+        for _ in range(200):
+            move = axis.move_relative(distance=1, buffer_mode="buffered")
+            jog = axis.jog(forward=True, velocity=10)
+            engine.step()
+            assert not move.active
+            assert not jog.active
+        assert power.done
+        assert axis.set_position == 0
+
+
+def test_more_holders_than_there_is_room_for_are_told_so() -> None:
+    with engine_of([{"name": "x"}]) as engine:
+        axis = engine.axis("x")
+        axis.move_velocity(velocity=100)
+        engine.run(0.3)
+        stops = [axis.stop(hold=True, deceleration=50) for _ in range(8)]
+        late = axis.stop(hold=True)
+        engine.run(0.2)
+        assert late.wait_final().error_id == 3003
+        assert axis.set_velocity == 0  # it brakes all the same
+        for stop in stops:
+            assert axis.state == takt.PlcState.STOPPING
+            stop.release()
+            engine.step(2)
+        assert axis.state == takt.PlcState.STANDSTILL
+
+
+# --- while drives get ready ---
+
+
+@pytest.mark.parametrize(
+    "stop",
+    [
+        lambda e: e.command("machine", "stop_all"),
+        lambda e: e.axis("x").stop(hold=True),
+        lambda e: e.axis("x").stop(),
+        lambda e: e.axis("x").halt(),
+    ],
+)
+@pytest.mark.parametrize("after_s", [0.0, 0.001, 0.2])
+def test_a_stop_while_the_brake_opens_ends_what_waits(stop: Stop, after_s: float) -> None:
+    with engine_of([{"name": "x", "drive": {"brake_opens_s": 0.3}}], on=False) as engine:
+        axis = engine.axis("x")
+        power = axis.power()
+        engine.step(2)
+        engine.run(after_s)
+        move = axis.move_relative(distance=50, buffer_mode="buffered")
+        engine.step(5)
+        stopped = stop(engine)
+        states = []
+        for _ in range(600):
+            engine.step()
+            states.append(axis.state)
+        assert power.done
+        assert stopped.done
+        assert move.aborted
+        assert axis.set_position == 0
+        held = stopped.level_sensitive
+        seen = list(dict.fromkeys(states))
+        rest = [takt.PlcState.STANDSTILL, takt.PlcState.STOPPING] if held else [takt.PlcState.STANDSTILL]
+        assert seen == [takt.PlcState.DISABLED, *rest]
+        if held:
+            assert axis.move_relative(distance=5).wait_final().error_id == 6
+            stopped.release()
+            engine.step(2)
+        axis.move_relative(distance=5).wait()

@@ -69,10 +69,18 @@ Status JogBy(const Context& c, const Request& r, State& s) {
   return Status::Ok();
 }
 
+// What a change is for has ended: it must not take over from what came since.
+bool ComesTooLate(const Request& r, const State& s) {
+  const RequestKind now = s.active.kind;
+  const bool adds = r.kind == RequestKind::kMoveAdditive && now == RequestKind::kMoveRelative;
+  return r.update && now != r.kind && !adds;
+}
+
 // A request that changes the one in control: the same table, and the same master, followed in another way.
 bool IsUpdate(const Request& r, const State& s) {
   const Request& now = s.active;
-  return r.kind == now.kind && r.table.index == now.table.index &&
+  const bool kept = FollowsTable(r.kind) || r.kind == RequestKind::kCamIn;  // others begin anew
+  return kept && r.kind == now.kind && r.table.index == now.table.index &&
          r.coupling.terms[0].master == now.coupling.terms[0].master &&
          r.coupling.terms[0].source == now.coupling.terms[0].source && r.coupling.periodic == now.coupling.periodic;
 }
@@ -159,13 +167,18 @@ Status Admit(const Context& c, const Request& r, State& s) {
   if (c.params.follows) return Status::Failed(ErrorId::kState);
   const bool moves = s.active.kind != RequestKind::kNone || s.superimposed;
   const bool buffered = r.buffer_mode != BufferMode::kAborting && moves;
-  if (!s.loop_closed) {
-    return buffered && SwitchingOn(s) ? Enqueue(c, r, s) : Status::Failed(ErrorId::kPowerOff);
+  if (ComesTooLate(r, s)) return Report(c, r.ticket, FeedbackState::kAborted), Status::Ok();
+  if (SwitchingOn(s)) {  // the drive gets ready or the brake opens
+    if (buffered) return Enqueue(c, r, s);
+    return stops ? StopBeforeReady(c, r, s), Status::Ok() : Status::Failed(ErrorId::kPowerOff);
   }
+  if (!s.loop_closed) return Status::Failed(ErrorId::kPowerOff);
   if (SwitchingOff(s)) return Status::Failed(ErrorId::kAxisStopping);
-  if (SwitchingOn(s)) return buffered ? Enqueue(c, r, s) : Status::Failed(ErrorId::kPowerOff);  // the brake opens
   if (buffered) return Enqueue(c, r, s);
-  if (s.plc == PlcState::kStopping) return Status::Failed(ErrorId::kAxisStopping);
+  if (s.plc == PlcState::kStopping) {
+    const bool both_stop = r.kind == RequestKind::kStop && s.active.kind == RequestKind::kStop;
+    return both_stop ? JoinStop(c, r, s), Status::Ok() : Status::Failed(ErrorId::kAxisStopping);
+  }
   if (r.kind == RequestKind::kInch && s.plc != PlcState::kStandstill) return Status::Failed(ErrorId::kState);
   if (r.kind == RequestKind::kLetGo) return LetGo(c, r, s);
   return r.kind == RequestKind::kJog ? JogBy(c, r, s) : TakeOver(c, r, s);
@@ -231,6 +244,16 @@ bool AsksToMove(const Command& command) noexcept {
       command);
 }
 
+namespace {
+
+// A motion of an axis that is held stopped, and not in Stopping: power was off or is, an emergency stop was on.
+bool BarsHeld(const Command& command, const State& s) {
+  if (s.plc == PlcState::kStopping || s.plc == PlcState::kErrorStop || !IsHeldStopped(s)) return false;
+  return AsksToMove(command) && !std::holds_alternative<Power>(command);
+}
+
+}  // namespace
+
 void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, State& s) noexcept {
   Request request;
   Status status = MakeRequest(command, c.params, request);
@@ -238,6 +261,7 @@ void Apply(const Context& c, Ticket ticket, double lease_s, const Command& comma
   if (status.ok() && s.leads && s.loop_closed && s.plc != PlcState::kErrorStop && AsksToMove(command)) {
     status = FollowersReady(c, s);
   }
+  if (status.ok() && s.stops.count > 0 && BarsHeld(command, s)) status = Status::Failed(ErrorId::kAxisStopping);
   if (status.ok() && request.kind == RequestKind::kNone) {
     status = std::visit([&](const auto& body) { return CarryOut(c, ticket, body, s); }, command);
   } else if (status.ok()) {
@@ -252,7 +276,7 @@ void Apply(const Context& c, Ticket ticket, double lease_s, const Command& comma
 }
 
 bool Release(const Context& c, Ticket ticket, State& s) noexcept {
-  if (EndProbing(c, ticket, s)) return true;
+  if (EndProbing(c, ticket, s) || (ticket != 0 && LetGoOfStop(ticket, s))) return true;
   Request* const request = Find(ticket, s);
   if (request == nullptr) return false;
   request->hold = false;
@@ -262,6 +286,7 @@ bool Release(const Context& c, Ticket ticket, State& s) noexcept {
 }
 
 bool Renew(const Context& c, Ticket ticket, State& s) noexcept {
+  if (RenewStop(c, ticket, s)) return true;
   const Request* const request = Find(ticket, s);
   if (request == nullptr || request->lease_s <= 0) return false;
   if (request == &s.active) s.lease_end_cycle = CycleIn(c.cycle, request->lease_s);

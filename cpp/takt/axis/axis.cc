@@ -88,7 +88,8 @@ void WatchDirectOutput(const Context& c, State& s) {
 }
 
 void WatchLease(const Context& c, State& s) {
-  if (s.active.lease_s <= 0 || c.cycle.count < s.lease_end_cycle) return;
+  const bool watched = s.active.lease_s > 0 && s.active.kind != RequestKind::kStop;  // stops watch their own
+  if (!watched || c.cycle.count < s.lease_end_cycle) return;
   const Ticket ticket = s.active.ticket;
   const bool jog = s.active.kind == RequestKind::kJog;
   Release(c, ticket, s);
@@ -428,6 +429,7 @@ void Move(const Context& c, State& s) noexcept {
   if (s.homing.flying_ticket != 0) WatchFlying(c, s);
   if (s.probe.watch != ProbeWatch::kNothing) FollowProbe(c, s);
   if (s.pulsing) WatchPulse(c, s);
+  if (s.stops.count > 0) FollowStops(c, s);
   if (s.superimposed && LostMasters(c, s)) AbortOverlay(c, FeedbackState::kError, ErrorId::kAxisFault, s);
   std::optional<Beneath> base;
   if (s.superimposed) base.emplace(s);

@@ -99,7 +99,6 @@ bool Fill(const Maker& m, const CamTableSelect& c) {
 bool Fill(const Maker& m, const CamIn& c) {
   m.r.kind = RequestKind::kCamIn;
   m.r.buffer_mode = c.buffer_mode;
-  m.r.update = c.update && c.buffer_mode == BufferMode::kAborting;
   if (c.start_mode > CamStart::kRampIn || c.cam.empty()) {
     m.why.field = c.cam.empty() ? "cam" : "start_mode";
     return false;

@@ -17,7 +17,7 @@ Status MayGuide(const Context& c, const State& s) {
   if (c.params.await_constants && !s.constants_set) return Status::Failed(ErrorId::kNoConstants);
   if (c.params.follows || s.plc == PlcState::kHoming) return Status::Failed(ErrorId::kState);
   if (!s.loop_closed) return Status::Failed(ErrorId::kPowerOff);
-  if (s.plc == PlcState::kStopping) return Status::Failed(ErrorId::kAxisStopping);
+  if (s.plc == PlcState::kStopping || IsHeldStopped(s)) return Status::Failed(ErrorId::kAxisStopping);
   return FollowersReady(c, s);
 }
 

@@ -310,9 +310,12 @@ bool Fill(const Maker& m, const HaltSuperimposed& c) {
 }
 
 Status CarryOut(const Context& c, Ticket ticket, const MoveSuperimposed& command, State& s) noexcept {
+  if (command.update && (!s.superimposed || s.overlay.halting)) {
+    return Report(c, ticket, FeedbackState::kAborted), Status::Ok();
+  }
   if (const Status status = MayBeOnTop(c, s); status.failed()) return status;
   const KinematicState from = AddedMotion(c, s);
-  const double begin = command.update && s.superimposed && !s.overlay.halting ? s.overlay.begin : from.position;
+  const double begin = command.update ? s.overlay.begin : from.position;
   const double target = begin + command.distance;
   const double way = target - from.position;
   if (const Status status = MayMove(c, s, way > 0 ? 1 : way < 0 ? -1 : 0); status.failed()) return status;

@@ -95,7 +95,6 @@ bool Fill(const Maker& m, const MoveContinuousAbsolute& c) {
 
 bool Fill(const Maker& m, const MoveContinuousRelative& c) {
   m.r.end_velocity = c.end_velocity;
-  m.r.update = c.update && c.buffer_mode == BufferMode::kAborting;
   return ByDistance(m, RequestKind::kMoveContinuousRelative, c) &&
          m.In("end_velocity", c.end_velocity, 0, m.params.limits.velocity);
 }
@@ -142,8 +141,14 @@ const RequestRules& RulesOf(RequestKind kind) noexcept {
 Status MakeRequest(const Command& command, const AxisParams& params, Request& out, Refusal* why) noexcept {
   Request request;
   Refusal refusal;
-  const bool good =
-      std::visit([maker = Maker{params, request, refusal}](const auto& c) { return Fill(maker, c); }, command);
+  const bool good = std::visit(
+      [maker = Maker{params, request, refusal}](const auto& c) {
+        if constexpr (requires { c.update&& c.buffer_mode == BufferMode::kAborting; }) {
+          maker.r.update = c.update && c.buffer_mode == BufferMode::kAborting;
+        }
+        return Fill(maker, c);
+      },
+      command);
   if (why) *why = refusal;
   if (!good) return Status::Failed(ErrorId::kParameter);
   const RequestRules& rules = RulesOf(request.kind);

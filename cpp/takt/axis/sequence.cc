@@ -16,6 +16,12 @@ void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId err
   c.feedback.Report({ticket, c.cycle.count, feedback, reached, error, value});
 }
 
+void ReportEnd(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error, const State& s) noexcept {
+  FeedbackEvent end{ticket, c.cycle.count, feedback, false, error, 0};
+  if (error == ErrorId::kAxisFault && s.fault_of != kNoAxis) end.object = {ObjectKind::kAxis, s.fault_of + 1};
+  c.feedback.Report(end);
+}
+
 void Enter(State& s, PlcState to) noexcept {
   if (!IsLegal(s.plc, to)) ++s.illegal_transitions;
   s.plc = to;
@@ -228,16 +234,12 @@ void ConcludePower(const Context& c, State& s) {
   if (s.plc != PlcState::kStopping && IsLegal(s.plc, PlcState::kStopping)) Enter(s, PlcState::kStopping);
 }
 
-// Done when the next command may be given: at rest, and where it is not held, out of Stopping, which is seen for one
-// cycle at least.
+// Stopping is seen for one cycle at least.
 void ConcludeStop(const Context& c, State& s) {
   if (FollowersStraighten(c, s)) return;  // they come to rest, too
-  const bool stays = s.active.hold || c.cycle.count == s.motion.arrived_cycle;
-  if (!s.reported && (s.active.hold || !stays)) {
-    Report(c, s.active.ticket, FeedbackState::kDone);
-    s.reported = true;
-  }
-  if (stays) return;
+  const bool just_arrived = c.cycle.count == s.motion.arrived_cycle;
+  TellStopped(c, just_arrived, s);
+  if (just_arrived || IsHeldStopped(s)) return;
   s.active = Request{};
   StartNext(c, 0, s);
 }
@@ -250,6 +252,7 @@ void Grant(const Context& c, const Request& request, State& s, double travel_s) 
   s.passed = false;
   s.lease_end_cycle = CycleIn(c.cycle, request.lease_s);
   Report(c, request.ticket, FeedbackState::kActive, ErrorId::kNone, false, travel_s);
+  if (request.kind == RequestKind::kStop) BeginStop(c, request, s);
 }
 
 void TakeControl(const Context& c, const Request& request, const Plan& plan, const MotionStart& start,
@@ -274,11 +277,10 @@ void BeginFollowing(const Context& c, const Request& request, const MotionStart&
 }
 
 void EndActive(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
-  const bool final_is_out = s.active.kind == RequestKind::kStop && s.reported;
-  if (s.active.kind != RequestKind::kNone && !final_is_out) {
-    FeedbackEvent end{s.active.ticket, c.cycle.count, feedback, false, error, 0};
-    if (error == ErrorId::kAxisFault && s.fault_of != kNoAxis) end.object = {ObjectKind::kAxis, s.fault_of + 1};
-    c.feedback.Report(end);
+  if (s.active.kind == RequestKind::kStop) {
+    EndStops(c, feedback, error, s);
+  } else if (s.active.kind != RequestKind::kNone) {
+    ReportEnd(c, s.active.ticket, feedback, error, s);
   }
   if (Couples(s.active.kind)) Uncouple(c, feedback == FeedbackState::kError, s);
   s.active = Request{};

@@ -24,6 +24,8 @@ inline MotionStart FromThisCycle(const Context& c) {
 bool InPosition(const AxisParams& params, const State& s) noexcept;
 void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error = ErrorId::kNone,
             bool reached = false, double value = 0) noexcept;
+// The end of a command; a fault of another axis is told with its name.
+void ReportEnd(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error, const State& s) noexcept;
 void Enter(State& s, PlcState to) noexcept;
 // What a plan has to know besides. For what goes on beneath another motion ...
 Surroundings SurroundingsOf(const Context& c, const State& s) noexcept;

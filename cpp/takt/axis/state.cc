@@ -64,7 +64,7 @@ void describe(Description<State>& d) {
   d.internal<&S::error>("Fault.");
   d.internal<&S::limited_by>("What holds the motion back.");
   d.internal<&S::active>("Command in control.");
-  d.internal<&S::reported>("Its final feedback is out.");
+  d.internal<&S::reported>("That it has reached what it is for is out.");
   d.internal<&S::passed>("A continuous move is beyond its position.");
   d.internal<&S::jog_sense>("Jogging up (1), down (-1) or not.");
   d.internal<&S::jog_armed>("Both keys were seen up.");
@@ -130,6 +130,7 @@ void describe(Description<State>& d) {
   d.internal<&S::guidance>("Set points of another component.");
   d.internal<&S::fault_ramp>("On which it brakes after a fault.");
   d.internal<&S::time_table>("Table over time that it follows.");
+  d.internal<&S::stops>("Commands that stop it.");
   d.internal<&S::stream>("Set points from outside.");
   d.internal<&S::overlay>("What is on top of it.");
   d.internal<&S::homing>("Its reference.");

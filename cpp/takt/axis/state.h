@@ -17,6 +17,7 @@
 #include "takt/axis/probe.h"
 #include "takt/axis/request.h"
 #include "takt/axis/state_table.h"
+#include "takt/axis/stops.h"
 #include "takt/axis/stream.h"
 #include "takt/axis/time_table.h"
 #include "takt/axis/torque.h"
@@ -90,8 +91,7 @@ struct State {
   PlcState plc = PlcState::kDisabled;
   ErrorId error = ErrorId::kNone;
   LimitedBy limited_by = LimitedBy::kNothing;
-  bool reported =
-      false;  // its final feedback is out although it stays in control (held stop), or `reached` is (velocity)
+  bool reported = false;       // that it has reached what it is for, and stays in control
   bool passed = false;         // the continuous move in control is beyond its position
   std::int8_t jog_sense = 0;   // 1, -1: jogging that way; 0: not
   bool jog_armed = false;      // a key may start a motion: a new jog, or both keys were seen up since the last one
@@ -170,6 +170,7 @@ struct State {
   std::uint64_t illegal_transitions = 0;    // always 0: the state table holds
   trajectory::Limits system;  // of the machine file; those of the application, in the parameters, keep within them
   OverlayState overlay;
+  StopOrders stops;
   StreamState stream;
   SkewState skew;
   std::uint32_t fault_of = kNoAxis;  // the axis that follows this one and whose fault stopped it

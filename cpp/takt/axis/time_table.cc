@@ -101,7 +101,6 @@ template <typename T>
 bool Table(const Maker& m, RequestKind kind, const T& c, const char* scale_field, double scale) {
   m.r.kind = kind;
   m.r.buffer_mode = c.buffer_mode;
-  m.r.update = c.update && c.buffer_mode == BufferMode::kAborting;
   m.r.velocity = m.params.limits.velocity;
   m.r.table = {.name = c.profile, .index = kNoTable, .time_scale = c.time_scale, .scale = scale, .offset = c.offset};
   if (c.profile.empty()) m.why.field = "profile";

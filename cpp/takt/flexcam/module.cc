@@ -70,10 +70,10 @@ void Brake(const Context& c, double deceleration, double jerk, bool hold, axis::
 // Stops the slave and keeps it so until the module lets go of that.
 void HoldStopped(const Context& c, axis::State& slave, State& s) {
   Brake(c, s.settings.stop_deceleration, s.settings.stop_jerk, true, slave);
-  s.holds = slave.active.kind == axis::RequestKind::kStop && slave.active.ticket == 0;
+  s.holds = axis::HoldsStop(0, slave);
 }
 void LetGoOfStop(axis::State& slave, State& s) {
-  if (s.holds && slave.active.kind == axis::RequestKind::kStop) slave.active.hold = false;
+  if (s.holds) axis::LetGoOfStop(0, slave);
   s.holds = false;
 }
 

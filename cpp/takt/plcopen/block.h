@@ -155,7 +155,7 @@ class UpdatedBlock : public Block<C> {
     if constexpr (std::is_same_v<C, axis::MoveRelative> || std::is_same_v<C, axis::MoveAdditive>) {
       // The distance counts from where the move began: what it has more now is added to where that ends.
       this->StartAs(axis::MoveAdditive{wanted.distance - given_.distance, wanted.velocity, wanted.acceleration,
-                                       wanted.deceleration, wanted.jerk, wanted.buffer_mode});
+                                       wanted.deceleration, wanted.jerk, wanted.buffer_mode, true});
     } else {
       if constexpr (requires { wanted.update; }) wanted.update = true;
       this->StartWith(wanted);

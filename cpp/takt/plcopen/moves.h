@@ -10,8 +10,8 @@
 
 namespace takt::plcopen {
 
-// Brakes to standstill. The axis stays in Stopping, and takes no other motion, as long as Execute is true; another stop
-// is refused then.
+// Brakes to standstill. The axis stays in Stopping, and takes no other motion, as long as Execute is true, through
+// power off, faults and emergency stops, too. All stops of an axis are done when it stands, whichever of them brakes.
 class MC_Stop : public Block<axis::Stop> {
  public:
   using Block::Block;

@@ -296,12 +296,8 @@ class UpdatedBlock(MotionBlock, ChangedBlock):
     def _is_in_control(self, feedback: Feedback) -> bool:
         return in_control(feedback, self._given)
 
-
-class ResumedBlock(UpdatedBlock):
-    """One whose command counts from its beginning: a distance, a time, a place in a cam. A change goes on with that."""
-
     def _changed(self, wanted: dict[str, Any]) -> tuple[str, dict[str, Any]]:
-        return self.VERB, wanted | {"update": True}
+        return self.VERB, wanted | {"update": True}  # takes nothing from what another program has given since
 
 
 class ReadBlock(FunctionBlock):

@@ -8,7 +8,7 @@ from typing import Any
 from takt import _commands
 from takt.axis import Axis
 from takt.feedback import Feedback
-from takt.plcopen.base import AxisName, ExecuteBlock, Input, Output, ResumedBlock, SettingBlock
+from takt.plcopen.base import AxisName, ExecuteBlock, Input, Output, SettingBlock, UpdatedBlock
 from takt.plcopen.coupling import CouplingBlock
 
 
@@ -72,7 +72,7 @@ class MC_CamTableSelect(SettingBlock):  # noqa: N801
         self._show(CamTableID=self._selected)
 
 
-class MC_CamIn(CouplingBlock, ResumedBlock):  # noqa: N801
+class MC_CamIn(CouplingBlock, UpdatedBlock):  # noqa: N801
     """Follows the cam of CamTableID, which MC_CamTableSelect gives; a plain name of a cam is one, too. x is Master's
     position times MasterScaling plus MasterOffset, the axis' place y(x) times SlaveScaling plus SlaveOffset.
     EndOfProfile: the end of the cam was passed since the call before."""

@@ -6,7 +6,7 @@ from typing import Any
 
 from takt import _commands
 from takt.feedback import Feedback
-from takt.plcopen.base import ExecuteBlock, Input, MotionBlock, Output, ResumedBlock, UpdatedBlock
+from takt.plcopen.base import ExecuteBlock, Input, MotionBlock, Output, UpdatedBlock
 
 
 class MC_MoveAbsolute(UpdatedBlock):  # noqa: N801
@@ -35,7 +35,7 @@ class MC_MoveRelative(UpdatedBlock):  # noqa: N801
 
     def _changed(self, wanted: dict[str, Any]) -> tuple[str, dict[str, Any]]:
         more = wanted["distance"] - self._given["distance"]
-        return "move_additive", wanted | {"distance": more}
+        return "move_additive", wanted | {"distance": more, "update": True}
 
 
 class MC_MoveAdditive(MC_MoveRelative):  # noqa: N801
@@ -70,8 +70,9 @@ class MC_Halt(MotionBlock):  # noqa: N801
 
 
 class MC_Stop(MotionBlock):  # noqa: N801
-    """Brakes to standstill. The axis stays in Stopping, and takes no other motion, as long as Execute is true; another
-    stop is refused then."""
+    """Brakes to standstill. The axis stays in Stopping, and takes no other motion, as long as Execute is true,
+    through power off, faults and emergency stops, too. All stops of an axis are done when it stands, whichever of them
+    brakes."""
 
     VERB = "stop"
     Deceleration = Input[float | None](None, "deceleration")
@@ -82,7 +83,7 @@ class MC_Stop(MotionBlock):  # noqa: N801
         return super()._arguments() | {"hold": True}
 
     def _fall(self) -> None:
-        if self._feedback is not None and not (self._feedback.error or self._feedback.aborted):
+        if self._feedback is not None:
             self._feedback.release()
 
 
@@ -105,7 +106,7 @@ class MC_MoveContinuousAbsolute(UpdatedBlock):  # noqa: N801
         self._show(InEndVelocity=there and self._is_due("InEndVelocity"))
 
 
-class MC_MoveContinuousRelative(ResumedBlock):  # noqa: N801
+class MC_MoveContinuousRelative(UpdatedBlock):  # noqa: N801
     """Moves by a distance and goes on from there with EndVelocity. Never done: InEndVelocity says that it is there."""
 
     VERB = "move_continuous_relative"

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from takt.plcopen.base import Input, Output, ResumedBlock
+from takt.plcopen.base import Input, Output, UpdatedBlock
 
 
-class MC_PositionProfile(ResumedBlock):  # noqa: N801
+class MC_PositionProfile(UpdatedBlock):  # noqa: N801
     """Follows positions over time, scaled by TimeScale and PositionScale and shifted by Offset."""
 
     VERB = "position_profile"
@@ -16,7 +16,7 @@ class MC_PositionProfile(ResumedBlock):  # noqa: N801
     Done = Output(False)
 
 
-class MC_VelocityProfile(ResumedBlock):  # noqa: N801
+class MC_VelocityProfile(UpdatedBlock):  # noqa: N801
     """Follows velocities over time, and goes on with the last."""
 
     VERB = "velocity_profile"
@@ -28,7 +28,7 @@ class MC_VelocityProfile(ResumedBlock):  # noqa: N801
     ProfileCompleted = Output(False, alias="Done")
 
 
-class MC_AccelerationProfile(ResumedBlock):  # noqa: N801
+class MC_AccelerationProfile(UpdatedBlock):  # noqa: N801
     """Follows accelerations over time, and goes on with the velocity that they lead to."""
 
     VERB = "acceleration_profile"

@@ -44,6 +44,7 @@ void describe(Description<GearIn>& d) {
   d.defaulted<&C::master_filter>(unit::s, between(0, 10), kMasterFilter);
   DescribeRamps(d);
   d.defaulted<&C::buffer_mode>(kBufferMode);
+  d.defaulted<&C::update>(kChange);
 }
 
 void describe(Description<GearOut>& d) {
@@ -107,6 +108,7 @@ void describe(Description<CombineAxes>& d) {
   d.defaulted<&C::velocity>(unit::u_s, positive, "Largest velocity of the catching up; unset: the axis' limit.");
   DescribeRamps(d);
   d.defaulted<&C::buffer_mode>(kBufferMode);
+  d.defaulted<&C::update>(kChange);
 }
 
 }  // namespace takt::axis

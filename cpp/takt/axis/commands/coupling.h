@@ -25,6 +25,7 @@ struct GearIn {  // MC_GearIn
   std::optional<double> master_filter{};
   std::optional<double> acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
+  bool update = false;  // only changes the one of its kind that is in control
 
   bool operator==(const GearIn&) const = default;
 };
@@ -63,6 +64,7 @@ struct CombineAxes {  // MC_CombineAxes
   MasterSource source2 = MasterSource::kSetValue;
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
+  bool update = false;  // only changes the one of its kind that is in control
 
   bool operator==(const CombineAxes&) const = default;
 };

@@ -49,6 +49,7 @@ void describe(Description<MoveAbsolute>& d) {
   DescribeRamps(d);
   d.defaulted<&M::direction>("Sense of travel of a rotary axis.");
   d.defaulted<&M::buffer_mode>(kBufferMode);
+  d.defaulted<&M::update>(kChange);
 }
 
 void describe(Description<MoveRelative>& d) {
@@ -69,6 +70,7 @@ void describe(Description<MoveAdditive>& d) {
   d.defaulted<&M::velocity>(unit::u_s, positive, "Largest velocity on the way; unset: the axis' limit.");
   DescribeRamps(d);
   d.defaulted<&M::buffer_mode>(kBufferMode);
+  d.defaulted<&M::update>(kChange);
 }
 
 void describe(Description<MoveVelocity>& d) {
@@ -78,6 +80,7 @@ void describe(Description<MoveVelocity>& d) {
   DescribeRamps(d);
   d.defaulted<&M::direction>("positive, negative or current.");
   d.defaulted<&M::buffer_mode>(kBufferMode);
+  d.defaulted<&M::update>(kChange);
 }
 
 void describe(Description<MoveContinuousAbsolute>& d) {
@@ -89,6 +92,7 @@ void describe(Description<MoveContinuousAbsolute>& d) {
   DescribeRamps(d);
   d.defaulted<&M::direction>("Sense of travel of a rotary axis.");
   d.defaulted<&M::buffer_mode>(kBufferMode);
+  d.defaulted<&M::update>(kChange);
 }
 
 void describe(Description<MoveContinuousRelative>& d) {

@@ -34,6 +34,7 @@ struct MoveAbsolute {  // MC_MoveAbsolute
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   Direction direction = Direction::kShortest;
   BufferMode buffer_mode = BufferMode::kAborting;
+  bool update = false;  // only changes the one of its kind that is in control
 
   bool operator==(const MoveAbsolute&) const = default;
 };
@@ -48,6 +49,7 @@ struct MoveAdditive {  // MC_MoveAdditive
   double distance = 0;
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
+  bool update = false;  // only changes the one of its kind that is in control
 
   bool operator==(const MoveAdditive&) const = default;
 };
@@ -56,6 +58,7 @@ struct MoveVelocity {  // MC_MoveVelocity
   std::optional<double> acceleration{}, deceleration{}, jerk{};
   Direction direction = Direction::kPositive;  // positive, negative or current
   BufferMode buffer_mode = BufferMode::kAborting;
+  bool update = false;  // only changes the one of its kind that is in control
 
   bool operator==(const MoveVelocity&) const = default;
 };
@@ -77,6 +80,7 @@ struct MoveContinuousAbsolute {  // MC_MoveContinuousAbsolute
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   Direction direction = Direction::kShortest;
   BufferMode buffer_mode = BufferMode::kAborting;
+  bool update = false;  // only changes the one of its kind that is in control
 
   bool operator==(const MoveContinuousAbsolute&) const = default;
 };

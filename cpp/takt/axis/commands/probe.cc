@@ -66,6 +66,7 @@ void describe(Description<TorqueControl>& d) {
   d.defaulted<&C::velocity>(unit::u_s, positive, "Largest velocity, either way; unset: the axis' limit.");
   DescribeRamps(d);
   d.defaulted<&C::buffer_mode>(kBufferMode);
+  d.defaulted<&C::update>(kChange);
 }
 
 }  // namespace takt::axis

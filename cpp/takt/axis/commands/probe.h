@@ -42,6 +42,7 @@ struct TorqueControl {  // MC_TorqueControl
   std::optional<double> velocity{};
   std::optional<double> acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
+  bool update = false;  // only changes the one of its kind that is in control
 
   bool operator==(const TorqueControl&) const = default;
 };

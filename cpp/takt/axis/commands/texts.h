@@ -19,8 +19,12 @@ void DescribeRamps(Description<T>& d) {
 }
 
 // Of commands that ContinuousUpdate changes.
+inline constexpr std::string_view kChange =
+    "True: only changes the command of this kind that is in control, and is aborted where there is none any more. "
+    "Where "
+    "this one is buffered it makes no difference.";
 inline constexpr std::string_view kUpdate =
-    "True: changes the command of this kind that is in control, from whose beginning everything counts; where there is "
-    "none, or this one is buffered, it begins as without.";
+    "True: only changes the command of this kind that is in control, from whose beginning everything counts, and is "
+    "aborted where there is none any more. Where this one is buffered it makes no difference.";
 
 }  // namespace takt::axis

@@ -1,0 +1,154 @@
+#include "takt/axis/stops.h"
+
+#include <algorithm>
+#include <span>
+
+#include "takt/axis/sequence.h"
+#include "takt/core/describe.h"
+
+namespace takt::axis {
+
+namespace {
+
+std::span<StopOrder> All(State& s) {
+  return {s.stops.of.data(), s.stops.count};
+}
+std::span<const StopOrder> All(const State& s) {
+  return {s.stops.of.data(), s.stops.count};
+}
+
+StopOrder* Find(Ticket ticket, State& s) {
+  const auto found = std::ranges::find(All(s), ticket, &StopOrder::ticket);
+  return found == All(s).end() ? nullptr : &*found;
+}
+
+// Forgets those that neither hold nor wait.
+void Tidy(State& s) {
+  const auto over = [](const StopOrder& o) { return o.reported && !o.hold; };
+  const auto removed = std::ranges::remove_if(All(s), over);
+  std::ranges::fill(removed, StopOrder{});
+  s.stops.count -= static_cast<std::uint32_t>(removed.size());
+}
+
+// Another component has one order, however often it stops the axis.
+void Note(const Context& c, const Request& r, bool stands, State& s) {
+  if (StopOrder* const known = Find(r.ticket, s)) {
+    known->hold |= r.hold;
+    known->reported &= stands;
+    return;
+  }
+  if (s.stops.count == StopOrders::kMost) return Report(c, r.ticket, FeedbackState::kError, ErrorId::kBufferFull);
+  s.stops.of[s.stops.count++] = {r.ticket, r.lease_s, CycleIn(c.cycle, r.lease_s), r.hold, stands};
+}
+
+// The one that is longest in force gives its name.
+const StopOrder* Holder(const State& s) {
+  const auto found = std::ranges::find(All(s), true, &StopOrder::hold);
+  return found == All(s).end() ? nullptr : &*found;
+}
+
+void WatchLeases(const Context& c, State& s) {
+  const bool held = IsHeldStopped(s);
+  for (StopOrder& order : All(s)) {
+    if (order.lease_s > 0 && c.cycle.count >= order.lease_end_cycle) order.hold = false;
+  }
+  Tidy(s);
+  // Nobody has said that what waits behind it may begin; another stop may.
+  const bool lost = held && !IsHeldStopped(s);
+  if (lost && s.buffered > 0 && s.buffer[0].kind != RequestKind::kStop) AbortBuffer(c, s);
+}
+
+}  // namespace
+
+bool IsHeldStopped(const State& s) noexcept {
+  return s.stops.count > 0 && Holder(s) != nullptr;
+}
+
+bool HoldsStop(Ticket ticket, const State& s) noexcept {
+  return std::ranges::any_of(All(s), [&](const StopOrder& o) { return o.ticket == ticket && o.hold; });
+}
+
+void BeginStop(const Context& c, const Request& r, State& s) noexcept {
+  Note(c, r, false, s);
+}
+
+void JoinStop(const Context& c, const Request& r, State& s) noexcept {
+  AbortBuffer(c, s);
+  Report(c, r.ticket, FeedbackState::kActive);
+  Note(c, r, false, s);
+  if (s.motion.arrived) return;
+  const double left_s = s.motion.profile.duration() - Elapsed(c, s) + c.cycle.period_s;
+  trajectory::Profile sooner{s.setpoint};
+  PlanStop(c.params, c.planner, s.setpoint, r.limits(), {}, sooner);
+  if (sooner.duration() < left_s) StartMotion(sooner, sooner.end().position, FromCycleBefore(c), s);
+}
+
+void StopBeforeReady(const Context& c, const Request& r, State& s) noexcept {
+  AbortBuffer(c, s);
+  Report(c, r.ticket, FeedbackState::kActive);
+  Report(c, r.ticket, FeedbackState::kDone);
+  if (r.hold) Note(c, r, true, s);
+}
+
+void TellStopped(const Context& c, bool just_arrived, State& s) noexcept {
+  for (StopOrder& order : All(s)) {
+    if (order.reported || (just_arrived && !order.hold)) continue;
+    Report(c, order.ticket, FeedbackState::kDone);
+    order.reported = true;
+  }
+  Tidy(s);
+}
+
+void EndStops(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
+  for (StopOrder& order : All(s)) {
+    if (!order.reported) ReportEnd(c, order.ticket, feedback, error, s);
+    order.reported = true;
+  }
+  Tidy(s);
+}
+
+bool LetGoOfStop(Ticket ticket, State& s) noexcept {
+  StopOrder* const order = Find(ticket, s);
+  if (order == nullptr) return false;
+  order->hold = false;
+  Tidy(s);
+  return true;
+}
+
+bool RenewStop(const Context& c, Ticket ticket, State& s) noexcept {
+  StopOrder* const order = Find(ticket, s);
+  if (order == nullptr || order->lease_s <= 0) return false;
+  order->lease_end_cycle = CycleIn(c.cycle, order->lease_s);
+  return true;
+}
+
+void FollowStops(const Context& c, State& s) noexcept {
+  WatchLeases(c, s);
+  const StopOrder* const holder = Holder(s);
+  const bool free = s.plc == PlcState::kStandstill && s.active.kind == RequestKind::kNone && !s.superimposed;
+  if (holder == nullptr || !free) return;
+  s.active = Request{};
+  s.active.kind = RequestKind::kStop;
+  s.active.ticket = holder->ticket;
+  s.active.hold = true;
+  Enter(s, PlcState::kStopping);
+}
+
+void describe(Description<StopOrder>& d) {
+  using O = StopOrder;
+  d.about("A command that stops the axis.");
+  d.internal<&O::ticket>("Of the command.");
+  d.internal<&O::lease_s>(unit::s, "How long it holds after it was renewed; 0: until released.");
+  d.internal<&O::lease_end_cycle>("When that ends.");
+  d.internal<&O::hold>("It keeps the axis stopped.");
+  d.internal<&O::reported>("Its final feedback is out.");
+}
+
+void describe(Description<StopOrders>& d) {
+  using O = StopOrders;
+  d.about("Commands that stop the axis.");
+  d.internal<&O::of>("The oldest first.");
+  d.internal<&O::count>("How many.");
+}
+
+}  // namespace takt::axis
