@@ -201,6 +201,27 @@ def stopped() -> takt.Engine:
     return s
 
 
+def stopped_and_switched() -> takt.Engine:
+    """Two hold, one has let go; the axes were switched off, stopped by a fault and switched on again."""
+    s = stopped()
+    second = [s.axis(name).stop(hold=True) for name in HELD]
+    s.step(2)
+    for feedback in second:
+        feedback.release()
+    s.command("machine", "stop_all", {"open_loops": True})
+    s.run(0.3)
+    assert all_open(s)
+    for name in (*HELD, "right"):
+        s.axis(name).power()
+    s.run(0.3)
+    s.command("machine", "fail_all_axes")
+    for name in s.axes:
+        s.axis(name).reset()
+    s.run(0.1)
+    assert all_stopping(s)
+    return s
+
+
 def all_stopping(s: takt.Engine) -> bool:
     return all(s.axis(name).state is takt.PlcState.STOPPING and not s.axis(name).set_velocity for name in HELD)
 
@@ -239,6 +260,7 @@ SITUATIONS = {
     "fault": Situation(failed, leaves_error, all_failed),
     "fault of a follower": Situation(follower_failed, moves_without_follower, gantry_failed),
     "stop held": Situation(stopped, leaves_stopping, all_stopping),
+    "stop held, power off and on": Situation(stopped_and_switched, leaves_stopping, all_stopping),
 }
 
 

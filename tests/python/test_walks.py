@@ -71,12 +71,17 @@ def varied(rnd: random.Random, given: Given) -> Given:
     return target, verb, out
 
 
-def walk(s: takt.Engine, rnd: random.Random, steps: int) -> list[tuple[int, int]]:
-    """Gives commands at random; the cycles between which an emergency stop was held."""
+Held = tuple[str, int, int]  # axis, cycles between which one of its stops held it
+
+
+def walk(s: takt.Engine, rnd: random.Random, steps: int) -> tuple[list[tuple[int, int]], list[Held]]:
+    """Gives commands at random; the cycles between which an emergency stop, and a stop of an axis, was held."""
     known = commands(1, targets_of(s), names_of(s)) + commands(-1, targets_of(s), names_of(s))
     power = [given for given in known if given[1] in ("power", "enable") or "regulator_on" in given[2]]
     reset = [given for given in known if given[1] == "reset"]
     held: list[tuple[int, int]] = []
+    stopped: list[Held] = []
+    stops: list[tuple[str, takt.Feedback, int]] = []
     since: int | None = None
     for given in power:
         s.command(*given)
@@ -94,6 +99,18 @@ def walk(s: takt.Engine, rnd: random.Random, steps: int) -> list[tuple[int, int]
             s.command("machine", "stop_all", {"open_loops": rnd.random() < 0.5})
         elif chance < 0.04:
             s.command("machine", "fail_all_axes")
+        elif chance < 0.07:
+            name = rnd.choice(list(s.axes))
+            stop = s.axis(name).stop(hold=True, deceleration=rnd.choice([None, 300.0]))
+            s.step(rnd.choice([1, 5, 60]))
+            if stop.done:
+                stops.append((name, stop, s.cycle))
+            else:
+                stop.release()
+        elif chance < 0.09 and stops:
+            name, stop, begin = stops.pop(rnd.randrange(len(stops)))
+            stopped.append((name, begin, s.cycle))
+            stop.release()
         elif chance < 0.16:
             for group in (reset, power):
                 for one in group:
@@ -108,12 +125,19 @@ def walk(s: takt.Engine, rnd: random.Random, steps: int) -> list[tuple[int, int]
         s.step(rnd.choice([0, 1, 1, 3, 10, 60]))
     if since is not None:
         held.append((since, s.cycle))
-    return held
+    return held, stopped + [(name, begin, s.cycle) for name, _, begin in stops]
 
 
-def wrong_of(s: takt.Engine, recording: takt.Recording, held: list[tuple[int, int]]) -> list[str]:
+def wrong_of(
+    s: takt.Engine, recording: takt.Recording, held: list[tuple[int, int]], stopped: list[Held]
+) -> list[str]:
     """What of the invariants a recording breaks."""
     wrong = []
+    for name, begin, end in stopped:
+        cycle, closed = np.asarray(recording[name]["cycle"]), np.asarray(recording[name]["loop_closed"], bool)
+        during = (cycle > begin) & (cycle < end) & closed
+        if np.abs(np.asarray(recording[name]["set_velocity"])[during]).max(initial=0) > 0:
+            wrong.append(f"{name}: moves while a stop holds it, cycles {begin} to {end}")
     homing = list(takt.PlcState).index(takt.PlcState.HOMING)
     for name, axis in s.axes.items():
         r = recording[name]
@@ -168,14 +192,14 @@ def wrong_of(s: takt.Engine, recording: takt.Recording, held: list[tuple[int, in
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("name", MACHINES)
 def test_walk(name: str) -> None:
-    """AX-100, AX-101, AX-13, AX-83: in every cycle: while an emergency stop is held no axis is powered or moves; none
-    moves onto a switch that is on; set points keep their limits."""
+    """AX-100, AX-101, AX-13, AX-37, AX-83: in every cycle: while an emergency stop is held no axis is powered or moves,
+    while a stop holds an axis that one does not move; none moves onto a switch that is on; set points keep their limits."""
     failures = []
     for seed in SEEDS:
         rnd = random.Random(seed)
         with takt.Engine(MACHINES[name]) as s:
             with s.record() as recorder:
-                held = walk(s, rnd, 150)
-            wrong = wrong_of(s, recorder.recording, held)
+                held, stopped = walk(s, rnd, 150)
+            wrong = wrong_of(s, recorder.recording, held, stopped)
         failures += [f"seed {seed}: {one}" for one in wrong]
     assert not failures, "\n".join(failures)
