@@ -107,6 +107,21 @@ def test_power_off_outlives_a_switch_and_a_fault(end: str) -> None:
         assert axis.set_velocity == 0
 
 
+def test_a_reset_of_an_axis_that_is_well_disturbs_nothing() -> None:
+    """AX-21: under torque control the set point is what is measured; a reset made it stand for a cycle."""
+    with engine_of([{"name": "x"}]) as engine:
+        axis = engine.axis("x")
+        axis.torque_control(torque=5, velocity=100)
+        engine.run(0.5)
+        with engine.record("x") as recorder:
+            engine.step(20)
+            axis.reset().wait()
+            engine.step(20)
+        velocity = recorder.recording["x"]["set_velocity"]
+        assert velocity.min() > 99
+        assert velocity.max() < 100.1
+
+
 # --- one gate for all that move towards a switch ---
 
 

@@ -312,11 +312,13 @@ void FinishReset(const Context& c, State& s) {
     Report(c, s.reset_ticket, FeedbackState::kError, ErrorId::kAxisFault);
     return;
   }
+  if (s.error != ErrorId::kNone) {  // of an axis that is well nothing is sensed anew: it may follow what is measured
+    Trust(s.encoder);
+    Trust(s.correction.load);
+    s.correction.load_known = false;
+  }
   s.error = ErrorId::kNone;
   s.fault_of = kNoAxis;
-  Trust(s.encoder);
-  Trust(s.correction.load);
-  s.correction.load_known = false;
   if (s.plc == PlcState::kErrorStop) {
     Enter(s, s.loop_closed ? PlcState::kStandstill : PlcState::kDisabled);
   }
