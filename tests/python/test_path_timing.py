@@ -165,6 +165,18 @@ def test_rounding_a_staircase_is_no_slower_than_stopping(step: float) -> None:
     assert took <= 0.93 * stopping
 
 
+@pytest.mark.parametrize("leg", [10.0, 0.1, 1e-3, 1e-4, 1e-6])
+@pytest.mark.parametrize("deviation", [1e-6, 1e-4, 1e-3, 1e-2, 0.05])
+def test_rounding_is_no_slower_than_stopping_however_small(leg: float, deviation: float) -> None:
+    """GR-41: legs and deviations down to 1e-6 mm; a corner where rounding saves no three cycles is a stop."""
+    points = [(10.0, 0.0, 0.0), (10.0, leg, 0.0), (0.0, leg, 0.0)]
+    case = stairs(10, deviation)._replace(points=points)
+    stopping, _ = go(case, rounded=False)
+    took, recording = go(case, rounded=True)
+    check_limits(case, recording)
+    assert took <= stopping + 3 * PERIOD
+
+
 def test_an_interrupt_is_answered_soon_and_goes_on_to_the_end() -> None:
     """GR-40: on a staircase, at every instant of one step."""
     case = stairs(25.4, 0.05, count=3)

@@ -18,6 +18,7 @@ constexpr int kHalvings = 8;
 // Slower than this a joint without a blend is no better than a stop, mm/s.
 constexpr double kLeastJointSpeed = 1;
 constexpr double kRounding = 1e-9;
+constexpr double kLeastSaved = 3;  // cycles: what a blend saves beside a stop, else there is none
 // Of a stretch that goes over from ride to ride, at most, on each side.
 constexpr double kBlendShare = 0.4;
 // How unlike both sides of a corner may be, of chords of a curve: else it would bend to the other side.
@@ -293,7 +294,11 @@ bool FindDistances(const Context& c, const State& s, const Request& move, std::u
   out.deviation = d.deviation;
   // One that the deviation keeps short of the middle of both lines is never made again: nothing has to wait for it.
   out.to_middle = d.first >= room.first || d.second >= room.second;
-  return d.first > 0 && d.second > 0;
+  if (!(d.first > 0 && d.second > 0)) return false;
+  // A stop costs next to nothing more, and asks for no plan through a bend of a micrometre.
+  const double saved_s =
+      path::Overlap(before.segment, after.segment, std::min(d.first, d.second), RampOf(c, before, after));
+  return saved_s >= kLeastSaved * c.cycle.period_s;
 }
 
 bool MakeSegment(const Context& c, const State& s, const Stretch& before, const Stretch& after, int& work,

@@ -49,21 +49,34 @@ double WayTo(double velocity, const Ramp& ramp) {
   return 0.5 * velocity * time;
 }
 
-// For a corner, `q` the cosine of half its turn, at which the first motion ends and the second begins as a ramp does:
-// they overlap in `k` times the time in which an acceleration builds up. Where the corner can be gone faster at one
-// speed the curve is the one that bends least.
-Side SideFor(double distance, double tangent, double q, const Ramp& ramp) {
-  if (!(ramp.jerk > 0)) return {tangent, 0};
+// Two ramps that overlap on a corner, `q` the cosine of half its turn: in `k` times the time in which an acceleration
+// builds up. How fast each is where the blend begins or ends, and how fast the corner may be gone at one speed.
+struct Overlapping {
+  double x = 1, k = 1;
+  double time_s = 0;
+  double ramped = 0, steady = 0;  // mm/s
+};
+Overlapping OverlappingAt(double distance, double q, const Ramp& ramp) {
   const double highest = std::sqrt(std::min(ramp.velocity * ramp.jerk, ramp.acceleration * ramp.acceleration));
   const double built_up = highest * highest * highest / (6 * ramp.jerk * ramp.jerk);
   const double x = std::max(1.0, distance / built_up);
   const double k = 0.5 * (1 + std::sqrt(1 + 4.0 / 3 * (x - 1)));
-  // How fast a ramp is so far from rest, and the corner at one speed: its curvature, and how fast that comes and goes.
+  const double within = maths::Cbrt(6 * distance / ramp.jerk);  // where the acceleration is not built up
+  const double time_s = x > 1 ? k * highest / ramp.jerk : within;
   const double ramped = x > 1 ? highest * highest / ramp.jerk * (k - 0.5)
                               : 0.5 * ramp.jerk * maths::Cbrt(36 * distance * distance / (ramp.jerk * ramp.jerk));
+  // At one speed: its curvature, and how fast that comes and goes.
   const double bend = kPeakBend * std::sqrt(std::max(0.0, 1 - q * q)) / (q * distance);
   const double steady =
       std::min(std::sqrt(ramp.acceleration / bend), maths::Cbrt(ramp.jerk * distance / (kBendRise * bend)));
+  return {x, k, time_s, ramped, steady};
+}
+
+// For a corner at which the first motion ends and the second begins as a ramp does. Where the corner can be gone faster
+// at one speed the curve is the one that bends least.
+Side SideFor(double distance, double tangent, double q, const Ramp& ramp) {
+  if (!(ramp.jerk > 0)) return {tangent, 0};
+  const auto [x, k, time_s, ramped, steady] = OverlappingAt(distance, q, ramp);
   const double share = std::min(1.0, WayTo(ramp.velocity, ramp) / distance) * std::clamp(2 - steady / ramped, 0.0, 1.0);
   return {std::lerp(tangent, 6 * k * (k - 0.5) / x, share), 6 * k * k / x * share};
 }
@@ -420,6 +433,13 @@ double CornerDistance(const Segment& first, const Segment& second, double deviat
   }
   most = std::min({most, Sweep(a), Sweep(b)});
   return Search(first, second, corner, deviation, guess, most, ramp);
+}
+
+double Overlap(const Segment& first, const Segment& second, double distance, const Ramp& ramp) noexcept {
+  constexpr double kNotRamped = std::numeric_limits<double>::infinity();
+  if (!(ramp.jerk > 0) || first.measure != Measure::kWay || second.measure != Measure::kWay) return kNotRamped;
+  const Overlapping o = OverlappingAt(distance, Corner(first, second).half_cosine(), ramp);
+  return o.steady < o.ramped ? o.time_s : kNotRamped;
 }
 
 double Deviation(const Segment& first, const Segment& second, const Segment& blend) noexcept {

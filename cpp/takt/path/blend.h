@@ -78,6 +78,10 @@ Room HalfOf(const Segment& first, const Segment& second) noexcept;
 double CornerDistance(const Segment& first, const Segment& second, double deviation, const Room& room,
                       const Ramp& ramp = {}) noexcept;
 
+// The time by which two ramps overlap on a blend that begins and ends so far from the corner: what it saves beside a
+// stop there, s. Infinite where the corner is gone faster at one speed, or there is no ramp.
+double Overlap(const Segment& first, const Segment& second, double distance, const Ramp& ramp) noexcept;
+
 // The deviation of a blend: the distance from the corner to it, or from it to the path where that is more. mm; between
 // segments that do not move the tool, what they count, at the corner.
 double Deviation(const Segment& first, const Segment& second, const Segment& blend) noexcept;

@@ -15,8 +15,11 @@ constexpr double kShortest_s = 5e-4, kLongest_s = 0.025;  // of an interval
 constexpr double kTurn = 0.15;                            // share of the jerk limit that steps at a node: it is a knot
 constexpr double kLeastParts = 16;                        // intervals between two slow nodes, about
 constexpr int kAttempts = 6, kEasings = 4;
-constexpr double kEased = 0.97;           // share of a limit that the reference is to use at most at slow nodes
-constexpr double kReferenceShare = 0.97;  // of the limits, used by the reference: a plan can start from it
+constexpr double kEased = 0.97;  // share of a limit that the reference is to use at most at slow nodes
+constexpr double kHarder[] = {1,   1.01, 1.02, 1.04,
+                              1.1, 1.25, 1.5,  2};  // shares of its limits, tried for the reference from a motion
+constexpr double kMostGrowth = 2.5;                 // from an interval to the next
+constexpr double kReferenceShare = 0.97;            // of the limits, used by the reference: a plan can start from it
 // Of the limits of coordinates: the second slopes are taken for parabolas between nodes.
 constexpr double kCoordinateShare = 0.98;
 constexpr double kNoLimitFrom = 1e11;
@@ -259,11 +262,13 @@ bool PathCourse::Make(Planner& planner, double share) noexcept {
       MakeReachable(begin_);
       laid = Lay(begin_, of_build_up, planner);
       if (laid != Laid::kWhole) break;
+      Grade();
       SetLimits(end);
       if (!Ease()) break;
     }
     if (laid == Laid::kTooNear) return false;
     if (laid == Laid::kWhole && steps_.size() >= 4) {
+      end_ = end;
       end_place_ = nodes_[end].at.s;
       return true;
     }
@@ -277,6 +282,34 @@ bool PathCourse::Make(Planner& planner, double share) noexcept {
   return false;
 }
 
+bool PathCourse::Make(const PathCourse& other, const PathPlan& plan) noexcept {
+  nodes_ = other.nodes_;  // there is room: it does not allocate
+  square_ = other.square_;
+  coordinates_ = other.coordinates_;
+  begin_ = other.begin_;
+  factor_ = other.factor_;
+  share_ = other.share_;
+  end_ = other.end_;
+  end_place_ = other.end_place_;
+  steps_.clear();
+  KinematicState from = begin_;
+  for (std::size_t k = 0; k < plan.intervals(); ++k) {
+    const double begin_s = plan.knot_time(k), length_s = plan.knot_time(k + 1) - begin_s;
+    const auto parts = static_cast<int>(std::clamp(std::ceil(length_s / kLongest_s), 1.0, 64.0));
+    for (int part = 1; part <= parts; ++part) {
+      if (steps_.size() == steps_.capacity()) return false;
+      const bool last = k + 1 == plan.intervals() && part == parts;
+      const KinematicState to =
+          last ? KinematicState{end_place_, 0, 0} : other.At(plan.At(begin_s + length_s * part / parts));
+      Add(from, to, length_s / parts);
+      from = to;
+    }
+  }
+  Grade();
+  SetLimits(end_);
+  return true;
+}
+
 std::size_t PathCourse::NodeAt(std::size_t from, double place) const noexcept {
   while (from + 1 < nodes_.size() && nodes_[from + 1].at.s <= place + kHere) ++from;
   return from;
@@ -288,13 +321,23 @@ PathCourse::Laid PathCourse::Lay(const KinematicState& begin, double of_build_up
   KinematicState from = begin;
   for (std::size_t i = 1; i < slow_.size();) {
     const Slow to = slow_[i];
-    const Limits limits = Between(slow_[i - 1], to);
+    const Limits usual_limits = Between(slow_[i - 1], to);
+    Limits limits = usual_limits;
     Profile profile{};
-    if (planner.ToPosition(from, to.place, to.speed, limits, profile).failed()) return Laid::kTooNear;
-    const Profile::Range places = profile.PositionRange();
-    const double rounding = 1e-9 * (1 + std::abs(to.place));
-    const bool back = profile.VelocityRange().min < -1e-9 * limits.velocity;
-    if (back || places.max > to.place + rounding || places.min < from.position - rounding) {
+    bool reaches = false;
+    // A motion in progress may brake harder than the reference does: it passes no slow place for that.
+    for (const double share : kHarder) {
+      limits.acceleration = share * usual_limits.acceleration;
+      limits.deceleration = share * usual_limits.deceleration;
+      limits.jerk = share * usual_limits.jerk;
+      if (planner.ToPosition(from, to.place, to.speed, limits, profile).failed()) return Laid::kTooNear;
+      const Profile::Range places = profile.PositionRange();
+      const double rounding = 1e-9 * (1 + std::abs(to.place));
+      const bool back = profile.VelocityRange().min < -1e-9 * limits.velocity;
+      reaches = !back && places.max <= to.place + rounding && places.min >= from.position - rounding;
+      if (reaches || i > 1) break;
+    }
+    if (!reaches) {
       if (i + 1 == slow_.size()) return Laid::kTooNear;
       slow_.erase(slow_.begin() + static_cast<std::ptrdiff_t>(i));  // on to the next one
       continue;
@@ -306,6 +349,30 @@ PathCourse::Laid PathCourse::Lay(const KinematicState& begin, double of_build_up
     ++i;
   }
   return Laid::kWhole;
+}
+
+// Halves intervals that are much longer than one beside them: where the speed changes by orders of magnitude the plan
+// has to, too. As far as there is room.
+void PathCourse::Grade() noexcept {
+  for (std::size_t k = 0; k < steps_.size();) {
+    double beside = std::numeric_limits<double>::infinity();
+    if (k > 0) beside = steps_[k - 1].length;
+    if (k + 1 < steps_.size()) beside = std::min(beside, steps_[k + 1].length);
+    if (steps_[k].length <= kMostGrowth * beside || steps_.size() == steps_.capacity()) {
+      ++k;
+      continue;
+    }
+    const Step whole = steps_[k];
+    const double half_s = 0.5 * whole.length;
+    const KinematicState begin = whole.At(0), middle = whole.At(half_s), end = whole.At(whole.length);
+    Step second = whole;
+    static_cast<Quintic&>(steps_[k]) = Connect(half_s, begin, middle);
+    static_cast<Quintic&>(second) = Connect(half_s, middle, end);
+    second.begin_s = whole.begin_s + half_s;
+    second.node = NodeAt(whole.node, middle.position);
+    steps_.insert(steps_.begin() + static_cast<std::ptrdiff_t>(k) + 1, second);
+    if (k > 0) --k;
+  }
 }
 
 // Makes places slower at which the reference uses more than all of a limit: a plan is found the sooner. True: there

@@ -42,6 +42,10 @@ class PathCourse {
   // more often with a small one.
   bool Make(Planner& planner, double share = 1) noexcept;
 
+  // Takes a plan of another course as the reference: near to the optimum intervals lie where they are needed. Returns
+  // false if they do not suffice.
+  bool Make(const PathCourse& other, const PathPlan& plan) noexcept;
+
   // Returns what to plan; refers to this course.
   PathPlanRequest Request() const noexcept;
   // Returns the state along the path where the reference time passes so.
@@ -72,6 +76,7 @@ class PathCourse {
   Laid Lay(const KinematicState& begin, double of_build_up, Planner& planner) noexcept;
   bool Cut(const Slow& from, const Slow& to, const Profile& profile, double longest_s) noexcept;
   void Add(const KinematicState& from, const KinematicState& to, double length_s) noexcept;
+  void Grade() noexcept;
   bool Ease() noexcept;
   void SetLimits(std::size_t end) noexcept;
   void Rates(std::size_t interval, double share, std::span<ReferenceRate> out) const noexcept;
@@ -83,6 +88,7 @@ class PathCourse {
   double factor_ = 1;
   double share_ = 1;
   double end_place_ = 0;
+  std::size_t end_ = 0;  // node there
   std::vector<Step> steps_;
   std::vector<double> lengths_;
   std::vector<RateLimits> limits_, first_limits_;

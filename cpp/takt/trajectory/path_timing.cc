@@ -13,12 +13,14 @@ constexpr std::uint64_t kOrderAgain = 8;  // cycles after one that failed
 constexpr double kRenew_s = 0.4;          // before a law ends, if the path does not ...
 constexpr double kRenewShare = 0.75;      // ... and this share of its duration
 constexpr double kAgainShare = 0.1;       // of the time before it ends: the wait after a plan that failed, at least
+constexpr int kRefinements = 3;           // of a plan, as long as ...
+constexpr double kRefined = 0.99;         // ... they shorten it to this share
 constexpr double kUrgent_s = 0.15;        // before the law in force ends: a slower plan is accepted
 constexpr double kWithin = 1 + 1e-7;      // of a limit
 constexpr int kSamples = 12;              // of a piece of a profile that is verified, besides the nodes it passes
 constexpr double kShares[] = {1, 0.8, 0.6, 0.45, 0.3, 0.2, 0.1};  // of limits, tried for braking and for bridges
 constexpr double kReferenceShares[] = {1, 0.8, 0.5};              // of limits, tried for the reference of a plan
-constexpr double kRoomForPlans = 0.999;                           // of limits: a plan can start from such a motion
+constexpr double kRoomForPlans = 0.97;                            // of limits: a plan can start from such a motion
 constexpr double kSamePosition = 1e-9;                            // mm
 constexpr double kCoordinatesShare = 0.979;                       // of the coordinates' limits; plans use 0.98
 constexpr int kTails = 8;                                         // starts tried for a tail
@@ -49,10 +51,10 @@ KinematicState PathTiming::Law::At(double t) const noexcept {
 }
 
 PathTiming::PathTiming(double period_s)
-    : period_s_(period_s), maker_(std::make_unique<Maker>()), current_(period_s), next_(period_s) {}
+    : period_s_(period_s), maker_(std::make_unique<Maker>(period_s)), current_(period_s), next_(period_s) {}
 
 void PathTiming::Clear() noexcept {
-  active_ = braking_ = final_ = false;
+  active_ = braking_ = final_ = reserved_ = false;
   DropPlan();
 }
 
@@ -163,7 +165,7 @@ bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, co
       velocity = std::min({velocity, most, std::max(factor, 1e-3) * std::sqrt(window[i].own)});
     }
     if (!(velocity > 0)) continue;
-    const bool last = to == end && straight && StopBehind(window, to) == to;
+    const bool last = to == end && straight && window[to].stop;
     for (double share : kShares) {
       if (share == 1 && !last) share = kRoomForPlans;
       const Limits limits{velocity, share * least.acceleration, share * least.deceleration, share * least.jerk};
@@ -173,7 +175,8 @@ bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, co
       if (!Holds(window, pace.node, profile)) continue;
       DropPlan();
       Take(profile, factor);
-      final_ = last && share == 1;
+      final_ = to == end && straight && share >= kRoomForPlans;
+      reserved_ = final_ && !last;
       braking_ = false;
       return true;
     }
@@ -255,6 +258,7 @@ bool PathTiming::Order(const PathWindow& window, double factor, const PathPace& 
   dropped_ = no_plan_ = false;
   known_to_ = std::numeric_limits<double>::infinity();
   ordered_ = tick_;
+  reserved_ = false;
   return true;
 }
 
@@ -267,7 +271,7 @@ void PathTiming::Ask(const PathWindow& window, double factor, const PathPace& pa
   const std::uint64_t end = StopBehind(window, pace.node);
   const bool further = window[end].at.s > rest_place() + kSamePosition;
   const bool wanted = (further && rest_s() < std::min(kRenew_s, kRenewShare * current_.Duration())) || braking_ ||
-                      (!current_.planned && !final_) || current_.factor != factor;
+                      (!current_.planned && !final_) || current_.factor != factor || (reserved_ && window[end].stop);
   if (!wanted || tick_ < wait_until_ || !(window[end].at.s > pace.now.position + kSamePosition)) return;
   if (Order(window, factor, pace)) return;
   wait_until_ = tick_ + kOrderAgain;
@@ -282,6 +286,17 @@ std::optional<std::uint64_t> PathTiming::MakePlan() noexcept {
     if (!next_.course.Make(maker_->profiles, share)) break;
     maker_->status = maker_->planner.Plan(next_.course.Request(), next_.plan);
   }
+  // With the plan as the reference once more: where its speed changes by orders of magnitude it is far from the
+  // optimum.
+  for (int i = 0; i < kRefinements && maker_->status == PathPlanStatus::kPlanned; ++i) {
+    const double before_s = next_.plan.duration();
+    if (!maker_->course.Make(next_.course, next_.plan)) break;
+    const PathPlanStatus status = maker_->planner.Plan(maker_->course.Request(), maker_->plan);
+    if (status != PathPlanStatus::kPlanned || !(maker_->plan.duration() < before_s)) break;
+    std::swap(maker_->course, next_.course);
+    std::swap(maker_->plan, next_.plan);
+    if (next_.plan.duration() > kRefined * before_s) break;
+  }
   const std::uint64_t number = maker_->number;
   maker_->order.store(OrderState::kMade, std::memory_order_release);
   return number;
@@ -289,6 +304,12 @@ std::optional<std::uint64_t> PathTiming::MakePlan() noexcept {
 
 void PathTiming::MakeAgain() noexcept {
   maker_->order.store(OrderState::kOrdered, std::memory_order_release);
+}
+
+// Whether the plan leads further than the law in force, or there sooner.
+bool PathTiming::EndsSooner() const noexcept {
+  const auto end_s = [&](const Law& law) { return static_cast<double>(law.begin) * period_s_ + law.Duration(); };
+  return next_.EndPlace() > current_.EndPlace() + kSamePosition || end_s(next_) < end_s(current_);
 }
 
 void PathTiming::TakePlan(std::uint64_t number) noexcept {
@@ -300,6 +321,7 @@ void PathTiming::TakePlan(std::uint64_t number) noexcept {
   const PathPlanStatus status = maker_->status;
   const bool found = status == PathPlanStatus::kPlanned || status == PathPlanStatus::kScaled;
   if (found && next_.EndPlace() > known_to_ + kSamePosition) return;  // the path has changed there
+  if (found && final_ && !braking_ && next_.factor == current_.factor && !EndsSooner()) return;
   if (found && from_rest_) {
     const auto rests = current_.begin + static_cast<std::uint64_t>(std::ceil(current_.Duration() / period_s_ - 1e-9));
     next_.begin = std::max(tick_, rests);

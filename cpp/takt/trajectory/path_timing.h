@@ -77,6 +77,7 @@ class PathTiming {
   KinematicState StateAt(std::uint64_t tick) const noexcept;
   bool Holds(const PathWindow& window, std::uint64_t node, const Profile& profile) const noexcept;
   bool Bridge(const PathWindow& window, double factor, bool slowly, const PathPace& pace) noexcept;
+  bool EndsSooner() const noexcept;
   void Take(const Profile& profile, double factor) noexcept;
   void Go(const PathWindow& window, PathPace& pace) noexcept;
   bool Order(const PathWindow& window, double factor, const PathPace& pace) noexcept;
@@ -88,19 +89,24 @@ class PathTiming {
   // While a plan is ordered next_ belongs to the thread that makes it.
   enum class OrderState : std::uint8_t { kNone, kOrdered, kMade };
   struct Maker {
+    explicit Maker(double period_s) : course(kIntervals, period_s) {}
+
     Planner profiles;
     PathPlanner planner{kIntervals, kPathCoordinates + 1};
     std::atomic<OrderState> order{OrderState::kNone};
     std::uint64_t number = 0;
     bool urgent = false;
     PathPlanStatus status = PathPlanStatus::kNoPlan;
+    PathCourse course;  // of a refinement
+    PathPlan plan{kIntervals};
   };
   std::unique_ptr<Maker> maker_;
   Law current_, next_;
   std::uint64_t tick_ = 0;
   bool active_ = false;
   bool braking_ = false;          // the law in force brakes
-  bool final_ = false;            // no plan would be faster
+  bool final_ = false;            // no plan would be faster ...
+  bool reserved_ = false;         // ... but for the room that the law in force leaves for one that leads further
   bool planning_ = false;         // a plan is ordered ...
   bool dropped_ = false;          // ... and not wanted any more
   bool ready_ = false;            // next_ takes over at its begin
