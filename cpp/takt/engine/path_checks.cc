@@ -303,6 +303,7 @@ std::string SentenceNaming(const FeedbackEvent& event, const Machine& machine) {
   if (event.error == ErrorId::kParameter && of_track) {
     return "turns, their directions and modulo tolerances are for closed loops, and " + object + " is open";
   }
+  if (event.error == ErrorId::kAxisFault) return "a fault of " + object + " stopped it";
   if (event.error == ErrorId::kOffStators) return Sentence(event) + "; it is on " + object;
   return Sentence(event) + ": " + object;
 }

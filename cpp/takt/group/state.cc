@@ -125,6 +125,7 @@ void describe(Description<State>& d) {
   d.internal<&S::interrupted>("Rests on the path.");
   d.internal<&S::ends>("Comes to rest and forgets the path.");
   d.internal<&S::brake>("How strongly.");
+  d.internal<&S::weighed>("Members whose way to rest was held against their own.");
   d.internal<&S::lets_go>("Of what carries it.");
   d.internal<&S::clutches>("Between carriers and the tool.");
   d.internal<&S::ridden>("Carriers that take part now.");
