@@ -234,6 +234,7 @@ void PathChecks::Run() {
 
 PathChecked PathChecks::Check(const group::Question& question) {
   OfGroup& group = *groups_[question.group - 1];
+  group.checker.SetToolCentre({question.tool.x, question.tool.y, question.tool.z});
   Inquiry inquiry(group.checker);
   inquiry.End(group.survey.Run(question, [&](const Survey::Part& part) { return inquiry.Take(part); }));
   PathChecked answer{.number = question.number};

@@ -323,6 +323,15 @@ struct Applier {
     s.product_systems[m.pcs - 1] = {m.x, m.y, m.z, m.a, m.b, m.c};
     Finish(ErrorId::kNone);
   }
+  void operator()(const SetTool& m) const {
+    if (!c.kinematics) return Refuse(ErrorId::kParameter);
+    if (!stands() || s.queue.count > 0 || s.track.ticket != 0 || s.guides) return Refuse(ErrorId::kState);
+    s.tool_changed = true;
+    s.tool = {m.x, m.y, m.z, m.a, m.b, m.c};
+    MountTool(kinematics::ToFrame(s.tool), c.mounting);
+    ForgetPlan(c, s);  // it ends where the tool before it was
+    Finish(ErrorId::kNone);
+  }
   void operator()(const Calibrate& m) const {
     const std::optional<Calibrated> made = FrameOf(m);
     if (!made) return Refuse(ErrorId::kNoFrame);

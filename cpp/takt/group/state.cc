@@ -112,6 +112,8 @@ void describe(Description<State>& d) {
   d.internal<&S::kinematics_on>("It has a tool.");
   d.internal<&S::product_systems>("Product coordinate systems in that of the machine.");
   d.internal<&S::cargoes>("What those lie on that move.");
+  d.internal<&S::tool_changed>("Since the machine was made.");
+  d.internal<&S::tool>("On the flange, then.");
   d.internal<&S::velocity_factor>("Override.");
   d.internal<&S::acceleration_factor>("Override.");
   d.internal<&S::jerk_factor>("Override.");

@@ -149,6 +149,8 @@ struct State {
   bool kinematics_on = true;
   std::array<kinematics::Pose, kProductSystems> product_systems{};  // in the MCS
   std::array<Cargo, kProductSystems> cargoes{};                     // of those that move instead
+  bool tool_changed = false;  // since the machine was made; the frames are in Context::mounting
+  kinematics::Pose tool;      // then: on the flange
   double velocity_factor = 1;
   double acceleration_factor = 1;
   double jerk_factor = 1;
