@@ -25,6 +25,7 @@ COMMANDS = (
     "group.set_kin_transform",
     "group.set_cartesian_transform",
     "group.set_coordinate_transform",
+    "group.set_tool",
     "group.calibrate",
     "group.move_linear_absolute",
     "group.move_linear_relative",
@@ -44,7 +45,7 @@ COMMANDS = (
 )
 ERRORS = (
     *(5, 6, 7, 9, 10, 11, 1000, 1001, 1003, 1004, 1005),
-    *(3003, 3005, 3010, 3018, 3021, 3022, 3023, 3024, 3025, 3026, 3140, 3141),
+    *(3003, 3005, 3006, 3010, 3018, 3021, 3022, 3023, 3024, 3025, 3026, 3103, 3140, 3141),
 )
 SIGNALS = ("portal.[xy]", "portal.path_velocity", "c.set_position", "portal.state", "portal.interrupted")
 
@@ -84,6 +85,7 @@ def scenario(session: takt.Session) -> None:
     portal.move_linear_relative(x=-200)
     session.run(0.2)
     portal.stop().wait()
+    portal.set_tool(z=-40).wait()
     portal.disable().wait()
     session.run(0.1)
 

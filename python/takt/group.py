@@ -132,8 +132,9 @@ class Group(Component, GroupCommands, GroupOutputs):
 
     @property
     def tool(self) -> Pose:
-        """Where the tool centre point is on the flange, as the machine file says."""
-        return self._given("tool")
+        """Where the tool centre point is on the flange: as `set_tool` said, or the machine file."""
+        x, y, z, a, b, c = (float(self._value(f"tool_{number}")) for number in POSE)
+        return x, y, z, a, b, c
 
     def _given(self, key: str) -> Pose:
         x, y, z, a, b, c = (float(self.parameters[key][number]) for number in POSE)

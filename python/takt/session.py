@@ -535,8 +535,6 @@ class Session(SessionWithCams):
         feedback.object = self._object(object_kind, object_number) or feedback.object
         if error_id:
             sentence = self._why_refused(error_id, feedback) or sentence
-            if isinstance(feedback.object, Axis):
-                sentence = f"axis '{feedback.object.name}', which follows this one, failed"
         if not feedback._update(state, reached, error_id, sentence, cycle, value) or not feedback._final:
             return
         name = without_arguments(feedback.text)

@@ -325,16 +325,6 @@ void FinishReset(const Context& c, State& s) {
   Report(c, s.reset_ticket, FeedbackState::kDone);
 }
 
-// A ramp of its own is stronger than any that planning would take for the axis'.
-void BrakeInFault(const Context& c, ErrorId error, State& s) {
-  const trajectory::Limits own = c.params.planner_limits();
-  const trajectory::Limits limits = StopLimits(c.params, error);
-  if (limits.deceleration == own.deceleration && limits.jerk == own.jerk) return Brake(c, own, FromCycleBefore(c), s);
-  trajectory::Profile profile{s.setpoint};
-  c.planner.Stop(s.setpoint, limits, profile);
-  StartMotion(profile, profile.end().position, FromCycleBefore(c), s);
-}
-
 // The state of a switch, once its wire has said otherwise than before for long enough.
 bool Settled(const Context& c, bool wire, bool before, std::uint32_t& changed) {
   if (wire == before) {
@@ -379,6 +369,16 @@ trajectory::Limits StopLimits(const AxisParams& p, ErrorId error) noexcept {
   limits.deceleration = std::max(limits.deceleration, ramp.deceleration.value_or(0));
   if (limits.jerk != 0 && ramp.jerk) limits.jerk = *ramp.jerk == 0 ? 0 : std::max(limits.jerk, *ramp.jerk);
   return limits;
+}
+
+// A ramp of its own is stronger than any that planning would take for the axis'.
+void BrakeInFault(const Context& c, ErrorId error, State& s) noexcept {
+  const trajectory::Limits own = c.params.planner_limits();
+  const trajectory::Limits limits = StopLimits(c.params, error);
+  if (limits.deceleration == own.deceleration && limits.jerk == own.jerk) return Brake(c, own, FromCycleBefore(c), s);
+  trajectory::Profile profile{s.setpoint};
+  c.planner.Stop(s.setpoint, limits, profile);
+  StartMotion(profile, profile.end().position, FromCycleBefore(c), s);
 }
 
 State MakeState(const AxisParams& params) noexcept {

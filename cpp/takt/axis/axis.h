@@ -75,6 +75,8 @@ void Fail(const Context& context, ErrorId error, bool open_loop, State& state) n
 // Limit switches and faults may have ramps of their own, but none that are gentler than the axis' (AX-112). A SW limit
 // is braked for in time: with the limits of the axis.
 trajectory::Limits StopLimits(const AxisParams& params, ErrorId error) noexcept;
+// Brakes so from the set point of the cycle before.
+void BrakeInFault(const Context& context, ErrorId error, State& state) noexcept;
 
 // GT_EStop: the drive is switched off and the brake falls at once; faults are cleared, the axis is Disabled (AX-38),
 // and power is refused until the stop is released (AX-100) ...

@@ -220,11 +220,13 @@ bool FollowersSquared(const Context& c, const State& s) noexcept {
   return straight;
 }
 
-bool FollowerOnLimit(const Context& c, const State& s, int sense) noexcept {
+bool FollowerOnLimit(const Context& c, const State& s, int sense, bool since_before) noexcept {
   bool on = false;
   if (!s.leads) return on;
   ForFollowers(c, [&](const AxisParams&, const State& follower, double ratio) {
-    on |= (ratio > 0) == (sense > 0) ? follower.limit_positive : follower.limit_negative;
+    const bool positive = (ratio > 0) == (sense > 0);
+    const bool before = positive ? follower.limit_positive_before : follower.limit_negative_before;
+    on |= (positive ? follower.limit_positive : follower.limit_negative) && (before || !since_before);
   });
   return on;
 }

@@ -31,8 +31,9 @@ void WatchSkew(const Context& context, State& state) noexcept;
 // Whether all that follow this axis from load on are powered, well and in step (kNotInStep). Ok: nothing follows it.
 Status FollowersReady(const Context& context, const State& state) noexcept;
 
-// Whether an axis that follows this one is on a limit switch that lies ahead in this sense.
-bool FollowerOnLimit(const Context& context, const State& state, int sense) noexcept;
+// Whether an axis that follows this one is on a limit switch that lies ahead in this sense. `since_before`: and was so
+// in the cycle before.
+bool FollowerOnLimit(const Context& context, const State& state, int sense, bool since_before = false) noexcept;
 
 // The first follower that is on a limit switch ahead or may not move in this sense; kNoAxis: none.
 std::uint32_t FollowerThatBars(const Context& context, const State& state, int sense) noexcept;

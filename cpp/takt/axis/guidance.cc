@@ -59,7 +59,7 @@ void LetGoOfGuidance(const Context& c, State& s) noexcept {
   EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
   if (s.plc == PlcState::kErrorStop) {
     s.active = {};
-    return Brake(c, c.params.planner_limits(), FromCycleBefore(c), s);
+    return BrakeInFault(c, s.error, s);
   }
   if (!AtRest(s)) return ComeToRest(c, c.params.planner_limits(), FromCycleBefore(c), s);
   StartMotion(trajectory::Profile{s.setpoint}, s.setpoint.position, FromCycleBefore(c), s);

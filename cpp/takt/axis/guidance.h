@@ -36,7 +36,7 @@ struct FaultRamp {
 // begins as the axis moves now. Refuses like a command: kErrorStop, kPowerOff, kAxisStopping, kNoConstants, kState.
 Status Guide(const Context& c, State& s) noexcept;
 bool IsGuided(const State& s) noexcept;
-// The component lets go: an axis that moves comes to rest.
+// The component lets go: an axis that moves comes to rest, in ErrorStop on the ramp of its fault (StopLimits).
 void LetGoOfGuidance(const Context& c, State& s) noexcept;
 // The axis' own limits, with the ramp for faults where there is one.
 trajectory::Limits WithFaultRamp(const Context& c, const State& s) noexcept;

@@ -245,6 +245,7 @@ const std::vector<Entry>& Entries() {
       Make<group::Command, group::SetKinTransform>(kGroup, "set_kin_transform"),
       Make<group::Command, group::SetCartesianTransform>(kGroup, "set_cartesian_transform"),
       Make<group::Command, group::SetCoordinateTransform>(kGroup, "set_coordinate_transform"),
+      Make<group::Command, group::SetTool>(kGroup, "set_tool"),
       Make<group::Command, group::Calibrate>(kGroup, "calibrate"),
       Make<group::Command, group::SetDynCoordTransform>(kGroup, "set_dyn_coord_transform"),
       Make<group::Command, group::TrackConveyorBelt>(kGroup, "track_conveyor_belt"),

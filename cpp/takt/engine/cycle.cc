@@ -31,7 +31,7 @@ conveyor::Context ContextOf(World& w, const Belt& belt) {
   return {belt.params, w.axis_states[belt.axis], w.axis_params[belt.axis], w.cycle, w.feedback};
 }
 
-group::Context ContextOf(World& w, const AxesGroup& group) {
+group::Context ContextOf(World& w, AxesGroup& group) {
   const auto index = static_cast<std::size_t>(&group - w.groups.data());
   const auto of_axis = [](void* owner, std::size_t i) noexcept { return ContextOf(*static_cast<World*>(owner), i); };
   return {group.params,
@@ -401,7 +401,16 @@ void Apply(World& w, const Command& command) noexcept {
   const std::size_t i = component - w.first_of[kind];
   if (w.emergency.held() && AsksToMove(command)) return refuse(ErrorId::kEmergencyStop);
   if (const auto* for_axis = std::get_if<axis::Command>(&command.body)) {
-    if (IsOwned(w, i) && !IsForMembers(*for_axis)) return refuse(ErrorId::kGroupMember);
+    // What stops a follower stops its leader, which may be the group's (AX-101, GR-03).
+    const bool of_leader =
+        std::holds_alternative<axis::Stop>(*for_axis) || std::holds_alternative<axis::Halt>(*for_axis);
+    const std::size_t leader = of_leader ? LeaderOf(w, i) : i;
+    if ((IsOwned(w, i) || IsOwned(w, leader)) && !IsForMembers(*for_axis)) {
+      const ObjectInfo member = IsOwned(w, i) ? ObjectInfo{} : ObjectAt(ObjectKind::kAxis, leader);
+      w.feedback.Report(
+          {command.ticket, w.cycle.count, FeedbackState::kError, false, ErrorId::kGroupMember, 0, member});
+      return;
+    }
     axis::CouplingRequest coupling;
     if (axis::CouplingOf(ContextOf(w, i), *for_axis, coupling) &&
         !MakeOrder(w, {.coupling = &coupling, .of = component})) {

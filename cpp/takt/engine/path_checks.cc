@@ -234,6 +234,7 @@ void PathChecks::Run() {
 
 PathChecked PathChecks::Check(const group::Question& question) {
   OfGroup& group = *groups_[question.group - 1];
+  group.checker.SetToolCentre({question.tool.x, question.tool.y, question.tool.z});
   Inquiry inquiry(group.checker);
   inquiry.End(group.survey.Run(question, [&](const Survey::Part& part) { return inquiry.Take(part); }));
   PathChecked answer{.number = question.number};
@@ -303,6 +304,7 @@ std::string SentenceNaming(const FeedbackEvent& event, const Machine& machine) {
   if (event.error == ErrorId::kParameter && of_track) {
     return "turns, their directions and modulo tolerances are for closed loops, and " + object + " is open";
   }
+  if (event.error == ErrorId::kAxisFault) return "a fault of " + object + " stopped it";
   if (event.error == ErrorId::kOffStators) return Sentence(event) + "; it is on " + object;
   return Sentence(event) + ": " + object;
 }

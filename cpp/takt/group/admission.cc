@@ -35,6 +35,12 @@ struct Applier {
   bool Is(GroupState state) const { return s.state == state; }
   bool stands() const { return Is(GroupState::kDisabled) || Is(GroupState::kStandby); }
 
+  // Its feedback names the member.
+  ErrorId Blamed(ErrorId error, std::size_t place) const {
+    c.ahead.blame = {error, s.members[place]};
+    return error;
+  }
+
   ErrorId MayMove() const {
     if (Is(GroupState::kDisabled)) return ErrorId::kGroupDisabled;
     if (Is(GroupState::kErrorStop)) return ErrorId::kErrorStop;
@@ -44,8 +50,9 @@ struct Applier {
     for (std::size_t k = 0; k < kMaxAxes; ++k) {
       if (s.members[k] == 0) continue;
       const axis::State& member = MemberOf(c, s, k);
-      if (!member.loop_closed) return ErrorId::kPowerOff;
-      if (ContextOf(c, s, k).params.requires_reference && !member.homing.homed) return ErrorId::kNoReference;
+      if (!member.loop_closed) return Blamed(ErrorId::kPowerOff, k);
+      const bool needs_reference = ContextOf(c, s, k).params.requires_reference && !member.homing.homed;
+      if (needs_reference) return Blamed(ErrorId::kNoReference, k);
     }
     return ErrorId::kNone;
   }
@@ -316,6 +323,15 @@ struct Applier {
     s.product_systems[m.pcs - 1] = {m.x, m.y, m.z, m.a, m.b, m.c};
     Finish(ErrorId::kNone);
   }
+  void operator()(const SetTool& m) const {
+    if (!c.kinematics) return Refuse(ErrorId::kParameter);
+    if (!stands() || s.queue.count > 0 || s.track.ticket != 0 || s.guides) return Refuse(ErrorId::kState);
+    s.tool_changed = true;
+    s.tool = {m.x, m.y, m.z, m.a, m.b, m.c};
+    MountTool(kinematics::ToFrame(s.tool), c.mounting);
+    ForgetPlan(c, s);  // it ends where the tool before it was
+    Finish(ErrorId::kNone);
+  }
   void operator()(const Calibrate& m) const {
     const std::optional<Calibrated> made = FrameOf(m);
     if (!made) return Refuse(ErrorId::kNoFrame);
@@ -353,6 +369,7 @@ struct Applier {
 
 void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, State& s) noexcept {
   const bool in_range = std::visit([](const auto& body) { return InRange(body); }, command);
+  c.ahead.blame = {};
   const Applier applier{c, ticket, lease_s, s};
   if (!in_range) return applier.Refuse(ErrorId::kParameter);
   if (const auto made = MakeRequest(c, s, command)) {

@@ -49,6 +49,7 @@ Question QuestionOf(const Context& c, const State& s) {
     question.move.frame = kinematics::ToPose(ReferenceOf(ahead.rides[ahead.next.to_ride % kRides]));
   }
   question.limits = ahead.window.limits();
+  question.tool = ToolOnFlange(c, s);
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
     const axis::AxisLimits& limits = c.axes.params[s.members[k] - 1].limits;

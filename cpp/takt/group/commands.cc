@@ -616,6 +616,15 @@ void describe(Description<SetCoordinateTransform>& d) {
   d.defaulted<&C::reference_pcs>(between(1, kProductSystems), "Which product coordinate system that is; with pcs.");
 }
 
+void describe(Description<SetTool>& d) {
+  d.about(
+      "Says where the tool centre point is on the flange from now on: the tool was changed (GR-46). The group stands "
+      "and "
+      "nothing waits. `tool` of the group in the machine file counts until then, and again when the engine starts "
+      "anew.");
+  DescribePose(d);
+}
+
 void describe(Description<Calibrate>& d) {
   using C = Calibrate;
   d.about(

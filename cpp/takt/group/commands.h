@@ -222,6 +222,12 @@ struct SetCoordinateTransform {  // MC_SetCoordinateTransform: a PCS in any othe
   std::uint32_t reference_pcs = 1;
 };
 
+// The tool is another one (GR-46): where its centre point is on the flange.
+struct SetTool {
+  double x = 0, y = 0, z = 0;  // mm
+  double a = 0, b = 0, c = 0;  // deg
+};
+
 // A PCS from three or four measured places of the tool (GR-46).
 struct Calibrate {
   std::uint32_t pcs = 1;
@@ -302,12 +308,12 @@ struct PathPlanned {
   std::uint64_t number = 0;  // of the order
 };
 
-using Command =
-    std::variant<MoveLinearAbsolute, MoveLinearRelative, MoveCircularAbsolute, MoveCircularRelative, MoveDirectAbsolute,
-                 MoveDirectRelative, MovePath, MovePathSynchronized, SyncAxis, Stop, Halt, Interrupt, Continue, AddAxis,
-                 RemoveAxis, UngroupAllAxes, Enable, Disable, Reset, Power, Home, SetPosition, SetOverride,
-                 SetKinTransform, SetCartesianTransform, SetCoordinateTransform, Calibrate, SetDynCoordTransform,
-                 TrackConveyorBelt, TrackRotaryTable, MoveArch, Jog, Stream, StreamPoint, PathChecked, PathPlanned>;
+using Command = std::variant<MoveLinearAbsolute, MoveLinearRelative, MoveCircularAbsolute, MoveCircularRelative,
+                             MoveDirectAbsolute, MoveDirectRelative, MovePath, MovePathSynchronized, SyncAxis, Stop,
+                             Halt, Interrupt, Continue, AddAxis, RemoveAxis, UngroupAllAxes, Enable, Disable, Reset,
+                             Power, Home, SetPosition, SetOverride, SetKinTransform, SetCartesianTransform,
+                             SetCoordinateTransform, SetTool, Calibrate, SetDynCoordTransform, TrackConveyorBelt,
+                             TrackRotaryTable, MoveArch, Jog, Stream, StreamPoint, PathChecked, PathPlanned>;
 
 // What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
 std::string WhyNot(const Command& command);
@@ -346,6 +352,7 @@ void describe(Description<SetPosition>&);
 void describe(Description<SetOverride>&);
 void describe(Description<SetKinTransform>&);
 void describe(Description<SetCartesianTransform>&);
+void describe(Description<SetTool>&);
 void describe(Description<Calibrate>&);
 void describe(Enumeration<ExecutionMode>&);
 void describe(Description<SetDynCoordTransform>&);

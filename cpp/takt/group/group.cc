@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/axis/following.h"
 #include "takt/axis/guidance.h"
 #include "takt/group/clutch.h"
 #include "takt/group/jog.h"
@@ -29,7 +30,8 @@ void Fail(const Context& c, ErrorId error, State& s) {
   EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
   EndStream(c, FeedbackState::kError, error, s);
   AbortMoves(c, error, s);
-  EndMotion({}, true, s);
+  EndMotion({.full = true}, true, s);
+  s.weighed = 0;
   if (s.state == GroupState::kHoming) TellAll(c, s, axis::Stop{});
   Enter(GroupState::kErrorStop, s);
 }
@@ -88,13 +90,18 @@ bool NothingToGo(const Context& c, const State& s) {
   return c.ahead.count == 0 && s.planning.stage == Stage::kIdle && s.planning.move >= s.done + s.queue.count;
 }
 
+// Each brakes by itself, off the path.
+void BrakeEachAlone(const Context& c, State& s) {
+  LetGoOfMembers(c, s);
+  s.begun = false;
+  s.rise = {};
+}
+
 void MoveOn(const Context& c, State& s) {
   if (!Advance(c, s)) {
     // It was good when the path was tried: a limit switch is on now, or something is wrong with the machine's own
-    // numbers. Each brakes by itself.
-    LetGoOfMembers(c, s);
-    s.begun = false;
-    s.rise = {};
+    // numbers.
+    BrakeEachAlone(c, s);
     return Fail(c, s.refused.any() ? RefusalOf(c, s) : ErrorId::kUnreachable, s);
   }
   if (!Rests(s)) return;
@@ -107,12 +114,7 @@ void MoveOn(const Context& c, State& s) {
       Sit(c, s);
     return;
   }
-  if (s.ends && RidesFreely(c, s)) {  // each brakes by itself
-    LetGoOfMembers(c, s);
-    s.begun = false;
-    s.rise = {};
-    return;
-  }
+  if (s.ends && RidesFreely(c, s)) return BrakeEachAlone(c, s);
   // The members get to the last set point after this.
   if (rides ? !AreInStep(c, s) : !AllMembers(c, s, axis::AtRest)) return;
   if (s.ends) return ComeToRest(c, s);
@@ -157,8 +159,14 @@ void WatchHoming(const Context& c, State& s) {
     return member.plc != axis::PlcState::kHoming && member.active.kind == axis::RequestKind::kNone;
   });
   if (busy) return;
-  const bool homed = AllMembers(c, s, [](const axis::State& member) { return member.homing.homed; });
-  EndTask(c, homed ? FeedbackState::kDone : FeedbackState::kError, homed ? ErrorId::kNone : ErrorId::kNoReference, s);
+  ErrorId error = ErrorId::kNone;
+  for (std::size_t k = 0; k < kMaxAxes && error == ErrorId::kNone; ++k) {
+    if (s.members[k] == 0) continue;
+    const axis::State& member = MemberOf(c, s, k);
+    error = !member.loop_closed ? ErrorId::kPowerOff : !member.homing.homed ? ErrorId::kNoReference : ErrorId::kNone;
+    c.ahead.blame = {error, s.members[k]};
+  }
+  EndTask(c, error == ErrorId::kNone ? FeedbackState::kDone : FeedbackState::kError, error, s);
   Enter(GroupState::kStandby, s);
 }
 
@@ -169,7 +177,17 @@ void WatchPower(const Context& c, State& s) {
     return;
   }
   const ErrorId fault = FaultOfMembers(c, s);
-  if (s.power_on && fault != ErrorId::kNone) EndTask(c, FeedbackState::kError, fault, s);
+  if (s.power_on && fault != ErrorId::kNone) return EndTask(c, FeedbackState::kError, fault, s);
+  if (!s.power_on) return;
+  // A command has switched a member off meanwhile, by itself or with the machine.
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    if (s.members[k] == 0) continue;
+    const axis::State& member = MemberOf(c, s, k);
+    const bool switches_off = member.active.kind == axis::RequestKind::kPower && !member.active.enable;
+    if (member.enable && !switches_off) continue;
+    c.ahead.blame = {ErrorId::kPowerOff, s.members[k]};
+    return EndTask(c, FeedbackState::kAborted, ErrorId::kPowerOff, s);
+  }
 }
 
 void WatchReset(const Context& c, State& s) {
@@ -203,8 +221,45 @@ void WatchLease(const Context& c, State& s) {
   EndJog(c, 0, s);
 }
 
+// u that a member goes on for while path and carriers come to rest.
+double WayAlongPath(const Context& c, const axis::State& member, const State& s) {
+  const double speed = std::abs(member.setpoint.velocity), along = s.pace.now.velocity;
+  double way = along > 0 ? speed / along * (RestAt(c, s) - s.pace.now.position) : 0;
+  for (const Clutch& clutch : s.clutches) {
+    const double travel = std::abs(clutch.travel.velocity);
+    if (clutch.used && travel > 0) way = std::max(way, 0.5 * speed * travel / clutch.deceleration);
+  }
+  return way;
+}
+
+// Whether a member goes further onto a limit switch, or in a direction that is not enabled, along the path than by the
+// ramp that is its own for that (AX-112). Each fault is weighed once, in the cycle after it, when the path is braked.
+bool GoesFurtherThanAlone(const Context& c, State& s) {
+  constexpr double kSame = 1.05;  // paths are braked with a little less than the limits
+  constexpr double kCycles = 2;   // in which faults are noticed and weighed
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    const std::uint32_t bit = 1u << k;
+    if (s.members[k] == 0 || (s.weighed & bit) != 0) continue;
+    const axis::State& member = MemberOf(c, s, k);
+    const axis::Context own = ContextOf(c, s, k);
+    const double v = member.setpoint.velocity;
+    if (v == 0 || member.plc != axis::PlcState::kErrorStop || !axis::IsGuided(member)) continue;
+    s.weighed |= bit;
+    const bool at_switch = v > 0 ? member.limit_positive : member.limit_negative;
+    const bool barred = at_switch || axis::FollowerThatBars(own, member, v > 0 ? 1 : -1) != axis::kNoAxis ||
+                        axis::Bars(own, member, v > 0 ? 1 : -1);
+    if (!barred) continue;
+    const trajectory::Limits ramp = axis::StopLimits(own.params, member.error);
+    const double alone = std::abs(trajectory::StopPosition(member.setpoint, ramp) - member.setpoint.position);
+    if (WayAlongPath(c, member, s) > kSame * alone + kCycles * std::abs(v) * c.cycle.period_s) return true;
+  }
+  return false;
+}
+
 void WatchMembers(const Context& c, State& s) {
   if (s.state == GroupState::kDisabled) return;
+  const bool brakes = s.state == GroupState::kErrorStop && s.guides && s.begun;
+  if (brakes && GoesFurtherThanAlone(c, s)) BrakeEachAlone(c, s);
   const ErrorId fault = FaultOfMembers(c, s);
   if (fault != ErrorId::kNone) return Fail(c, fault, s);
   // What waits, for a zone or an object, does not set off by itself when a member is switched on again.
@@ -236,6 +291,7 @@ State MakeState(std::span<const std::uint32_t> axes) noexcept {
 }
 
 void Step(const Context& c, State& s) noexcept {
+  c.ahead.blame = {};
   WatchLease(c, s);
   WatchMembers(c, s);
   if (s.resetting) {

@@ -32,7 +32,8 @@ struct Axes {
   axis::Context Of(std::size_t axis) const noexcept { return context(owner, axis); }
 };
 
-// Where the mechanism stands and what is on its flange, as frames: worked out when a machine is made.
+// Where the mechanism stands and what is on its flange, as frames: worked out when a machine is made, and when its tool
+// is changed (SetTool).
 struct Mounting {
   kinematics::Frame base;          // of the MCS in the world ...
   kinematics::Frame base_inverse;  // ... and the other way round
@@ -40,11 +41,12 @@ struct Mounting {
   kinematics::Frame tool_inverse;
 };
 Mounting MakeMounting(const GroupParams& params);
+void MountTool(const kinematics::Frame& tool, Mounting& mounting) noexcept;
 
 // What every stage gets besides the group itself.
 struct Context {
   const GroupParams& params;
-  const Mounting& mounting;
+  Mounting& mounting;
   const kinematics::Kinematics* kinematics = nullptr;  // null: none
   std::span<const PathTable> paths{};
   // For each axis of the machine the group that it is a member of, from 1; 0: none.

@@ -69,6 +69,12 @@ struct OpenCorner {
   double deviation = 0;  // and be so far from the lines
 };
 
+// The axis that a feedback with this error names.
+struct Blame {
+  ErrorId error = ErrorId::kNone;
+  std::uint32_t axis = 0;  // number, from 1; 0: none
+};
+
 struct LookAhead {
   LookAhead(const trajectory::CoordinateLimits& limits, double period_s)
       : window(kNodes, limits, period_s), timing(period_s), stretches(kStretches) {}
@@ -121,6 +127,7 @@ struct LookAhead {
   bool delayed = false;        // the motion was slower than rehearsed
   bool asked = false;          // the question whether the path is free is on its way
   bool cut_short = false;      // the path ends where it could not be gone on with; `reason` says why
+  Blame blame;                 // in this cycle
   std::uint64_t failures = 0;  // of the axes there, or at the place refused last (failures.h)
 
   Stretch& operator[](std::uint64_t number) noexcept { return stretches[number % stretches.size()]; }

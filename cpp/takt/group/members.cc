@@ -110,9 +110,15 @@ ErrorId FaultOfMembers(const Context& c, const State& s) noexcept {
     if (s.members[k] == 0) continue;
     const axis::State& member = MemberOf(c, s, k);
     if (member.plc == axis::PlcState::kErrorStop) {
-      return member.error == ErrorId::kDeviation ? ErrorId::kGroupDeviation : member.error;
+      const ErrorId error = member.error == ErrorId::kDeviation ? ErrorId::kGroupDeviation : member.error;
+      const bool of_follower = member.error == ErrorId::kAxisFault && member.fault_of != axis::kNoAxis;
+      c.ahead.blame = {error, of_follower ? member.fault_of + 1 : s.members[k]};
+      return error;
     }
-    if (s.guides && !axis::IsGuided(member)) return ErrorId::kPowerOff;
+    if (s.guides && !axis::IsGuided(member)) {
+      c.ahead.blame = {ErrorId::kPowerOff, s.members[k]};
+      return ErrorId::kPowerOff;
+    }
   }
   return ErrorId::kNone;
 }

@@ -36,7 +36,8 @@ ErrorId Add(const Context& c, const AddAxis& command, State& s) noexcept;
 ErrorId Remove(const Context& c, const RemoveAxis& command, State& s) noexcept;
 ErrorId Ungroup(const Context& c, State& s) noexcept;
 
-// A member is in ErrorStop, or no longer goes by the group while it should: the error; kNone: all is well.
+// A member is in ErrorStop, or no longer goes by the group while it should: the error, whose feedback names the axis;
+// kNone: all is well.
 ErrorId FaultOfMembers(const Context& c, const State& s) noexcept;
 
 }  // namespace takt::group

@@ -86,6 +86,7 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::zones>("Zones that it has, a mask: bit 0 is the first of the machine file.");
   d.internal<&O::waits_for>("Number of the group that it waits for at a zone, from 1; 0: it does not wait.");
   d.internal<&O::waits_zone>("Number of that zone, from 1; 0: none.");
+  d.internal<&O::tool>("Where the tool centre point is on the flange.");
 }
 
 }  // namespace takt::group

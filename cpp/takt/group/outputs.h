@@ -87,6 +87,7 @@ struct Outputs {
   std::uint32_t zones = 0;       // that the group has, a mask
   std::uint32_t waits_for = 0;   // number of the group that it waits for at a zone, from 1; 0: it does not wait
   std::uint32_t waits_zone = 0;  // at this one, from 1
+  kinematics::Pose tool{};       // of the tool centre point on the flange
 };
 
 // Product coordinate systems by number, from 0.

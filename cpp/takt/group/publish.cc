@@ -132,6 +132,7 @@ void Publish(const Context& c, const State& s, Outputs& out) noexcept {
   out.zones = s.zones;
   out.waits_for = s.waits_for;
   out.waits_zone = s.waits_zone;
+  out.tool = ToolOnFlange(c, s);
 }
 
 }  // namespace takt::group

@@ -24,6 +24,7 @@ struct Question {
   std::array<bool, kMaxAxes> members{};
   std::array<kinematics::JointRange, kMaxAxes> ranges{};
   trajectory::CoordinateLimits limits;
+  kinematics::Pose tool;  // on the flange
 };
 
 using Questions = SpscQueue<Question>;

@@ -8,7 +8,10 @@ void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId err
   const bool unreachable = error == ErrorId::kUnreachable || error == ErrorId::kSingular;
   // Once: what fails next fails for reasons of its own. A module reports itself.
   const std::uint64_t detail = unreachable && ticket != 0 ? std::exchange(c.ahead.failures, 0) : 0;
-  c.feedback.Report({ticket, c.cycle.count, feedback, false, error, value, {}, detail});
+  const Blame& blame = c.ahead.blame;
+  const bool names = error != ErrorId::kNone && error == blame.error && blame.axis != 0;
+  const ObjectInfo object = names ? ObjectInfo{ObjectKind::kAxis, blame.axis} : ObjectInfo{};
+  c.feedback.Report({ticket, c.cycle.count, feedback, false, error, value, object, detail});
 }
 
 bool Push(const Request& move, State& s) noexcept {

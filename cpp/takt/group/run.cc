@@ -124,7 +124,9 @@ void TellMoves(const Context& c, State& s) {
 }
 
 double Braked(const Context& c, const trajectory::PathNode& node, const Brake& brake, const State& s) {
-  double deceleration = brake.deceleration > 0 ? brake.deceleration : node.bounds.deceleration;
+  double deceleration = brake.full               ? trajectory::CoordinateLimits::kNone
+                        : brake.deceleration > 0 ? brake.deceleration
+                                                 : node.bounds.deceleration;
   // What takes no longer to build up, and to be taken back, than all accelerations of this path.
   if (brake.jerk > 0) deceleration = std::min(deceleration, brake.jerk * node.build_up_s);
   // What is left of the axes when carriers are braked, too. Not of what bends leave: the pace keeps to that by itself.
@@ -215,7 +217,8 @@ bool Advance(const Context& c, State& s) noexcept {
   }
   trajectory::PathTiming& timing = c.ahead.timing;
   if (!timing.active()) {
-    trajectory::Advance(c.ahead.window, WishOf(c, s), c.cycle.period_s, s.pace);
+    const double wish = WishOf(c, s);
+    trajectory::Advance(c.ahead.window, wish, c.cycle.period_s, s.pace, s.ends && s.brake.full);
   } else if (s.ends || s.interrupted || s.velocity_factor == 0) {
     timing.Stop(c.ahead.window, s.brake, s.pace);
   } else {
@@ -237,7 +240,8 @@ double RestAt(const Context& c, const State& s) noexcept {
   // The mean comes to rest where the raw motion does.
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   const double v = s.pace.raw.velocity;
-  const double deceleration = std::min(node.bounds.Gentle(v * v), c.ahead.keep_up.brake);
+  const bool full = s.ends && s.brake.full;
+  const double deceleration = std::min(node.bounds.Gentle(v * v, full), c.ahead.keep_up.brake);
   const double way = deceleration > 0 ? 0.5 * v * v / deceleration : kNoEnd;
   // What it has sped up with is taken back first.
   const bool speeds_up = s.pace.last[s.pace.oldest].acceleration > 0 || s.pace.raw.acceleration > 0;

@@ -112,6 +112,8 @@ void describe(Description<State>& d) {
   d.internal<&S::kinematics_on>("It has a tool.");
   d.internal<&S::product_systems>("Product coordinate systems in that of the machine.");
   d.internal<&S::cargoes>("What those lie on that move.");
+  d.internal<&S::tool_changed>("Since the machine was made.");
+  d.internal<&S::tool>("On the flange, then.");
   d.internal<&S::velocity_factor>("Override.");
   d.internal<&S::acceleration_factor>("Override.");
   d.internal<&S::jerk_factor>("Override.");
@@ -125,6 +127,7 @@ void describe(Description<State>& d) {
   d.internal<&S::interrupted>("Rests on the path.");
   d.internal<&S::ends>("Comes to rest and forgets the path.");
   d.internal<&S::brake>("How strongly.");
+  d.internal<&S::weighed>("Members whose way to rest was held against their own.");
   d.internal<&S::lets_go>("Of what carries it.");
   d.internal<&S::clutches>("Between carriers and the tool.");
   d.internal<&S::ridden>("Carriers that take part now.");

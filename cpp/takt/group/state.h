@@ -149,6 +149,8 @@ struct State {
   bool kinematics_on = true;
   std::array<kinematics::Pose, kProductSystems> product_systems{};  // in the MCS
   std::array<Cargo, kProductSystems> cargoes{};                     // of those that move instead
+  bool tool_changed = false;  // since the machine was made; the frames are in Context::mounting
+  kinematics::Pose tool;      // then: on the flange
   double velocity_factor = 1;
   double acceleration_factor = 1;
   double jerk_factor = 1;
@@ -158,12 +160,13 @@ struct State {
   Ticket active = 0;       // of the move being gone
   Planning planning;
   trajectory::PathPace pace;
-  bool guides = false;       // the members go by the group's set points
-  bool begun = false;        // a motion along the path is in progress
-  bool interrupted = false;  // rests, or comes to rest, on the path until it is continued
-  bool ends = false;         // comes to rest and forgets what is left of the path
-  Brake brake;               // how it brakes then
-  bool lets_go = false;      // of what carries it: the tool comes to rest in the MCS
+  bool guides = false;        // the members go by the group's set points
+  bool begun = false;         // a motion along the path is in progress
+  bool interrupted = false;   // rests, or comes to rest, on the path until it is continued
+  bool ends = false;          // comes to rest and forgets what is left of the path
+  Brake brake;                // how it brakes then
+  std::uint32_t weighed = 0;  // members whose way to rest along the path was held against their own, a mask
+  bool lets_go = false;       // of what carries it: the tool comes to rest in the MCS
   std::array<Clutch, kClutches> clutches{};
   std::array<std::uint32_t, kClutches> ridden{};  // numbers of the carriers that take part in the motion now
   Rise rise;

@@ -38,6 +38,7 @@ struct Survey::Inside {
   }
 
   void Begin(const Question& q) {
+    MountTool(kinematics::ToFrame(q.tool), fixed.mounting);
     for (std::size_t k = 0; k < kMaxAxes; ++k) {
       state.members[k] = q.members[k] ? static_cast<std::uint32_t>(k + 1) : 0;
       axes[k].limits.lower = q.ranges[k].lower;

@@ -13,10 +13,10 @@
 
 namespace takt::group {
 
-// What of a group never changes while the machine runs.
+// What of a group never changes while the machine runs, but for the tool, which each question has.
 struct Fixed {
   const GroupParams& params;
-  const Mounting& mounting;
+  Mounting mounting;
   const kinematics::Kinematics& kinematics;
   std::span<const PathTable> paths{};
   Cycle cycle;

@@ -5,6 +5,28 @@
 
 namespace takt::group {
 
+namespace {
+
+// The first axis whose switch or power command closes one of these directions, a follower's included, from 1; 0: it is
+// an input of a module.
+std::uint32_t AxisThatCloses(const Context& c, const State& s, const Directions& taken) {
+  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+    for (const int sense : {1, -1}) {
+      const std::uint32_t directions = sense > 0 ? taken.positive : taken.negative;
+      if (s.members[k] == 0 || (directions & (1u << k)) == 0) continue;
+      const axis::State& member = MemberOf(c, s, k);
+      const bool own =
+          sense > 0 ? member.limit_positive || member.bars_positive : member.limit_negative || member.bars_negative;
+      if (own) return s.members[k];
+      const std::uint32_t follower = axis::FollowerThatBars(ContextOf(c, s, k), member, sense);
+      if (follower != axis::kNoAxis) return follower + 1;
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
 Directions ClosedNow(const Context& c, const State& s) noexcept {
   Directions closed = s.closed;
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
@@ -17,6 +39,8 @@ Directions ClosedNow(const Context& c, const State& s) noexcept {
     // A switch that turns on is a fault of the axis, which all brake for along the path.
     if (member.limit_positive && member.limit_positive_before) closed.positive |= 1u << k;
     if (member.limit_negative && member.limit_negative_before) closed.negative |= 1u << k;
+    if (axis::FollowerOnLimit(own, member, 1, true)) closed.positive |= 1u << k;
+    if (axis::FollowerOnLimit(own, member, -1, true)) closed.negative |= 1u << k;
     // Likewise a direction that is not enabled any more: the axis looks at it behind the group.
     if (member.bars_cycle == c.cycle.count) continue;
     if (member.bars_positive) closed.positive |= 1u << k;
@@ -30,11 +54,16 @@ ErrorId RefusalOf(const Context& c, const State& s, Directions taken) noexcept {
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
     const axis::State& member = MemberOf(c, s, k);
+    const axis::Context own = ContextOf(c, s, k);
     const std::uint32_t bit = 1u << k;
-    if (member.bars_positive && !member.limit_positive) by_switch.positive &= ~bit | s.closed.positive;
-    if (member.bars_negative && !member.limit_negative) by_switch.negative &= ~bit | s.closed.negative;
+    const bool up = member.limit_positive || axis::FollowerOnLimit(own, member, 1);
+    const bool down = member.limit_negative || axis::FollowerOnLimit(own, member, -1);
+    if (axis::Bars(own, member, 1) && !up) by_switch.positive &= ~bit | s.closed.positive;
+    if (axis::Bars(own, member, -1) && !down) by_switch.negative &= ~bit | s.closed.negative;
   }
-  return by_switch.any() ? ErrorId::kAwayFromLimitOnly : ErrorId::kDirection;
+  const ErrorId error = by_switch.any() ? ErrorId::kAwayFromLimitOnly : ErrorId::kDirection;
+  c.ahead.blame = {error, AxisThatCloses(c, s, by_switch.any() ? by_switch : taken)};
+  return error;
 }
 
 Directions TakenOf(const Directions& closed, const State& s, const kinematics::Joints& velocity,

@@ -16,7 +16,7 @@ namespace takt::group {
 Directions ClosedNow(const Context& c, const State& s) noexcept;
 
 // Why a motion that takes closed directions is refused: kAwayFromLimitOnly, or kDirection where all of them are not
-// enabled.
+// enabled. The feedback of that error names the axis (LookAhead::blame).
 ErrorId RefusalOf(const Context& c, const State& s, Directions taken) noexcept;
 // The same of State::refused.
 inline ErrorId RefusalOf(const Context& c, const State& s) noexcept {

@@ -14,6 +14,11 @@ Mounting MakeMounting(const GroupParams& params) {
   return {base, base.Inverse(), tool, tool.Inverse()};
 }
 
+void MountTool(const Frame& tool, Mounting& mounting) noexcept {
+  mounting.tool = tool;
+  mounting.tool_inverse = tool.Inverse();
+}
+
 std::size_t CountOf(const State& s) noexcept {
   return static_cast<std::size_t>(std::ranges::count_if(s.members, [](std::uint32_t member) { return member != 0; }));
 }

@@ -2,7 +2,7 @@
 //
 // ACS: the axes themselves. MCS: that of the kinematics. WCS: the world, in which the machine file places the MCS. PCS
 // 1 to 16: products, placed in the MCS at run time. The tool centre point (TCP) lies on the flange as the machine file
-// says.
+// says, or SetTool.
 #pragma once
 
 #include "takt/group/failures.h"
@@ -12,6 +12,11 @@
 namespace takt::group {
 
 inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
+
+// Where the tool centre point is on the flange: as SetTool said, or the machine file.
+inline const kinematics::Pose& ToolOnFlange(const Context& c, const State& s) noexcept {
+  return s.tool_changed ? s.tool : c.params.tool;
+}
 
 // Number of members, and of those that the kinematics moves.
 std::size_t CountOf(const State& s) noexcept;

@@ -288,6 +288,7 @@ msgs::group_state ToMessage(const engine::GroupSnapshot& snapshot, const engine:
   m.zones = o.zones;
   m.waits_for = o.waits_for;
   m.waits_zone = o.waits_zone;
+  m.tool = ToMessage(o.tool);
   return m;
 }
 

@@ -31,8 +31,8 @@ Strength Least(const Strength& a, const Strength& b, double square) noexcept {
   return {at_rest, std::max(0.0, at_rest - last) / square, last, gentle};
 }
 
-double AccelerationBounds::Least(double square) const noexcept {
-  double least = std::max(-deceleration, -strength.At(square));
+double AccelerationBounds::Least(double square, bool full) const noexcept {
+  double least = full ? -strength.At(square) : std::max(-deceleration, -strength.At(square));
   for (std::size_t k = 0; k < count; ++k) least = std::max(least, tilt[k] * square - reach[k]);
   return least;
 }

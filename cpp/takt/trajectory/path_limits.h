@@ -78,10 +78,13 @@ struct AccelerationBounds {
   double deceleration = 0;
   Strength strength;  // either way
 
-  double Least(double square) const noexcept;
+  // `full`: the deceleration along the way does not count.
+  double Least(double square, bool full = false) const noexcept;
   double Most(double square) const noexcept;
   // A deceleration that is good whatever the motion did before.
-  double Gentle(double square) const noexcept { return std::min(-Least(square), strength.Gentle(square)); }
+  double Gentle(double square, bool full = false) const noexcept {
+    return std::min(-Least(square, full), strength.Gentle(square));
+  }
 };
 
 // With `share` of each coordinate's acceleration; along the way no more than its jerk builds up within `build_up_s`.

@@ -29,13 +29,13 @@ double BeforeSlower(double v, double left, double square, double deceleration, d
 
 // What the acceleration may be on the way to the next node. Whoever is beneath the ceiling of a node and takes an
 // acceleration from these comes beneath that of the next one.
-RawLimits RawLimitsOf(const PathWindow& window, const PathPace& pace, double period_s) {
+RawLimits RawLimitsOf(const PathWindow& window, const PathPace& pace, double period_s, bool full = false) {
   const PathNode& node = window[pace.node];
   const PathNode& next = window[pace.node + 1];
   const double v = pace.raw.velocity;
   const double left = std::max(next.at.s - pace.raw.position, kOnNode);
   // The speed may have become another one since.
-  RawLimits limits{std::max(node.bounds.Least(pace.entered), node.bounds.Least(v * v)),
+  RawLimits limits{std::max(node.bounds.Least(pace.entered, full), node.bounds.Least(v * v, full)),
                    std::min(node.bounds.Most(pace.entered), node.bounds.Most(v * v))};
   const auto to_reach = [&](double square) { return (square - v * v) / (2 * left); };
   double ahead = to_reach(next.ceiling);
@@ -51,8 +51,8 @@ RawLimits RawLimitsOf(const PathWindow& window, const PathPace& pace, double per
   return limits;
 }
 
-double NextAcceleration(const PathWindow& window, double wish, double period_s, PathPace& pace) {
-  const RawLimits limits = RawLimitsOf(window, pace, period_s);
+double NextAcceleration(const PathWindow& window, double wish, double period_s, bool full, PathPace& pace) {
+  const RawLimits limits = RawLimitsOf(window, pace, period_s, full);
   // Against the acceleration that leaves the mean in this cycle.
   const PathNode& node = window[pace.node];
   const double square = std::max(pace.entered, pace.raw.velocity * pace.raw.velocity);
@@ -67,7 +67,7 @@ double NextAcceleration(const PathWindow& window, double wish, double period_s, 
   const double most = std::min(std::max(before + change, released), strength);
   // Ceilings come first, whatever it takes.
   const double high = std::min(limits.high, std::max(most, limits.low));
-  const double least = std::max({limits.low, before - change, -strength});
+  const double least = std::max({limits.low, before - (full ? strength : change), -strength});
   const double a = std::clamp(std::min(high, wanted), std::min(least, high), high);
   if (wanted < high) {
     pace.eased = pace.cycles;
@@ -78,7 +78,7 @@ double NextAcceleration(const PathWindow& window, double wish, double period_s, 
 }
 
 // One cycle of the raw motion: an acceleration holds to the next node at most.
-PathCycle StepRaw(const PathWindow& window, double wish, double period_s, PathPace& pace) {
+PathCycle StepRaw(const PathWindow& window, double wish, double period_s, bool full, PathPace& pace) {
   const auto at_end = [&] { return pace.node + 1 >= window.known() || window[pace.node].stop; };
   PathCycle cycle{pace.raw.position, pace.raw.velocity, 0, 0};
   double left_s = period_s;
@@ -86,7 +86,7 @@ PathCycle StepRaw(const PathWindow& window, double wish, double period_s, PathPa
   while (left_s > 0 && !at_end()) {
     const double s = pace.raw.position;
     const double v = pace.raw.velocity;
-    const double a = NextAcceleration(window, wish, period_s, pace);
+    const double a = NextAcceleration(window, wish, period_s, full, pace);
     const double way = window[pace.node + 1].at.s - s;
     // When it is at the next node, or at rest.
     double time = left_s;
@@ -151,8 +151,8 @@ void BeginAt(const PathWindow& window, std::uint64_t node, double period_s, Path
   std::fill_n(pace.last.begin(), pace.cycles, PathCycle{pace.raw.position, 0, 0, 0});
 }
 
-void Advance(const PathWindow& window, double wish, double period_s, PathPace& pace) noexcept {
-  pace.last[pace.oldest] = StepRaw(window, wish, period_s, pace);
+void Advance(const PathWindow& window, double wish, double period_s, PathPace& pace, bool full) noexcept {
+  pace.last[pace.oldest] = StepRaw(window, wish, period_s, full, pace);
   pace.oldest = (pace.oldest + 1) % pace.cycles;
   pace.now = Mean(pace, period_s);
   while (pace.passed < pace.node && window[pace.passed + 1].at.s <= pace.now.position) ++pace.passed;
@@ -183,6 +183,7 @@ void describe(Description<PathBrake>& d) {
   d.about("How a motion along a path is ended.");
   d.internal<&PathBrake::deceleration>("0: as the path says.");
   d.internal<&PathBrake::jerk>("The same.");
+  d.internal<&PathBrake::full>("As hard as the coordinates can.");
 }
 
 void describe(Description<PathPace>& d) {

@@ -39,6 +39,7 @@ struct PathPace {
 struct PathBrake {
   double deceleration = 0;  // mm/s²
   double jerk = 0;          // mm/s³
+  bool full = false;        // as hard as the coordinates can: the limits along the path do not count
 };
 
 // At rest on a node of the window.
@@ -47,7 +48,8 @@ void BeginAt(const PathWindow& window, std::uint64_t node, double period_s, Path
 // Where it is at the end of the next cycle. `wish`: the speed wanted, kept as soon as the limits allow; kFullSpeed: as
 // fast as may be; 0: come to rest on the path. At a stop that stays the motion waits for BeginAt.
 inline constexpr double kFullSpeed = std::numeric_limits<double>::infinity();
-void Advance(const PathWindow& window, double wish, double period_s, PathPace& pace) noexcept;
+// `full`: it may brake as hard as the coordinates can, whatever the limits along the path are.
+void Advance(const PathWindow& window, double wish, double period_s, PathPace& pace, bool full = false) noexcept;
 
 // Whether it stays beneath the ceilings with an acceleration that changes no faster than it may.
 bool GoesOn(const PathWindow& window, const PathPace& pace, double period_s) noexcept;

@@ -26,6 +26,7 @@ constexpr double kCoordinatesShare = 0.979;                       // of the coor
 constexpr int kTails = 8;                                         // starts tried for a tail
 constexpr double kTailShares[] = {1, 0.8, 0.5};                   // of limits, tried for it
 constexpr double kStraight = 1e-12;                               // second slopes that are rounding
+constexpr double kUnlimitedAlong = std::numeric_limits<double>::max();
 constexpr double kGentle = 0.3;  // of the limits: a stop that kShares finds later may be so gentle
 
 bool IsAtRest(const KinematicState& state) {
@@ -206,13 +207,20 @@ void PathTiming::Advance(const PathWindow& window, double factor, PathPace& pace
 }
 
 void PathTiming::Stop(const PathWindow& window, const PathBrake& brake, PathPace& pace) noexcept {
-  if (!braking_ && !IsAtRest(pace.now)) {
+  if ((!braking_ || (brake.full && !full_)) && !IsAtRest(pace.now)) {
     AlongPath asked = window[pace.node].at.limits;
     if (brake.deceleration > 0) asked.deceleration = brake.deceleration;
     if (brake.jerk > 0) asked.jerk = std::min(brake.jerk, asked.jerk);
     PathPoint here = window[pace.node].at;
     here.limits = asked;
-    const AlongPath along = LimitsAt(here, window.limits(), kCoordinatesShare);
+    AlongPath along = LimitsAt(here, window.limits(), kCoordinatesShare);
+    if (brake.full) {
+      const AlongPath own = along;
+      here.limits.deceleration = here.limits.jerk = kUnlimitedAlong;
+      along = LimitsAt(here, window.limits(), kCoordinatesShare);
+      if (along.deceleration == kUnlimitedAlong) along.deceleration = own.deceleration;
+      if (along.jerk == kUnlimitedAlong) along.jerk = own.jerk;
+    }
     const double furthest = window[StopBehind(window, pace.node)].at.s;
     for (const double share : kShares) {
       Profile profile{};
@@ -222,6 +230,7 @@ void PathTiming::Stop(const PathWindow& window, const PathBrake& brake, PathPace
       Take(profile, current_.factor);
       DropPlan();
       braking_ = true;
+      full_ = brake.full;
       final_ = false;
       break;
     }

@@ -104,7 +104,8 @@ class PathTiming {
   Law current_, next_;
   std::uint64_t tick_ = 0;
   bool active_ = false;
-  bool braking_ = false;          // the law in force brakes
+  bool braking_ = false;          // the law in force brakes ...
+  bool full_ = false;             // ... as hard as the coordinates can
   bool final_ = false;            // no plan would be faster ...
   bool reserved_ = false;         // ... but for the room that the law in force leaves for one that leads further
   bool planning_ = false;         // a plan is ordered ...

@@ -55,6 +55,9 @@ class Checker {
   // The first place where something is wrong; nothing: the path is free. Positions that are no numbers are kNoPose.
   std::optional<Finding> Check(std::span<const Sample> path);
 
+  // Another tool: what stays within the bounds, seen from the flange.
+  void SetToolCentre(const KDL::Vector& centre) noexcept { cell_.tool_centre = centre; }
+
   // One sentence without a full stop: "finger meets post 12.3 mm along the path (5 mm are to be kept)". `unit`: what
   // s counts.
   std::string Describe(const Finding& finding, std::string_view unit = "mm") const;

@@ -41,6 +41,7 @@ std::vector<group::Command> GoodGroupCommands() {
           group::SetOverride{},
           group::SetCartesianTransform{},
           group::SetCoordinateTransform{},
+          group::SetTool{.z = -50, .c = 90},
           group::SetDynCoordTransform{.carrier = Name::Of("belt")},
           group::TrackConveyorBelt{.belt = Name::Of("belt")},
           group::TrackRotaryTable{.table = Name::Of("table")}};
