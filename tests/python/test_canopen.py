@@ -102,8 +102,11 @@ def test_a_fault_of_the_drive_is_said_in_words_and_reset() -> None:
         engine.run(0.5)
         assert "x1: node 1: fault 0x3210 (DC link overvoltage)" in said
         assert "x1: node 1: the fault has been reset" in said
+        assert (x1.drive_error, x2.drive_error) == (0x3210, 0), "kept, though the drive has it no more"
         assert x2.set_velocity == pytest.approx(100.0), "the other drive goes on"
         x1.reset().wait()
+        engine.run(0.01)
+        assert x1.drive_error == 0
         x1.power(enable=False).wait()
         x1.power().wait()
         x1.move_absolute(position=0.0).wait()

@@ -231,6 +231,7 @@ class DriveAxis:
                 abs(found.counts - found.index_counts) < 1 << 31
             ):  # further away the engine would take it for another one
                 self._index_pulses += 1
+            drive_error=self.error_code if self.faulty else 0,
             found.index_pulses = self._index_pulses
 
     def _tell_probe(self, heard: Heard, step: int, found: drive.Measured) -> None:
