@@ -34,6 +34,7 @@ from takt.drives.ethercat_link import (
 )
 from takt.drives.field_bus import ANSWERS_WITHIN, FieldBus, extras_of, lacks
 from takt.drives.homing import homing_objects
+from takt.drives.phase import Phase
 from takt.drives.probe import ProbeLatch, latches
 from takt.drives.scaling import scaling_of
 from takt.drives.sdo import SdoError
@@ -135,6 +136,7 @@ class EthercatBus(FieldBus):
         self._counter = 0  # of the last frame
         self._others_count = 0  # what slaves that are no axis' may add to it
         self._clocks: deque[tuple[float, float]] = deque(maxlen=200_000)  # s: of this host, and of the slaves
+        self._phase = Phase(self.period_s)
         self._told_silent = False
         self._said: set[str] = set()
         self._look = threading.Event()
@@ -628,8 +630,11 @@ class EthercatBus(FieldBus):
         self._frame(self._answers_within_s(real_time))
         if real_time:
             self.sent_s.append(begin_s)
+        self.later_s = 0.0
             if self.described["dc"] and self._counter:
-                self._clocks.append((begin_s, 1e-9 * self._wire.master.dc_time))
+                clock_ns = self._wire.master.dc_time
+                self._clocks.append((begin_s, 1e-9 * clock_ns))
+                self.later_s = self._phase.take(clock_ns)
             self.round_trips_s.append(time.monotonic() - begin_s)
         measured = self._take_in()
         self.cycles += 1
@@ -692,3 +697,5 @@ def drift_of(clocks: Sequence[tuple[float, float]]) -> float | None:
         for part in (read[:fifth], read[-fifth:])
     )
     return (last - first) / (end - begin)
+        if self._phase.locked:
+            return f"{said}, the cycle follows them: {self._phase.text()}"
