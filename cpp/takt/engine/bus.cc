@@ -34,6 +34,9 @@ void describe(Description<BusHoming>& d) {
                                 "Acceleration (0x609A), in increments/s^2 times velocity_factor.");
   d.defaulted<&H::within_s>(unit::s, between(0.1, 3600),
                             "How long it may take; drive: ready_timeout_s of the axis must be longer.");
+  d.defaulted<&H::distance>(unit::u, positive,
+                            "The axis is stopped where it gets further away than that from where the homing began; "
+                            "unset: it is not.");
 }
 
 void describe(Description<BusObject>& d) {

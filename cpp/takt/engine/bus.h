@@ -29,11 +29,12 @@ struct BusInputs {
 
 // Homing by the drive itself (mode hm), before its axis is switched on for the first time.
 struct BusHoming {
-  std::int32_t method = 0;                  // 0x6098
+  std::int32_t method = 1;                  // 0x6098
   std::optional<double> velocity_switch{};  // u/s, 0x6099:1; unset: as the drive has it
   std::optional<double> velocity_pulse{};   // u/s, 0x6099:2
   std::optional<double> acceleration{};     // u/s^2, 0x609A
   double within_s = 60;                     // s from its begin to the reference
+  std::optional<double> distance{};         // u, the axis goes no further from where it began; unset: anywhere
 };
 
 // Written to an object of a drive at start.

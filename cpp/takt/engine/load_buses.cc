@@ -225,6 +225,16 @@ void AddDrivesOfBuses(Machine& machine) {
       }
     }
   }
+    CheckMost(at + ".homing.velocity_switch", homing.velocity_switch, axis.limits.velocity, "velocity");
+    CheckMost(at + ".homing.velocity_pulse", homing.velocity_pulse, axis.limits.velocity, "velocity");
+    CheckMost(at + ".homing.acceleration", homing.acceleration, axis.limits.acceleration, "acceleration");
 }
 
 }  // namespace takt::engine
+  // What the drive does by itself keeps to the limits of the axis, too.
+  void CheckMost(const std::string& at, const std::optional<double>& found, double most, const std::string& what) {
+    if (!found || *found <= most) return;
+    Add(at, "expected the " + what + " limit of the axis at the most, " + FormatReal(most) + ", found " +
+                FormatReal(*found));
+  }
+
