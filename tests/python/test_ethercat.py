@@ -7,8 +7,9 @@ import os
 import random
 import signal
 import struct
+import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import lcm
@@ -23,7 +24,7 @@ from takt.drives.ethercat_link import OPERATIONAL, Wire
 from takt.drives.phase import Phase
 from takt.errors import TaktError
 from takt.plcopen import MC_ReadAxisError
-from wires import BUS, DRIVES, MASTER, bus_of, emulated, machine, own_network, run, tell
+from wires import BUS, DRIVES, MASTER, RING_WIRE, bus_of, emulated, machine, own_network, run, tell
 
 pytest.importorskip("pysoem")
 
@@ -213,6 +214,38 @@ def test_the_phase_of_frames() -> None:
         if follows:
             gap = float(phase.text().split()[2])
             assert gap == pytest.approx(0.5, abs=0.1)
+
+
+def test_a_ring_with_a_cable_out(tmp_path: Path) -> None:
+    """AX-87: any one cable may be out, and no drive notices; it is said. With two out, those between are lost."""
+    subprocess.run(["sh", "-ec", RING_WIRE], check=True)
+    url = new_url()
+    text = machine(url, 3, bus_keys="ring: ec2\n      heartbeat_s: 0.5")
+    said: list[str] = []
+    with emulated(text, tmp_path) as emulation:
+        served = bus_of(text, said.append)
+
+        def live(until: Callable[[], bool]) -> bool:
+            end_s = time.monotonic() + 20
+            while not until() and time.monotonic() < end_s:
+                served.exchange(dict.fromkeys(served.axes, drive.SetPoint(period_s=PERIOD_S)), real_time=True)
+                time.sleep(0.001)
+            return until()
+
+        for cut in ("1", "2", "3"):
+            count = len(said)
+            tell(emulation, f"cut {cut}")
+            assert live(lambda count=count: any("the ring is broken: a cable is out" in line for line in said[count:]))
+            assert [one.state for one in served._slaves] == [OPERATIONAL] * 3
+            tell(emulation, f"join {cut}")
+            assert live(lambda count=count: f"{BUS}: the ring is whole again" in said[count:])
+        assert not [line for line in said if "slave" in line and "supply" not in line]
+        tell(emulation, "cut 2")
+        tell(emulation, "cut 3")
+        assert live(lambda: any("x2: slave 2 is not heard any more" in line for line in said))
+        tell(emulation, "join all")
+        assert live(lambda: all(one.operational for one in served._slaves))
+        served.close()
 
 
 def wrong(text: str) -> str:

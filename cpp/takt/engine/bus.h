@@ -63,12 +63,13 @@ struct BusDrive {
 };
 
 struct Bus {
-  std::string bus;                   // "canopen:can0", "ethercat:eth1"
-  std::uint32_t bitrate = 1000000;   // bit/s; 0: as the interface is set
-  std::uint8_t node = 127;           // address of this end
-  bool dc = false;                   // EtherCAT: distributed clocks
-  double heartbeat_s = 0.1;          // s between two signs of life, of this end and of each drive
-  std::uint32_t missing_cycles = 5;  // so many answers missing in a row are a drive error
+  std::string bus;                    // "canopen:can0", "ethercat:eth1"
+  std::uint32_t bitrate = 1000000;    // bit/s; 0: as the interface is set
+  std::uint8_t node = 127;            // address of this end
+  bool dc = false;                    // EtherCAT: distributed clocks
+  std::optional<std::string> ring{};  // EtherCAT: second interface, at the other end of the slaves
+  double heartbeat_s = 0.1;           // s between two signs of life, of this end and of each drive
+  std::uint32_t missing_cycles = 5;   // so many answers missing in a row are a drive error
   std::vector<BusDrive> drives;
 };
 

@@ -45,6 +45,7 @@ OPERATIONAL_WITHIN_S: Final = 5.0
 STATE_WITHIN_S: Final = 2.0
 REGISTERS_US: Final = 3000  # how long the frame of a register may be under way
 LOOK_AGAIN_S: Final = 0.05  # at slaves that are not in operation
+RING_CYCLES: Final = 20  # that a ring is broken, before it is said
 SILENT: Final = 20  # frames lost in a row: the wire itself
 RX_MAP, TX_MAP, RX_ASSIGNED, TX_ASSIGNED = 0x1600, 0x1A00, 0x1C12, 0x1C13
 AL_CONTROL, AL_STATUS = 0x0120, 0x0130
@@ -135,15 +136,16 @@ class EthercatBus(FieldBus):
         self._lost_in_a_row = 0
         self._counter = 0  # of the last frame
         self._others_count = 0  # what slaves that are no axis' may add to it
-        self._clocks: deque[tuple[float, float]] = deque(maxlen=200_000)  # s: of this host, and of the slaves
         self._phase = Phase(self.period_s)
+        self._clocks: deque[tuple[float, float]] = deque(maxlen=200_000)  # s: of this host, and of the slaves
         self._told_silent = False
         self._said: set[str] = set()
         self._look = threading.Event()
         self._ended = False
         self._watcher: threading.Thread | None = None
         self._others: list[Any] = []  # slaves that are no axis'
-        self._wire = Wire(described["bus"])
+        self._ring_broken = 0  # cycles; RING_CYCLES: it was said
+        self._wire = Wire(described["bus"], described.get("ring"))
         try:
             self._start_up()
         except BaseException:
@@ -628,18 +630,32 @@ class EthercatBus(FieldBus):
             if one.operational and one.drive is not None:
                 self._put(one, one.drive.words(point, now_s))
         self._frame(self._answers_within_s(real_time))
+        self.later_s = 0.0
         if real_time:
             self.sent_s.append(begin_s)
-        self.later_s = 0.0
             if self.described["dc"] and self._counter:
                 clock_ns = self._wire.master.dc_time
                 self._clocks.append((begin_s, 1e-9 * clock_ns))
                 self.later_s = self._phase.take(clock_ns)
             self.round_trips_s.append(time.monotonic() - begin_s)
+        self._look_at_ring()
         measured = self._take_in()
         self.cycles += 1
         self.late += sum(one.axis not in measured for one in self._slaves)
         return {one.axis: measured.get(one.axis) for one in self._slaves}
+
+    def _look_at_ring(self) -> None:
+        if self.described.get("ring") is None or not self._counter:
+            return
+        whole = self._wire.ring_is_whole()
+        if whole and self._ring_broken >= RING_CYCLES:
+            self._say(f"{self.bus_name}: the ring is whole again")
+        self._ring_broken = 0 if whole else self._ring_broken + 1
+        if self._ring_broken == RING_CYCLES:
+            self._say(
+                f"{self.bus_name}: the ring is broken: a cable is out, or a slave without supply; the next break loses "
+                f"drives"
+            )
 
     def idle(self, stop: Collection[str]) -> None:
         now_s = time.monotonic()
@@ -648,6 +664,7 @@ class EthercatBus(FieldBus):
                 off_in_its_mode = drive.SetPoint(mode=set_point_mode(one.mode))
                 self._put(one, one.drive.words(off_in_its_mode, now_s, stop=one.axis in stop))
         self._frame(max(0.002, ANSWERS_WITHIN * self.period_s))
+        self._look_at_ring()
         self._take_in()
 
     # --- the end ---
@@ -680,6 +697,8 @@ class EthercatBus(FieldBus):
         if drift is None:
             return ""
         said = f"; the clocks of the slaves gain {1e6 * drift:.1f} ppm on that of this host"
+        if self._phase.locked:
+            return f"{said}, the cycle follows them: {self._phase.text()}"
         return said + (f", so SYNC0 passes the frames every {self.period_s / abs(drift):.3g} s" if drift else "")
 
 
@@ -697,5 +716,3 @@ def drift_of(clocks: Sequence[tuple[float, float]]) -> float | None:
         for part in (read[:fifth], read[-fifth:])
     )
     return (last - first) / (end - begin)
-        if self._phase.locked:
-            return f"{said}, the cycle follows them: {self._phase.text()}"
