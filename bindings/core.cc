@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bindings.h"
+#include "takt/core/drive_errors.h"
 #include "takt/core/status.h"
 
 namespace takt::bindings {
@@ -121,6 +122,8 @@ py::dtype LayoutOf(const std::vector<Column>& columns, std::size_t size) {
 }
 
 void BindCore(py::module_& m) {
+  m.def("drive_error_text", &DriveErrorText, py::arg("code"),
+        "What the error code of a drive (CiA 402, 0x603F) means: its number, and in brackets the words.");
   m.def("error_texts", &ErrorTexts, "Every error number with its short name and its sentence.");
 }
 

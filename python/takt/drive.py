@@ -73,6 +73,7 @@ class Measured:
     torque_nm: float = 0.0
     load_counts: int = 0  # of a second encoder, on the load
     load_encoder_error: bool = False
+    drive_error: int = 0  # what it says of its fault (CiA 402, 0x603F); 0: nothing
 
 
 class Drive(ABC):
@@ -93,10 +94,13 @@ class Bus(ABC):
 
     axes: the names of the axes of its drives.
     period_s: how often it is kept going while there is no engine.
+    later_s: how much later the cycles of the engine ought to begin for the clock of the bus, as its last exchange says;
+        0: as they do.
     """
 
     axes: Sequence[str]
     period_s: float = 0.001
+    later_s: float = 0.0
 
     def start(self, axis: str, *, real_time: bool, period_s: float) -> None:  # noqa: B027 (may be left as it is)
         """An engine has started, and the drive of this axis is its own from now on."""
@@ -384,6 +388,7 @@ class Plant:
         line.sequence += 1
         for name in _MEASURED:
             setattr(answer, name, getattr(measured, name))
+        answer.later_s = 0.0 if line.bus is None else line.bus.bus.later_s
         for name in _COUNTERS:
             setattr(answer, name, int(getattr(measured, name)) & 0xFFFF_FFFF)
         data: bytes = answer.encode()

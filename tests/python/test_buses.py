@@ -76,6 +76,32 @@ def test_all_that_may_be_given() -> None:
             "  - name: x2\n    drive: {torque_offset: {inertia: 0.1}}\n",
             "drives[1].axis: expected an axis without drive: torque_offset, which is not sent to drives on a bus",
         ),
+        ("drives:", "ring: eth2\n      drives:", "buses[0].ring: expected this key on a bus ethercat:INTERFACE only"),
+        (
+            "node: 2",
+            "node: 2, inputs: {limit_negative: 4, limit_positive: 4}",
+            "inputs.limit_positive: expected another bit than that of limit_negative, found 4 again",
+        ),
+        (
+            "node: 2",
+            "node: 2, scaling: {increments_per_revolution: 1e300, gear_motor: 1e300, feed: 1}",
+            "drives[1].scaling: expected fewer than 2147483647 increments of the drive in a cycle at the velocity",
+        ),
+        (
+            "node: 2",
+            "node: 2, scaling: {increments_per_revolution: 4e9, feed: 1}",
+            "at the velocity limit of the axis, found 8.0e+09",
+        ),
+        (
+            "node: 2",
+            "node: 2, homing: {method: 17, velocity_switch: 501, within_s: 0.5}",
+            "homing.velocity_switch: expected the velocity limit of the axis at the most, 500.0, found 501.0",
+        ),
+        (
+            "node: 2",
+            "node: 2, homing: {method: 17, acceleration: 5001, within_s: 0.5}",
+            "homing.acceleration: expected the acceleration limit of the axis at the most, 5000.0, found 5001.0",
+        ),
         ("node: 2", 'node: 2, vendor: "2E1"', 'vendor: expected a number of 32 bits like "0x2E1", found'),
         (
             "node: 2",
@@ -158,6 +184,18 @@ def test_homing_in_the_drive_is_for_incremental_encoders() -> None:
     assert "drives[0].homing: expected this key with an incremental encoder, found an absolute one, which" in found[0]
 
 
+def test_the_speed_of_a_drive_must_fit_its_object() -> None:
+    """AX-87: csv; a set point beyond 32 bits would be cut off, and the axis lag behind."""
+    keys = "drive: {mode: cyclic_velocity}\n    loop: {kp: 0.06, ff: 1, velocity_at_10v: 600}"
+    text = machine(URL, "canopen:can0", 1, axis_keys=keys, drive_keys="velocity_factor: 4294.9")
+    described(text)
+    found = problems(text.replace("4294.9", "4295.1"))
+    assert found == [
+        "m.yaml:15:48: external.buses[0].drives[0].velocity_factor: expected a velocity limit of the axis of "
+        "2147483647 units of the drive (0x60FF) at the most, found 2147550000.0"
+    ]
+
+
 ETHERCAT = machine(URL, "ethercat:eth1", 2, bus_keys="dc: true").replace("node: ", "position: ")
 
 
@@ -181,6 +219,9 @@ def test_drives_on_ethercat() -> None:
         ("position: 2", "position: 0", "drives[1].position: expected a whole number from 1 to 65535, found 0"),
         ("position: 2", "position: 2, alias: 3", "drives[1].alias: expected either position or alias, found both"),
         (", position: 2", "", "drives[1].position: expected this key, or alias, with a whole number from 1 to 65535"),
+        ("dc: true", "bitrate: 500000", "buses[0].bitrate: expected this key on CANopen only"),
+        ("dc: true", "node: 5", "buses[0].node: expected this key on CANopen only"),
+        ("dc: true", "ring: eth1", "buses[0].ring: expected an interface other than that of bus, found 'eth1'"),
         ("ethercat:eth1", "canopen:can0", "external.buses[0].dc: expected this key on a bus ethercat:INTERFACE only"),
         ("ethercat:eth1", "canopen:can0", "drives[1].position: expected this key on a bus ethercat:INTERFACE only"),
         ("ethercat:eth1", "canopen:can0", "drives[1].node: expected this key with a whole number from 1 to 127, found"),

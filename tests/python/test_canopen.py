@@ -102,8 +102,11 @@ def test_a_fault_of_the_drive_is_said_in_words_and_reset() -> None:
         engine.run(0.5)
         assert "x1: node 1: fault 0x3210 (DC link overvoltage)" in said
         assert "x1: node 1: the fault has been reset" in said
+        assert (x1.drive_error, x2.drive_error) == (0x3210, 0), "kept, though the drive has it no more"
         assert x2.set_velocity == pytest.approx(100.0), "the other drive goes on"
         x1.reset().wait()
+        engine.run(0.01)
+        assert x1.drive_error == 0
         x1.power(enable=False).wait()
         x1.power().wait()
         x1.move_absolute(position=0.0).wait()
@@ -169,6 +172,31 @@ def test_a_cable_that_breaks_in_motion(tmp_path: Path) -> None:
         x.power().wait(timeout=20)
         assert abs(emulation.nodes[1].drive.read(od.POSITION) - where) < 100
         x.move_relative(distance=5.0).wait(timeout=20)
+
+
+def test_two_masters() -> None:
+    """AX-87: the second one does not start and does no harm; one that does not ask is said."""
+    import can
+
+    url, bus = new_url(), new_bus()
+    text = machine(url, bus, 1)
+    with emulated(text), run(text, url) as (_, said):
+        assert wrong(text) == (
+            f"{bus}: another master is at work: somebody sends SYNC, too (another takt drives run, or a drive that is "
+            f"set up to send SYNC, 0x1005); two on one bus disturb each other"
+        )
+        with takt.Engine(text) as engine:
+            x = engine.axis("x1")
+            x.power().wait()
+            x.move_absolute(position=5.0).wait()
+        with can.Bus(interface="virtual", channel=parse(bus).channel) as stranger:
+            for number in (0x080, 0x77F, 0x080):
+                stranger.send(can.Message(arbitration_id=number, data=b"\x05" * (number > 0x700), is_extended_id=False))
+        assert eventually(lambda: sum("another master" in line for line in said) == 2, 10)
+        assert [line for line in said if "another master" in line] == [
+            f"{bus}: another master is at work: somebody {does}; two on one bus disturb each other"
+            for does in ("sends SYNC, too", "has node 127 of this end")
+        ]
 
 
 def test_a_drive_that_starts_anew_is_set_up_again() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from pathlib import Path
 
 import pytest
@@ -130,11 +131,20 @@ def test_an_esi(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         ("d.eds", None, "d.eds: cannot be read: No such file or directory"),
         ("d.txt", "", "d.txt: expected a file .eds (CANopen) or .xml (EtherCAT: ESI)"),
         ("d.eds", "no section", "d.eds: no EDS file that can be read: MissingSectionHeaderError"),
-        ("d.eds", "[6040]\nParameterName=C\nObjectType=0x7\nDataType=x\n", "d.eds: no EDS file that can be read: Va"),
+        ("d.eds", "[6040]\nParameterName=C\nObjectType=0x7\nDataType=x\n", "d.eds: no EDS file that can be read: in"),
         ("d.xml", "<a>", "d.xml: no XML that can be read: no element found"),
         ("d.xml", "<a/>", "d.xml: expected an ESI file with EtherCATInfo, found a"),
-        ("d.xml", "<EtherCATInfo/>", "d.xml: no ESI file that can be read: ValueError"),
-        ("d.xml", "<EtherCATInfo><Vendor><Id>1</Id></Vendor></EtherCATInfo>", "d.xml: expected product: which one"),
+        (
+            "d.xml",
+            "<EtherCATInfo/>",
+            "d.xml: no ESI file that can be read: Vendor/Id of EtherCATInfo: expected a number such as #x6040 or "
+            "24640, found ''",
+        ),
+        ("d.xml", "<EtherCATInfo><Vendor><Id>1</Id></Vendor></EtherCATInfo>", "d.xml: describes no drive: expected De"),
+        ("d.xml", '<?xml version="1.0" encoding="klingon"?><a/>', "d.xml: no XML that can be read: unknown encoding"),
+        ("d.xml", '<?xml version="1.0" encoding="utf-16"?><a/>', "d.xml: no XML that can be read: "),
+        ("d.eds", "", "d.eds: no EDS file of a drive: it describes no object"),
+        ("d.eds", "[FileInfo]\nx=1\n", "d.eds: no EDS file of a drive: it describes no object"),
     ],
 )
 def test_bad_files(tmp_path: Path, name: str, text: str | None, sentence: str) -> None:
@@ -142,3 +152,13 @@ def test_bad_files(tmp_path: Path, name: str, text: str | None, sentence: str) -
     if text is not None:
         (tmp_path / name).write_text(text)
     assert wrong(tmp_path, f"device_file: {name}").startswith(sentence)
+
+
+@pytest.mark.parametrize("name", ["d.eds", "d.xml"])
+def test_what_is_no_text(tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """A line that can be read, and is not the file."""
+    (tmp_path / name).write_bytes(random.Random(4).randbytes(5000))
+    said = wrong(tmp_path, f"device_file: {name}")
+    assert said.isprintable()
+    assert len(said) < 300
+    assert capsys.readouterr().err == ""

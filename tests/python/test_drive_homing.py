@@ -13,8 +13,8 @@ import pytest
 import takt
 from machines import new_url, running
 from takt.drives.canopen_bus import CanopenBus
-from takt.drives.cia402 import FOLLOWING_ERROR_BIT, FOLLOWS_BIT, HOMING_START_BIT, TARGET_REACHED_BIT, Mode
-from takt.drives.homing import DriveHoming, homing_objects
+from takt.drives.cia402 import FOLLOWING_ERROR_BIT, FOLLOWS_BIT, HOMING_START_BIT, TARGET_REACHED_BIT, Mode, State
+from takt.drives.homing import DriveHoming, Watch, homing_objects
 from takt.drives.probe import ENABLE_BIT, FALL_BIT, RISE_BIT, ProbeLatch
 from takt.drives.scaling import Scaling
 from takt.errors import TaktError
@@ -201,6 +201,67 @@ def test_the_handshake_of_homing() -> None:
     for k in range(10):
         homing.control_bits(FOLLOWING_ERROR_BIT, Mode.HOMING, 0.01 * k)
     assert homing.failed == "the drive reports a homing error (status word 0x2000)"
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+def test_a_watch_over_homing(sense: int) -> None:
+    """AX-87: the drive may come to rest behind a limit switch, as far as its braking takes, but not go on; it may leave
+    one that it begins on; and it may not go too far. With either sense of the axis."""
+    watch = Watch(most=5000, acceleration=100_000, period_s=0.001)  # 1000/s: 5 increments of braking
+
+    def go(position: int, negative: bool = False, positive: bool = False) -> str:
+        return watch.look(sense * position, {-sense: negative, sense: positive})
+
+    assert [go(position) for position in range(2000)] == [""] * 2000
+    braking = (2001, 2003, 2005, 2006, 2006)
+    assert [go(position, positive=True) for position in braking] == [""] * len(braking)
+    assert not any(go(position, positive=position > 1998) for position in range(2005, 0, -1))
+    watch.begin()
+    said = [go(position, positive=True) for position in range(100, 130)]
+    assert said[:6] == [""] * 6
+    end = "positive" if sense > 0 else "negative"
+    assert said[-1] == f"it goes on behind the {end} limit switch, 29 increments by now"
+    watch.begin()
+    assert not any(go(position, negative=position < 50) for position in range(200)), "it leaves the switch it began on"
+    watch.begin()
+    assert not any(go(position) for position in range(0, 5001, 10))
+    assert go(5010) == "it has gone 5010 increments from where it began, more than the 5000 of distance"
+
+
+@pytest.mark.parametrize("reason", ["distance", "power", "emergency"])
+def test_homing_that_is_broken_off(reason: str) -> None:
+    """AX-87: the drive comes to rest along its quick stop ramp (0x6085), whoever breaks its homing off, and is off."""
+    url, bus = new_url(), buses.new_bus()
+    # 200 mm/s; its ramp is 2000 mm/s2, so that it takes 10 mm, and about 5 without (brake, friction).
+    keys = HOMING.replace("velocity_switch: 60", "velocity_switch: 200") + (
+        ', start_up: [{object: "0x6085:0", value: 10000000}]'
+    )
+    if reason == "distance":
+        keys = keys.replace("within_s", "distance: 40, within_s")
+    servo = SERVO.replace("-8", "-800")
+    text = machine(url, bus, keys, servo=servo)
+    with buses.emulated(text) as emulation, buses.run(text, url) as (_, said), takt.Engine(text) as engine:
+        x, motor = engine.axis("x1"), emulation.nodes[1].drive
+        given = x.power()
+        engine.wait(lambda: abs(x.actual_velocity) > 190, timeout=20)
+        if reason == "power":
+            x.power(enable=False)
+        elif reason == "emergency":
+            engine.emergency_stop()
+        else:
+            engine.wait(lambda: x.error != 0, timeout=20)
+        states, where = set(), x.actual_position
+        for _ in range(60):
+            engine.run(0.004)
+            states.add(motor.machine.state)
+        assert State.QUICK_STOP_ACTIVE in states
+        assert motor.machine.state in (State.READY_TO_SWITCH_ON, State.SWITCH_ON_DISABLED)
+        assert x.actual_velocity == pytest.approx(0, abs=0.5)
+        assert 5 < abs(x.actual_position - where) < 13
+        assert given.error or given.aborted
+        if reason == "distance":
+            assert x.error == 3002
+            assert any("more than the 200000 of distance" in line for line in said)
 
 
 def test_what_is_written_for_homing() -> None:

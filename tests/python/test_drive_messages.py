@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
+from typing import Any
 
 import lcm
 import numpy as np
@@ -103,6 +104,30 @@ def test_messages_of_another_version_are_refused() -> None:
         with pytest.warns(takt.DriveWarning, match="no drive_feedback of this version of Takt"):
             eventually(lambda: engine.figures["samples_refused"] or engine.run(0.05))
         assert engine.axis("x").error == 0
+
+
+def test_drive_processes_of_before_go_on_working(monkeypatch: pytest.MonkeyPatch) -> None:
+    """AX-87: those from before drive_error and later_s, whose messages are shorter and have another fingerprint: what
+    they do not know is 0, the motion is the same."""
+    encode = drive.Plant._encode
+
+    def before(plant: drive.Plant, line: Any, measured: drive.Measured, cycle: int) -> bytes:
+        return bytes.fromhex("21b308b742c4984c") + encode(plant, line, measured, cycle)[8:-16]
+
+    def run() -> bytes:
+        url = new_url()
+        with served(url, Lag()), takt.Engine(only_x(url)) as engine:
+            x = engine.axis("x")
+            x.power().wait()
+            record = engine.record()
+            x.move_absolute(position=5.0).wait()
+            recording = record.stop()
+            assert not recording["x"]["drive_error"].any()
+            return bytes(recording["x"]["actual_position"].tobytes())
+
+    now = run()
+    monkeypatch.setattr(drive.Plant, "_encode", before)
+    assert run() == now
 
 
 def test_two_plants_for_one_axis() -> None:

@@ -7,20 +7,24 @@ import os
 import random
 import signal
 import struct
+import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import lcm
 import pytest
 import takt
 from buses import PERIOD_S, eventually
 from machines import new_url, running
-from takt import drive
+from takt import drive, msgs
 from takt.cli import main
 from takt.drives.ethercat_bus import drift_of
 from takt.drives.ethercat_link import OPERATIONAL, Wire
+from takt.drives.phase import Phase
 from takt.errors import TaktError
-from wires import BUS, DRIVES, MASTER, bus_of, emulated, machine, own_network, run, tell
+from takt.plcopen import MC_ReadAxisError
+from wires import BUS, DRIVES, MASTER, RING_WIRE, bus_of, emulated, machine, own_network, run, tell
 
 pytest.importorskip("pysoem")
 
@@ -138,6 +142,110 @@ def test_cables_supply_and_lost_frames_in_motion(tmp_path: Path) -> None:
         emulation.process.send_signal(signal.SIGKILL)
         session.wait(lambda: all(axis.error == 3002 for axis in axes), timeout=20)
     assert "frames lost" in served.summary()
+
+
+def test_what_a_drive_says_of_its_fault_reaches_everybody(tmp_path: Path) -> None:
+    """AX-87: number and words in takt/axis/NAME, from the fault to MC_Reset; the session and MC_ReadAxisError have
+    them, too."""
+    url = new_url()
+    text = machine(url, 1, bus_keys="missing_cycles: 100\n      heartbeat_s: 0.5")
+    heard: list[tuple[int, str]] = []
+
+    def listen(_channel: str, data: bytes) -> None:
+        state = msgs.axis_state.decode(data)
+        heard.append((state.drive_error, state.drive_error_text))
+
+    with (
+        emulated(text, tmp_path) as emulation,
+        run(text, url, watchdog=1000),
+        running(tmp_path, url, machine=text, pace="real"),
+        takt.connect(url) as session,
+    ):
+        x = session.axis("x1")
+        network = lcm.LCM(url)
+        network.subscribe("takt/axis/x1", listen)
+
+        def hears(number: int, words: str) -> bool:
+            heard.clear()
+            return eventually(lambda: network.handle_timeout(50) and (number, words) in heard, 20)
+
+        x.power().wait(timeout=20)
+        assert hears(0, "")
+        tell(emulation, "fault 1 0x3210")
+        session.wait(lambda: x.drive_error != 0, timeout=20)
+        assert (x.drive_error, x.error) == (0x3210, 3002)
+        block = MC_ReadAxisError(x)
+        block(Enable=True)
+        assert block.text.endswith(": 0x3210 (DC link overvoltage)")
+        assert hears(0x3210, "0x3210 (DC link overvoltage)")
+        session.wait(lambda: not x.reset().wait_final(timeout=20).error, timeout=20)
+        assert hears(0, "")
+
+
+def test_the_cycle_follows_the_distributed_clocks(tmp_path: Path) -> None:
+    """EN-26, AX-87, in real time: clocks that gain 0.1 % a cycle would pass the frames every second; the cycle of taktd
+    follows them."""
+    url = new_url()
+    text = machine(url, 2, bus_keys="dc: true\n      missing_cycles: 100\n      heartbeat_s: 0.5")
+    with (
+        emulated(text, tmp_path) as emulation,
+        run(text, url, watchdog=1000) as (served, _),
+        running(tmp_path, url, machine=text, pace="real"),
+        takt.connect(url) as session,
+    ):
+        tell(emulation, "drift 500")
+        session.wait(lambda: served.cycles > 600, timeout=60)
+        assert served._phase.locked
+    assert "ppm on that of this host, the cycle follows them: SYNC0 comes " in served.summary()
+
+
+def test_the_phase_of_frames() -> None:
+    """EN-26: a cycle that does as asked, a little in each, gets to the middle between two SYNC0 from anywhere and stays
+    there, though frames come late by chance and the clocks differ by 100 ppm; one that does not is passed."""
+    for follows in (True, False):
+        phase, chance = Phase(0.001), random.Random(8)
+        at_s, clock_s = 5.0004, 700.0
+        for _ in range(20_000):
+            clock_s = 700 + (at_s - 5) * 1.0001
+            later_s = phase.take(round(1e9 * clock_s) + round(1e5 * chance.expovariate(1)))
+            at_s += 0.001 + follows * max(-2e-6, min(2e-6, later_s / 100))
+        assert phase.locked is follows
+        assert abs(later_s) < 0.0001 or not follows
+        if follows:
+            gap = float(phase.text().split()[2])
+            assert gap == pytest.approx(0.5, abs=0.1)
+
+
+def test_a_ring_with_a_cable_out(tmp_path: Path) -> None:
+    """AX-87: any one cable may be out, and no drive notices; it is said. With two out, those between are lost."""
+    subprocess.run(["sh", "-ec", RING_WIRE], check=True)
+    url = new_url()
+    text = machine(url, 3, bus_keys="ring: ec2\n      heartbeat_s: 0.5")
+    said: list[str] = []
+    with emulated(text, tmp_path) as emulation:
+        served = bus_of(text, said.append)
+
+        def live(until: Callable[[], bool]) -> bool:
+            end_s = time.monotonic() + 20
+            while not until() and time.monotonic() < end_s:
+                served.exchange(dict.fromkeys(served.axes, drive.SetPoint(period_s=PERIOD_S)), real_time=True)
+                time.sleep(0.001)
+            return until()
+
+        for cut in ("1", "2", "3"):
+            count = len(said)
+            tell(emulation, f"cut {cut}")
+            assert live(lambda count=count: any("the ring is broken: a cable is out" in line for line in said[count:]))
+            assert [one.state for one in served._slaves] == [OPERATIONAL] * 3
+            tell(emulation, f"join {cut}")
+            assert live(lambda count=count: f"{BUS}: the ring is whole again" in said[count:])
+        assert not [line for line in said if "is not heard any more" in line]
+        tell(emulation, "cut 2")
+        tell(emulation, "cut 3")
+        assert live(lambda: any("x2: slave 2 is not heard any more" in line for line in said))
+        tell(emulation, "join all")
+        assert live(lambda: all(one.operational for one in served._slaves))
+        served.close()
 
 
 def wrong(text: str) -> str:

@@ -30,6 +30,11 @@ ip link add {MASTER} type veth peer name {DRIVES}
 ip link set {MASTER} up
 ip link set {DRIVES} up
 """
+RING_WIRE = """
+ip link add ec2 type veth peer name ec3
+ip link set ec2 up
+ip link set ec3 up
+"""  # from the last slave back to this host
 
 
 @contextlib.contextmanager

@@ -418,6 +418,7 @@ void Sense(const Context& c, const ServoInputs& in, State& s, const Sampling& sa
   if (measured.error && c.params.position_encoder().type == EncoderType::kIncremental) s.homing.homed = false;
   s.drive_ready = in.drive_ready && !lost;
   s.drive_fault = in.drive_fault || lost;
+  if (in.drive_error != 0 || (s.error == ErrorId::kNone && !s.drive_fault)) s.drive_error = in.drive_error;
   s.torque_nm = in.torque_nm;
   if (resumes) ForgetSample(in, s.probe);
   if (sampling.step > 0) SenseProbe(c, in, s);
@@ -570,6 +571,7 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.profile_ends = s.profile_ends;
   out.drive_heard = s.sampling.link == DriveLink::kHeard;
   out.drive_ready = s.drive_ready;
+  out.drive_error = s.drive_error;
   out.skew = s.skew.measured;
   out.skewed = p.follows && s.skew.known && std::abs(s.skew.measured) > p.follows->skew_warning.value_or(HUGE_VAL);
   out.emergency_stopped = s.emergency != Emergency::kNone;

@@ -34,6 +34,8 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::limited_by>("What holds the motion in progress back from what was asked.");
   d.internal<&O::master1>("Number of the axis that it follows, from 1; 0: none.");
   d.internal<&O::master2>("The same of a second one.");
+  d.internal<&O::drive_error>(
+      "Number that the drive gave for its fault (CiA 402, 0x603F), until the axis has no fault any more; 0: none.");
   d.internal<&O::fault_of>("Number of the axis whose fault stopped this one, its master, from 1; 0: none.");
   d.internal<&O::buffered_commands>("Commands waiting behind the one in control.");
   d.internal<&O::loop_closed>("The position loop is closed and the brake released.");

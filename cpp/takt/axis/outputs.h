@@ -35,7 +35,8 @@ struct Outputs {
   LimitedBy limited_by = LimitedBy::kNothing;  // what holds the motion in progress back
   std::uint32_t master1 = 0;                   // numbers of the axes that it follows, from 1; 0: none
   std::uint32_t master2 = 0;
-  std::uint32_t fault_of = 0;  // number of the axis whose fault stopped this one, its master, from 1; 0: none
+  std::int32_t drive_error = 0;  // number that the drive gave for its fault (CiA 402, 0x603F); 0: none
+  std::uint32_t fault_of = 0;    // number of the axis whose fault stopped this one, its master, from 1; 0: none
   std::uint32_t probe_captures = 0;
   std::uint32_t profile_ends = 0;     // how often the end of its cam was passed
   std::uint32_t cam_outputs = 0;      // of the cam switches, a bit for each track

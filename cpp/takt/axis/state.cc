@@ -101,6 +101,7 @@ void describe(Description<State>& d) {
   d.internal<&S::brake_cycle>("When its relay was energised or let go of.");
   d.internal<&S::drive_ready>("Drive says ready.");
   d.internal<&S::drive_fault>("Drive says fault.");
+  d.internal<&S::drive_error>("Which one, until the axis has no fault any more.");
   d.internal<&S::encoder_error>("The measured position is not to be believed.");
   d.internal<&S::encoder_line_error>("Because the encoder says so.");
   d.internal<&S::torque_nm>(unit::nm, "As the drive says.");

@@ -129,6 +129,7 @@ struct State {
   bool brake_falls = false;     // being switched off: the relay is let go of, the loop still closed
   bool drive_ready = false;
   bool drive_fault = false;
+  std::int32_t drive_error = 0;     // that the drive gave for its fault, until the axis has none any more
   bool encoder_error = false;       // not to be believed this cycle
   bool encoder_line_error = false;  // because the encoder says so
   std::uint32_t index_pulses = 0;

@@ -98,6 +98,7 @@ void describe(Description<ServoInputs>& d) {
   d.internal<&S::probe_fall_age_s>(unit::s, "The same of the last falling edge.");
   d.internal<&S::drive_ready>("Power stage on and following its set point.");
   d.internal<&S::drive_fault>("The drive reports a fault.");
+  d.internal<&S::drive_error>("What the drive says of it (CiA 402, 0x603F); 0: nothing.");
   d.internal<&S::torque_nm>(unit::nm, "Torque; the force in N on linear motors.");
   d.internal<&S::load_counts>(unit::count, "Encoder on the load, if there is one.");
   d.internal<&S::load_encoder_error>("That reports an error or does not answer.");

@@ -33,6 +33,7 @@ struct ServoInputs {
   double probe_fall_age_s = 0;
   bool drive_ready = false;  // power stage on and following its set point
   bool drive_fault = false;
+  std::int32_t drive_error = 0;     // what the drive says of its fault (CiA 402, 0x603F); 0: nothing
   double torque_nm = 0;             // Nm; N on linear motors
   std::uint32_t load_counts = 0;    // of a second encoder, on the load
   bool load_encoder_error = false;  // its ERR line, or no answer from it

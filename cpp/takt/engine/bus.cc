@@ -34,6 +34,9 @@ void describe(Description<BusHoming>& d) {
                                 "Acceleration (0x609A), in increments/s^2 times velocity_factor.");
   d.defaulted<&H::within_s>(unit::s, between(0.1, 3600),
                             "How long it may take; drive: ready_timeout_s of the axis must be longer.");
+  d.defaulted<&H::distance>(unit::u, positive,
+                            "The axis is stopped where it gets further away than that from where the homing began; "
+                            "unset: it is not.");
 }
 
 void describe(Description<BusObject>& d) {
@@ -78,6 +81,8 @@ void describe(Description<Bus>& d) {
   d.defaulted<&B::bitrate>("CANopen: bits per second; 0: as the interface is set.");
   d.defaulted<&B::node>(between(1, 127), "CANopen: address of this end.");
   d.defaulted<&B::dc>("EtherCAT: the drives work in step with their distributed clocks (SYNC0), else with the frames.");
+  d.defaulted<&B::ring>(
+      "EtherCAT: interface of this host at the other end of the slaves, \"eth2\", so that one cable may break.");
   d.defaulted<&B::heartbeat_s>(unit::s, between(0.01, 10),
                                "Between two signs of life of this end and of each drive; three missing are a fault. "
                                "EtherCAT: a third of the watchdog of the drives.");

@@ -29,11 +29,12 @@ struct BusInputs {
 
 // Homing by the drive itself (mode hm), before its axis is switched on for the first time.
 struct BusHoming {
-  std::int32_t method = 0;                  // 0x6098
+  std::int32_t method = 1;                  // 0x6098
   std::optional<double> velocity_switch{};  // u/s, 0x6099:1; unset: as the drive has it
   std::optional<double> velocity_pulse{};   // u/s, 0x6099:2
   std::optional<double> acceleration{};     // u/s^2, 0x609A
   double within_s = 60;                     // s from its begin to the reference
+  std::optional<double> distance{};         // u, the axis goes no further from where it began; unset: anywhere
 };
 
 // Written to an object of a drive at start.
@@ -62,12 +63,13 @@ struct BusDrive {
 };
 
 struct Bus {
-  std::string bus;                   // "canopen:can0", "ethercat:eth1"
-  std::uint32_t bitrate = 1000000;   // bit/s; 0: as the interface is set
-  std::uint8_t node = 127;           // address of this end
-  bool dc = false;                   // EtherCAT: distributed clocks
-  double heartbeat_s = 0.1;          // s between two signs of life, of this end and of each drive
-  std::uint32_t missing_cycles = 5;  // so many answers missing in a row are a drive error
+  std::string bus;                    // "canopen:can0", "ethercat:eth1"
+  std::uint32_t bitrate = 1000000;    // bit/s; 0: as the interface is set
+  std::uint8_t node = 127;            // address of this end
+  bool dc = false;                    // EtherCAT: distributed clocks
+  std::optional<std::string> ring{};  // EtherCAT: second interface, at the other end of the slaves
+  double heartbeat_s = 0.1;           // s between two signs of life, of this end and of each drive
+  std::uint32_t missing_cycles = 5;   // so many answers missing in a row are a drive error
   std::vector<BusDrive> drives;
 };
 

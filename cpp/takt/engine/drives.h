@@ -29,6 +29,9 @@ struct DriveSample {
   ServoInputs inputs;
   // u: where the load really is, of a plant that knows it; published, but not used by the engine.
   double true_position = std::numeric_limits<double>::quiet_NaN();
+  // s, real time: how much later the cycles ought to begin for the clock of the drive's bus. Looked at by the
+  // scheduler, through lcm/drives.h; the engine does not know of it.
+  double later_s = 0;
 };
 
 struct DriveEntry {  // a sample as the cycle took it, for the journal

@@ -90,6 +90,12 @@ class BusChecker {
           "expected canopen:CHANNEL or canopen:INTERFACE:CHANNEL or ethercat:INTERFACE, found " + Quoted(bus.bus));
     }
     if (bus.dc && !ethercat) Add(path + ".dc", "expected this key on a bus ethercat:INTERFACE only");
+    if (bus.ring && !ethercat) Add(path + ".ring", "expected this key on a bus ethercat:INTERFACE only");
+    if (bus.ring && (bus.ring->empty() || bus.bus == std::string(kEthercat) + *bus.ring)) {
+      Add(path + ".ring", "expected an interface other than that of bus, found " + Quoted(*bus.ring));
+    }
+    if (ethercat && bus.bitrate != Bus().bitrate) Add(path + ".bitrate", "expected this key on CANopen only");
+    if (ethercat && bus.node != Bus().node) Add(path + ".node", "expected this key on CANopen only");
     if (!bus.bus.empty() && bus.drives.empty()) Add(path + ".drives", "expected at least one drive");
     for (std::size_t i = 0; i < bus.drives.size(); ++i) {
       const BusDrive& drive = bus.drives[i];
@@ -102,6 +108,8 @@ class BusChecker {
         }
       }
       if (drive.homing) CheckHoming(at, drive);
+      CheckInputs(at + ".inputs", drive.inputs);
+      CheckScaling(at, drive);
       for (std::size_t k = 0; k < drive.start_up.size(); ++k) {
         CheckObject(at + ".start_up[" + std::to_string(k) + "]", drive.start_up[k]);
       }
@@ -135,6 +143,40 @@ class BusChecker {
           "expected an encoder that is incremental, or absolute with ssi_bits: 32 and coding: binary, as "
           "drives on a bus send it, found another one on " +
               Quoted(drive.axis));
+    }
+  }
+
+  void CheckInputs(const std::string& at, const BusInputs& inputs) {
+    if (inputs.limit_positive < 0 || inputs.limit_positive != inputs.limit_negative) return;
+    Add(at + ".limit_positive",
+        "expected another bit than that of limit_negative, found " + std::to_string(inputs.limit_positive) + " again");
+  }
+
+  // A drive counts with 32 bits: in a cycle an axis may not go half their range, or nobody knows which way it went. And
+  // csv has a velocity of 32 bits.
+  void CheckScaling(const std::string& at, const BusDrive& drive) {
+    const std::uint32_t index = axis::FindAxis(machine_.axes, drive.axis);
+    if (index == axis::kNoAxis) return;  // reported
+    const axis::AxisParams& axis = machine_.axes[index];
+    double per_unit = axis.encoder.increments_per_unit;
+    std::string key = at + ".axis";
+    if (drive.scaling) {
+      const BusScaling& s = *drive.scaling;
+      per_unit = s.increments_per_revolution * s.gear_motor / s.gear_shaft / s.feed;
+      key = at + ".scaling";
+    }
+    constexpr double kHalfRange = 2147483647;
+    const double speed = axis.limits.velocity * per_unit;  // increments/s
+    if (!(per_unit > 0) || !(speed * machine_.cycle.period_s < kHalfRange)) {
+      return Add(key,
+                 "expected fewer than 2147483647 increments of the drive in a cycle at the velocity limit of the axis, "
+                 "found " +
+                     FormatReal(speed * machine_.cycle.period_s));
+    }
+    if (axis.drive.mode == DriveMode::kCyclicVelocity && !(speed * drive.velocity_factor <= kHalfRange)) {
+      Add(drive.scaling ? key : at + ".velocity_factor",
+          "expected a velocity limit of the axis of 2147483647 units of the drive (0x60FF) at the most, found " +
+              FormatReal(speed * drive.velocity_factor));
     }
   }
 
@@ -183,11 +225,21 @@ class BusChecker {
           "expected this key with an incremental encoder, found an absolute one, which needs no homing, on " +
               Quoted(drive.axis));
     }
+    CheckMost(at + ".homing.velocity_switch", homing.velocity_switch, axis.limits.velocity, "velocity");
+    CheckMost(at + ".homing.velocity_pulse", homing.velocity_pulse, axis.limits.velocity, "velocity");
+    CheckMost(at + ".homing.acceleration", homing.acceleration, axis.limits.acceleration, "acceleration");
     if (axis.drive.ready_timeout_s <= homing.within_s) {
       Add(at + ".homing.within_s",
           "expected less than drive: ready_timeout_s of the axis, which is switched on meanwhile: " +
               FormatReal(axis.drive.ready_timeout_s) + " s, found " + FormatReal(homing.within_s) + " s");
     }
+  }
+
+  // What the drive does by itself keeps to the limits of the axis, too.
+  void CheckMost(const std::string& at, const std::optional<double>& found, double most, const std::string& what) {
+    if (!found || *found <= most) return;
+    Add(at, "expected the " + what + " limit of the axis at the most, " + FormatReal(most) + ", found " +
+                FormatReal(*found));
   }
 
   void CheckObject(const std::string& at, const BusObject& object) {

@@ -29,6 +29,9 @@ struct SchedulerOptions {
   // Paced and fast: asked before every cycle. False: what it needs has not come yet (lcm/drives.h); after a little
   // waiting, so that the signals can be looked at, too.
   std::function<bool()> ready{};
+  // Real time: asked after every cycle how much later [ns] the next ones ought to begin, for a bus with a clock of its
+  // own (lcm/drives.h). They follow a little in each cycle, by a hundredth of it, and 1/500 of a period at the most.
+  std::function<std::int64_t()> later_ns{};
   // A cyclic program: called in the cycle's thread before every cycle, and part of its time (takt/plcopen/program.h).
   std::function<void()> program{};
 };

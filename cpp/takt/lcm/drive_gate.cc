@@ -21,6 +21,7 @@ std::string NotFinite(const msgs::drive_feedback& m) {
     return std::string(name) + ": expected " + expected + ", found " + std::to_string(value);
   };
   if (!std::isfinite(m.torque_nm)) return wrong("torque_nm", m.torque_nm, "a finite number");
+  if (!std::isfinite(m.later_s)) return wrong("later_s", m.later_s, "a finite number");
   for (const auto& [name, age] :
        {std::pair("probe_rise_age_s", m.probe_rise_age_s), {"probe_fall_age_s", m.probe_fall_age_s}}) {
     if (!std::isfinite(age) || age < 0) return wrong(name, age, "a finite number >= 0");

@@ -151,9 +151,17 @@ void Drives::Receive(const Heard& heard) {
   const auto sample = gate_.Take(heard.channel, heard.data);
   if (!sample) return;
   if (!engine_.drive_samples().TryPush(*sample)) engine_.CountRefusedSample();
-  if (options_.real_time) return;
+  if (options_.real_time) {
+    if (sample->later_s != 0 && !leads_) leads_ = sample->axis;
+    if (leads_ == sample->axis) later_ns_ = std::llround(std::clamp(sample->later_s, -1.0, 1.0) * 1e9);
+    return;
+  }
   Line& line = lines_[gate_.DriveOf(sample->axis)];
   line.given_up = false;
+}
+
+std::int64_t Drives::TakeLaterNs() {
+  return later_ns_.exchange(0);
 }
 
 void Drives::SendThread() {

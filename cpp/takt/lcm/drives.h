@@ -49,6 +49,10 @@ class Drives {
   // Simulated time, between two cycles. False: not all drives have answered yet; it has waited a little.
   bool Ready();
 
+  // Real time: how much later [ns] the cycles ought to begin for the clock of a bus, as the newest answer says; each is
+  // told once, 0: nothing new. The first drive that says anything speaks for all.
+  std::int64_t TakeLaterNs();
+
  private:
   // One drive.
   struct Line {
@@ -87,6 +91,8 @@ class Drives {
 
   // Real time.
   std::atomic<bool> stop_{false};
+  std::atomic<std::int64_t> later_ns_{0};
+  std::optional<std::uint32_t> leads_;  // axis of the drive that says it
   std::thread sender_, receiver_;
 };
 

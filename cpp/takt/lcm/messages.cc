@@ -7,6 +7,7 @@
 
 #include "takt/conveyor/objects.h"
 #include "takt/core/angle.h"
+#include "takt/core/drive_errors.h"
 #include "takt/core/schema.h"
 #include "takt/engine/path_checks.h"
 
@@ -41,9 +42,21 @@ msgs::axis_numbers ToMessage(const pickplace::AxisNumbers& n) {
           .aux1 = n.aux1};
 }
 
+constexpr std::size_t kFingerprint = 8;  // bytes
+
+// Drive processes from before drive_error and later_s go on working: their messages are read as if these were 0.
+constexpr std::uint64_t kFeedbackBefore = 0x21B308B742C4984C;
+constexpr std::size_t kFeedbackAdded = 16;  // bytes at the end
+
+bool IsFeedbackBefore(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < kFingerprint) return false;
+  std::uint64_t fingerprint = 0;
+  for (const std::uint8_t byte : bytes.first(kFingerprint)) fingerprint = fingerprint << 8 | byte;
+  return fingerprint == kFeedbackBefore;
+}
+
 // The fields behind the fingerprint: 'i' eight bytes of whatever kind, 'b' one byte, 's' a string.
 bool FitsLayout(std::span<const std::uint8_t> bytes, std::string_view layout) {
-  constexpr std::size_t kFingerprint = 8;
   if (bytes.size() < kFingerprint) return false;
   bytes = bytes.subspan(kFingerprint);
   for (const char field : layout) {
@@ -112,6 +125,8 @@ msgs::axis_state ToMessage(const engine::AxisSnapshot& snapshot, const engine::M
   m.emergency_stopped = o.emergency_stopped;
   m.drive_heard = o.drive_heard;
   m.drive_ready = o.drive_ready;
+  m.drive_error = o.drive_error;
+  if (o.drive_error != 0) m.drive_error_text = DriveErrorText(o.drive_error);
   m.skew = o.skew;
   m.skewed = o.skewed;
   m.fault_of = o.fault_of;
@@ -680,6 +695,7 @@ msgs::drive_feedback ToMessage(const engine::DriveSample& sample, const engine::
   m.torque_nm = in.torque_nm;
   m.load_counts = in.load_counts;
   m.load_encoder_error = in.load_encoder_error;
+  m.drive_error = in.drive_error;
   return m;
 }
 
@@ -712,6 +728,8 @@ engine::DriveSample ToSample(const msgs::drive_feedback& m, std::uint32_t axis) 
   in.torque_nm = m.torque_nm;
   in.load_counts = static_cast<std::uint32_t>(m.load_counts);
   in.load_encoder_error = m.load_encoder_error != 0;
+  in.drive_error = static_cast<std::int32_t>(m.drive_error);
+  sample.later_s = m.later_s;
   return sample;
 }
 
@@ -728,7 +746,15 @@ std::optional<msgs::machine_description> DecodeMachine(std::span<const std::uint
 }
 
 std::optional<msgs::drive_feedback> DecodeDriveFeedback(std::span<const std::uint8_t> bytes) {
-  return Decode<msgs::drive_feedback>(bytes, "iiiiisiiibbbbbiiiibbiib");
+  constexpr std::string_view kLayout = "iiiiisiiibbbbbiiiibbiibii";
+  if (!IsFeedbackBefore(bytes)) return Decode<msgs::drive_feedback>(bytes, kLayout);
+  std::vector<std::uint8_t> longer(bytes.begin(), bytes.end());
+  const auto fingerprint = static_cast<std::uint64_t>(msgs::drive_feedback::getHash());
+  for (std::size_t i = 0; i < kFingerprint; ++i) {
+    longer[i] = static_cast<std::uint8_t>(fingerprint >> (8 * (kFingerprint - 1 - i)));
+  }
+  longer.resize(longer.size() + kFeedbackAdded);
+  return Decode<msgs::drive_feedback>(longer, kLayout);
 }
 
 }  // namespace takt::lcm

@@ -24,6 +24,8 @@ AXIS_MODES = {"cyclic_position": Mode.CYCLIC_POSITION, "cyclic_velocity": Mode.C
 FOLLOWING = 0x8611
 CODE_WITHIN_S = 0.2  # after the fault itself the error code is expected to have come
 MANY_RESETS = 3
+RESTING_CYCLES = 3
+BRAKES_WITHIN_S = 2.0  # a drive whose homing is broken off
 JUMP = 1.5  # times the largest step of the axis: a drive that counts from its reference now
 
 
@@ -65,6 +67,8 @@ class DriveAxis:
     modes: that the drive has; a set point in another one switches it off.
     homing: that the drive carries out by itself before it is ready for the first time.
     largest_step: increments that the axis moves in a cycle at the most; looked at with `homing`.
+    limit_senses: by the name of a limit switch which way of the increments the axis leaves its range there, and whether
+        its wire is inverted.
     """
 
     def __init__(
@@ -80,12 +84,16 @@ class DriveAxis:
         probe: ProbeLatch | None = None,
         period_s: float = 0.001,
         largest_step: float = 0.0,
+        limit_senses: Mapping[str, tuple[int, bool]] | None = None,
     ) -> None:
         self.axis, self.called, self.scaling, self.modes = axis, called, scaling, modes
         self._inputs = {name: 1 << bit for name, bit in inputs.items() if bit >= 0}
         self._say = say
         self._homing, self._probe = homing, probe
         self._period_s, self._largest_step = period_s, largest_step
+        self._limit_senses = {name: sense for name, sense in (limit_senses or {}).items() if name in self._inputs}
+        self._brakes_since_s: float | None = None  # its homing was broken off, and it may be in motion
+        self._resting = 0  # cycles
         self._absorbed = 0  # increments by which the drive's position has jumped when it was homed
         self._reference: int | None = None  # increments without those jumps: where the drive counts 0
         self._index_pulses = 0
@@ -126,10 +134,11 @@ class DriveAxis:
         mode = MODES.get(told.mode, Mode.NONE)
         self._cycles += 1
         enable = told.enable and self._has(mode)
-        if self._homing is not None and self._homing.failed:
-            if not told.enable:
-                self._homing.forget()
-            enable = False
+        failed = self._homing is not None and self._homing.failed != ""
+        enable = enable and not failed
+        stop = self._breaks_off(enable, now_s) or stop
+        if self._homing is not None and failed and not told.enable:
+            self._homing.forget()
         words = Words(self._control(enable, now_s, stop), int(mode), torque_limit=self._limit(told))
         words.probe = self._probe.function if self._probe is not None else 0
         words.position = self.position  # so that the drive does not jump when it is switched on, or to csp
@@ -144,6 +153,18 @@ class DriveAxis:
             words.torque = self.scaling.torque(told.torque_nm) if mode is Mode.CYCLIC_TORQUE else 0
         return words
 
+    def _breaks_off(self, enable: bool, now_s: float) -> bool:
+        """The drive homes, or has done so until now, and is to be off: along its quick stop ramp it comes to rest
+        first."""
+        if self._homing is not None and self._homing.moves and not enable and self._brakes_since_s is None:
+            self._brakes_since_s, self._resting = now_s, 0
+        if self._brakes_since_s is None:
+            return False
+        stopping = self.state in (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE)
+        if not stopping or self._resting > RESTING_CYCLES or now_s - self._brakes_since_s > BRAKES_WITHIN_S:
+            self._brakes_since_s = None
+        return self._brakes_since_s is not None
+
     def _home(self, words: Words, enable: bool, now_s: float) -> None:
         """Has the drive find its reference, and go back to the mode of the axis."""
         homing = self._homing
@@ -152,14 +173,14 @@ class DriveAxis:
             return
         if not enable or self.state is not State.OPERATION_ENABLED:
             homing.interrupted()
-            words.mode = int(Mode.HOMING) if enable else words.mode
+            words.mode = int(Mode.HOMING) if enable or self._brakes_since_s is not None else words.mode
             return
         if not homing.under_way:
             self._say(f"{self.axis}: {self.called}: homing in the drive by method {homing.method} begins")
         words.mode = int(Mode.HOMING)
         words.control |= homing.control_bits(self.status, self.mode, now_s)
         if homing.failed:
-            self._say(f"{self.axis}: {self.called}: homing in the drive by method {homing.method}: {homing.failed}")
+            self._say_homing_failed(homing)
 
     def _limit(self, told: drive.SetPoint) -> int:
         return self.scaling.torque_limit(told.torque_limit_nm)
@@ -190,6 +211,7 @@ class DriveAxis:
         self._counter = Unwrapped()
         self._told_of_mode = False
         self._absorbed, self._reference = 0, None
+        self._brakes_since_s = None
         if self._homing is not None:
             self._homing.forget()
         if self._probe is not None:
@@ -209,14 +231,30 @@ class DriveAxis:
             counts=self.scaling.counts(at),
             drive_fault=self.faulty or (self._homing is not None and self._homing.failed != ""),
             torque_nm=self.scaling.torque_nm(heard.torque),
+            drive_error=self.error_code if self.faulty else 0,
         )
         for name, bit in self._inputs.items():
             setattr(found, name, bool(heard.inputs & bit))
+        self._resting = self._resting + 1 if step == 0 else 0
+        self._watch_homing(at, found)
         self._tell_reference(at, found)
         self._tell_probe(heard, step, found)
         found.drive_ready = self.state is State.OPERATION_ENABLED and not self._homes
         self._cycles = 0
         return found
+
+    def _watch_homing(self, at: int, found: drive.Measured) -> None:
+        homing = self._homing
+        if homing is None or homing.watch is None or not homing.under_way:
+            return
+        switches = {sense: getattr(found, name) != inverted for name, (sense, inverted) in self._limit_senses.items()}
+        homing.failed = homing.watch.look(at, switches, max(1, self._cycles))
+        if homing.failed:
+            found.drive_fault = True
+            self._say_homing_failed(homing)
+
+    def _say_homing_failed(self, homing: DriveHoming) -> None:
+        self._say(f"{self.axis}: {self.called}: homing in the drive by method {homing.method}: {homing.failed}")
 
     def _tell_reference(self, at: int, found: drive.Measured) -> None:
         """The reference of the drive is an index pulse that is seen in each cycle."""

@@ -19,13 +19,13 @@ WITHOUT_BIT_RATE: Final = ("virtual", "udp_multicast")  # no wire, so no bit rat
 MISSING: Final = "CANopen needs the packages canopen and python-can: pip install 'takt-motion[canopen]'"
 
 
-def packages() -> tuple[Any, Any]:
+def packages(missing: str = MISSING) -> tuple[Any, Any]:
     """The modules can and canopen; TaktError says how to get them."""
     try:
         import can
         import canopen
     except ImportError:
-        raise TaktError(MISSING) from None
+        raise TaktError(missing) from None
     for name in ("can", "canopen"):  # what they report is said here; whoever wants theirs sets a handler of logging
         logger = logging.getLogger(name)
         if not logger.handlers:

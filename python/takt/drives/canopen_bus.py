@@ -48,6 +48,7 @@ from takt.errors import TaktError
 
 OPERATIONAL: Final = 5
 HEARTBEATS_MISSING: Final = 3
+LISTENED_S: Final = 0.1  # for another master, which sends SYNC in each of its cycles
 STARTS_WITHIN_S: Final = 0.5  # until a node says that it is operational
 INPUTS_AGAIN_MS: Final = 100  # inputs come when they change, and that often, as one message may be lost
 BUSY: Final = 0.8  # of the bit rate
@@ -116,6 +117,7 @@ class CanopenBus(FieldBus):
         self._by_axis = {node.axis: node for node in self._nodes}
         self._heartbeat_s = float(described["heartbeat_s"])
         self._own_beat_s = 0.0
+        self._listened = False
         name = parse(described["bus"])
         self._check_load(name.has_wire)
         self._link = link or CanLink(name, described.get("bitrate"))
@@ -158,11 +160,34 @@ class CanopenBus(FieldBus):
             self._subscribe(node)
             self._sdos[node.id] = Sdo(link, node.id)
         with link.background():
+            self._listen()
+            self._listened = True
             self._find()
             for node in self._nodes:
                 self._set_up(node, self._sdos[node.id].patience(0.5))
         for node in self._nodes:
             self._start_node(node)
+
+    def _listen(self) -> None:
+        """Nobody else may be master here: raises TaktError at the start; one that comes later is said."""
+        own = int(self.described["node"])
+        heard: list[str] = []
+        network = self._link.network
+        network.subscribe(SYNC, lambda _id, _data, _s: self._on_master(heard, "sends SYNC, too"))
+        network.subscribe(HEARTBEAT + own, lambda _id, _data, _s: self._on_master(heard, f"has node {own} of this end"))
+        time.sleep(LISTENED_S)
+        if heard:
+            raise TaktError(
+                f"{self.bus_name}: another master is at work: somebody {heard[0]} (another takt drives run, or a drive "
+                f"that is set up to send SYNC, 0x1005); two on one bus disturb each other"
+            )
+
+    def _on_master(self, heard: list[str], does: str) -> None:
+        if does in heard:
+            return
+        heard.append(does)
+        if self._listened:
+            self._say(f"{self.bus_name}: another master is at work: somebody {does}; two on one bus disturb each other")
 
     def _subscribe(self, node: _Node) -> None:
         network = self._link.network

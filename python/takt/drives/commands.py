@@ -289,7 +289,9 @@ def _emulate_ethercat(
     """own: the bus names this end of the wire, else that of the master, as in a machine file."""
     name = parse_ethercat(bus["bus"])
     name = name if own else other_end(name)
-    with EthercatEmulation(name, emulated_slaves(bus, described, text, file_name), _say) as emulation:
+    ring = other_end(bus["ring"]) if bus.get("ring") else None
+    slaves = emulated_slaves(bus, described, text, file_name)
+    with EthercatEmulation(name, slaves, _say, ring) as emulation:
         _say(f"ethercat:{name}: {counted(len(emulation.nodes), 'emulated drive')}")
         read_commands(emulation)
         with until_signal(emulation.stop):

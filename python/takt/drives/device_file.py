@@ -12,11 +12,13 @@ from xml.etree import ElementTree
 
 from takt.drives import objects as od
 from takt.drives.axis import AXIS_MODES
+from takt.drives.can_link import packages
 from takt.drives.cia402 import Mode
 from takt.drives.probe import latches
 from takt.errors import TaktError
 
 LARGEST_BYTES: Final = 64 << 20
+MOST_SHOWN: Final = 160  # characters of what others say of a file
 MISSING: Final = "EDS files need the package canopen: pip install 'takt-motion[canopen]'"
 
 
@@ -63,16 +65,15 @@ def read_device_file(path: Path, product: int | None = None) -> DeviceFile:
 
 
 def _eds(path: Path, data: bytes) -> DeviceFile:
-    try:
-        import canopen
-    except ImportError:
-        raise TaktError(MISSING) from None
+    _, canopen = packages(MISSING)
     text = io.StringIO(data.decode("utf-8-sig", "replace"))
     text.name = str(path)
     try:
         read = canopen.import_od(text, node_id=1)
     except Exception as error:  # whatever its reader raises at a bad file
         raise TaktError(f"{path}: no EDS file that can be read: {_line(error)}") from None
+    if not len(read):
+        raise TaktError(f"{path}: no EDS file of a drive: it describes no object")
     about = read.device_information
     found = DeviceFile(path, about.product_name or "no name", about.vendor_number or 0, about.product_number or 0)
     for index, entry in read.items():
@@ -89,8 +90,8 @@ def _eds(path: Path, data: bytes) -> DeviceFile:
 def _esi(path: Path, data: bytes, product: int | None) -> DeviceFile:
     try:
         root = ElementTree.fromstring(data)
-    except ElementTree.ParseError as error:
-        raise TaktError(f"{path}: no XML that can be read: {error}") from None
+    except (ElementTree.ParseError, LookupError, ValueError) as error:  # what is no XML, or has no known encoding
+        raise TaktError(f"{path}: no XML that can be read: {_line(error)}") from None
     try:
         return _device(path, root, product)
     except (ValueError, AttributeError) as error:
@@ -100,22 +101,35 @@ def _esi(path: Path, data: bytes, product: int | None) -> DeviceFile:
 def _number(text: str | None) -> int:
     """ "#x6040" or "24640"."""
     text = (text or "").strip().lower()
-    return int(text[2:], 16) if text.startswith("#x") else int(text, 0)
+    try:
+        return int(text[2:], 16) if text.startswith("#x") else int(text, 0)
+    except ValueError:
+        raise ValueError(f"expected a number such as #x6040 or 24640, found {text[:MOST_SHOWN]!r}") from None
+
+
+def _number_at(element: ElementTree.Element, name: str) -> int:
+    """The number of an element that must be there."""
+    try:
+        return _number(element.findtext(name))
+    except ValueError as error:
+        raise ValueError(f"{name} of {element.tag}: {error}") from None
 
 
 def _device(path: Path, root: ElementTree.Element, product: int | None) -> DeviceFile:
     if root.tag != "EtherCATInfo":
         raise TaktError(f"{path}: expected an ESI file with EtherCATInfo, found {root.tag}")
-    vendor = _number(root.findtext("Vendor/Id"))
+    vendor = _number_at(root, "Vendor/Id")
     devices = {}
     for device in root.iterfind("Descriptions/Devices/Device"):
         code = device.find("Type")
         if code is not None and code.get("ProductCode"):
             devices[_number(code.get("ProductCode"))] = device  # the last one is the newest revision
+    if not devices:
+        raise TaktError(f"{path}: describes no drive: expected Descriptions/Devices/Device with a ProductCode")
     if product is None and len(devices) == 1:
         product = next(iter(devices))
     if product not in devices:
-        has = ", ".join(f"0x{number:X}" for number in devices) or "none"
+        has = ", ".join(f"0x{number:X}" for number in devices)
         wanted = "expected product: which one, as it has several" if product is None else f"no product 0x{product:X}"
         raise TaktError(f"{path}: {wanted}; it has {has}")
     device = devices[product]
@@ -123,10 +137,8 @@ def _device(path: Path, root: ElementTree.Element, product: int | None) -> Devic
     found = DeviceFile(path, name, vendor, product)
     for direction in ("RxPdo", "TxPdo"):
         for pdo in device.iterfind(direction):
-            entries = [
-                (_number(e.findtext("Index")), _number(e.findtext("SubIndex") or "0")) for e in pdo.iterfind("Entry")
-            ]
-            found.pdos[_number(pdo.findtext("Index"))] = [f"0x{i:04X}:{s}" for i, s in entries if i]
+            entries = [(_number_at(e, "Index"), _number(e.findtext("SubIndex") or "0")) for e in pdo.iterfind("Entry")]
+            found.pdos[_number_at(pdo, "Index")] = [f"0x{i:04X}:{s}" for i, s in entries if i]
     for dictionary in device.iter("Dictionary"):
         types = {kind.findtext("Name"): kind for kind in dictionary.iterfind("DataTypes/DataType")}
         for entry in dictionary.iterfind("Objects/Object"):
@@ -135,12 +147,12 @@ def _device(path: Path, root: ElementTree.Element, product: int | None) -> Devic
 
 
 def _add(found: DeviceFile, entry: ElementTree.Element, types: Mapping[str | None, ElementTree.Element]) -> None:
-    index = _number(entry.findtext("Index"))
+    index = _number_at(entry, "Index")
     name = (entry.findtext("Name") or "").strip()
     kind = types.get(entry.findtext("Type"))
     members = [] if kind is None else [one for one in kind.iterfind("SubItem") if one.findtext("SubIdx")]
     for one in members:
-        found.objects[index, _number(one.findtext("SubIdx"))] = _flags(one, f"{name} {one.findtext('Name') or ''}")
+        found.objects[index, _number_at(one, "SubIdx")] = _flags(one, f"{name} {one.findtext('Name') or ''}")
     if not members:
         found.objects[index, 0] = _flags(entry, name)
 
@@ -153,7 +165,11 @@ def _flags(entry: ElementTree.Element, name: str) -> Described:
 
 
 def _line(error: Exception) -> str:
-    return f"{type(error).__name__}: {' '.join(str(error).split())}".rstrip(": ")
+    """Of any error, in printable characters and not too long: it may quote the file."""
+    tells = isinstance(error, ValueError | ElementTree.ParseError) or type(error) is LookupError
+    kind = "" if tells else f"{type(error).__name__}: "
+    text = "".join(c if c.isprintable() else "?" for c in " ".join(str(error).split()))
+    return kind + (text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]} ...")
 
 
 # --- a machine file against it ---

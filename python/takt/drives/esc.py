@@ -386,6 +386,7 @@ class Line:
         self.slaves = list(slaves)
         self.malformed = 0  # frames that were none of EtherCAT
         self._reached: list[Esc] | None = None
+        self._behind: list[Esc] | None = None
 
     def reached(self) -> list[Esc]:
         """Those before the first broken cable and the first one without supply."""
@@ -403,13 +404,32 @@ class Line:
                 struct.pack_into("<H", slave.memory, _LINKS, links)
         return self._reached
 
+    def reached_from_behind(self) -> list[Esc]:
+        """Of a ring that is broken: those behind the last broken cable and the last one without supply."""
+        if self._behind is None:
+            self._behind = []
+            for slave in reversed(self.slaves):
+                if slave.off:
+                    break
+                self._behind.insert(0, slave)
+                if slave.cut:
+                    break
+        return self._behind
+
+    @property
+    def whole(self) -> bool:
+        """What comes in at one end of a ring goes out at the other."""
+        return len(self.reached()) == len(self.slaves)
+
     def changed(self) -> None:
         """Cables or supplies have."""
-        self._reached = None
+        self._reached = self._behind = None
 
-    def carry(self, frame: bytearray) -> bool:
-        """Sends a frame through the slaves and back; False: it is none of EtherCAT, or nobody is there."""
-        slaves = self.reached()
+    def carry(self, frame: bytearray, *, behind: bool = False) -> bool:
+        """Sends a frame through the slaves and back; False: it is none of EtherCAT, or nobody is there.
+
+        behind: it comes in at the far end of a ring that is broken."""
+        slaves = self.reached_from_behind() if behind else self.reached()
         if len(frame) < HEADER_BYTES + 2 or frame[12:14] != b"\x88\xa4" or not slaves:
             return False
         header = int.from_bytes(frame[14:16], "little")

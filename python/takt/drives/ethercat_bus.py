@@ -34,6 +34,7 @@ from takt.drives.ethercat_link import (
 )
 from takt.drives.field_bus import ANSWERS_WITHIN, FieldBus, extras_of, lacks
 from takt.drives.homing import homing_objects
+from takt.drives.phase import Phase
 from takt.drives.probe import ProbeLatch, latches
 from takt.drives.scaling import scaling_of
 from takt.drives.sdo import SdoError
@@ -44,6 +45,9 @@ OPERATIONAL_WITHIN_S: Final = 5.0
 STATE_WITHIN_S: Final = 2.0
 REGISTERS_US: Final = 3000  # how long the frame of a register may be under way
 LOOK_AGAIN_S: Final = 0.05  # at slaves that are not in operation
+RING_CYCLES: Final = 20  # that a ring is broken, before it is said
+FIRST_SILENT: Final = 3  # cycles without a frame at the first end of a broken ring, before less time is given to it ...
+FIRST_SHARE: Final = 0.4  # ... for the package asks at the second one only then
 SILENT: Final = 20  # frames lost in a row: the wire itself
 RX_MAP, TX_MAP, RX_ASSIGNED, TX_ASSIGNED = 0x1600, 0x1A00, 0x1C12, 0x1C13
 AL_CONTROL, AL_STATUS = 0x0120, 0x0130
@@ -134,6 +138,7 @@ class EthercatBus(FieldBus):
         self._lost_in_a_row = 0
         self._counter = 0  # of the last frame
         self._others_count = 0  # what slaves that are no axis' may add to it
+        self._phase = Phase(self.period_s)
         self._clocks: deque[tuple[float, float]] = deque(maxlen=200_000)  # s: of this host, and of the slaves
         self._told_silent = False
         self._said: set[str] = set()
@@ -141,7 +146,9 @@ class EthercatBus(FieldBus):
         self._ended = False
         self._watcher: threading.Thread | None = None
         self._others: list[Any] = []  # slaves that are no axis'
-        self._wire = Wire(described["bus"])
+        self._ring_broken = 0  # cycles; RING_CYCLES: it was said
+        self._first_silent = 0  # cycles in which the first end of the ring was waited for in vain
+        self._wire = Wire(described["bus"], described.get("ring"))
         try:
             self._start_up()
         except BaseException:
@@ -625,16 +632,39 @@ class EthercatBus(FieldBus):
             one = self._by_axis[axis]
             if one.operational and one.drive is not None:
                 self._put(one, one.drive.words(point, now_s))
-        self._frame(self._answers_within_s(real_time))
+        within_s = self._answers_within_s(real_time)
+        self._frame(within_s * FIRST_SHARE if self._first_silent >= FIRST_SILENT else within_s)
+        self._look_at_ring(time.monotonic() - begin_s >= within_s)
+        self.later_s = 0.0
         if real_time:
             self.sent_s.append(begin_s)
             if self.described["dc"] and self._counter:
-                self._clocks.append((begin_s, 1e-9 * self._wire.master.dc_time))
+                clock_ns = self._wire.master.dc_time
+                self._clocks.append((begin_s, 1e-9 * clock_ns))
+                self.later_s = self._phase.take(clock_ns)
             self.round_trips_s.append(time.monotonic() - begin_s)
         measured = self._take_in()
         self.cycles += 1
         self.late += sum(one.axis not in measured for one in self._slaves)
         return {one.axis: measured.get(one.axis) for one in self._slaves}
+
+    def _look_at_ring(self, waited: bool) -> None:
+        """waited: the frame took all the time that it was given."""
+        if self.described.get("ring") is None or not self._counter:
+            return
+        whole = self._wire.ring_is_whole()
+        if whole and self._ring_broken >= RING_CYCLES:
+            self._say(f"{self.bus_name}: the ring is whole again")
+        self._ring_broken = 0 if whole else self._ring_broken + 1
+        if whole:
+            self._first_silent = 0
+        elif waited:
+            self._first_silent += 1
+        if self._ring_broken == RING_CYCLES:
+            self._say(
+                f"{self.bus_name}: the ring is broken: a cable is out, or a slave without supply; the next break loses "
+                f"drives"
+            )
 
     def idle(self, stop: Collection[str]) -> None:
         now_s = time.monotonic()
@@ -643,6 +673,7 @@ class EthercatBus(FieldBus):
                 off_in_its_mode = drive.SetPoint(mode=set_point_mode(one.mode))
                 self._put(one, one.drive.words(off_in_its_mode, now_s, stop=one.axis in stop))
         self._frame(max(0.002, ANSWERS_WITHIN * self.period_s))
+        self._look_at_ring(False)
         self._take_in()
 
     # --- the end ---
@@ -675,6 +706,8 @@ class EthercatBus(FieldBus):
         if drift is None:
             return ""
         said = f"; the clocks of the slaves gain {1e6 * drift:.1f} ppm on that of this host"
+        if self._phase.locked:
+            return f"{said}, the cycle follows them: {self._phase.text()}"
         return said + (f", so SYNC0 passes the frames every {self.period_s / abs(drift):.3g} s" if drift else "")
 
 

@@ -325,26 +325,31 @@ def _checksum(data: bytes) -> int:
 class EthercatEmulation(Commanded):
     """Slaves on an interface, the first one next to the master. `run` serves them until `stop`.
 
-    nodes: by position, from 1."""
+    nodes: by position, from 1.
+    ring: interface at the other end of the slaves."""
 
     called = "slave"
     help = HELP + " | lose PERCENT | fix NODE | drift PPM"
 
-    def __init__(self, interface: str, slaves: Sequence[EmulatedSlave], say: Callable[[str], None]) -> None:
+    def __init__(
+        self, interface: str, slaves: Sequence[EmulatedSlave], say: Callable[[str], None], ring: str | None = None
+    ) -> None:
         super().__init__(dict(enumerate(slaves, start=1)), say)
         self._slaves = list(slaves)
         self.line = Line([slave.esc for slave in slaves])
         self.lost_share = 0.0
         self.frames = self.lost = 0
         self._random = random.Random(1)
-        self._socket = ethernet_socket(interface)
+        self._ends = [ethernet_socket(interface)]
+        if ring is not None:
+            self._ends.append(ethernet_socket(ring))
         self._looked_s = 0.0
 
     def run(self) -> None:
         frame = bytearray(2048)
         while self._running:
-            if select.select([self._socket], [], [], 0.002)[0]:
-                self._take(frame)
+            for end in select.select(self._ends, [], [], 0.002)[0]:
+                self._take(frame, end)
             now_s = time.monotonic()
             if now_s - self._looked_s > 0.002:
                 self._looked_s = now_s
@@ -352,7 +357,8 @@ class EthercatEmulation(Commanded):
             self.obey()
 
     def close(self) -> None:
-        self._socket.close()
+        for end in self._ends:
+            end.close()
 
     def __enter__(self) -> EthercatEmulation:
         return self
@@ -366,21 +372,34 @@ class EthercatEmulation(Commanded):
             return True
         return False
 
-    def _take(self, buffer: bytearray) -> None:
+    def _carry(self, frame: bytearray, end: socket.socket) -> socket.socket | None:
+        """Through the slaves: where it comes out, None: nowhere. In a ring that is whole slaves read and write only
+        what comes from its first end; what comes from the other one passes them."""
+        if len(self._ends) == 1:
+            return end if self.line.carry(frame) else None
+        behind = end is self._ends[1]
+        if not self.line.whole:
+            return end if self.line.carry(frame, behind=behind) else None
+        if behind:
+            return self._ends[0]
+        return self._ends[1] if self.line.carry(frame) else None
+
+    def _take(self, buffer: bytearray, end: socket.socket) -> None:
         try:
-            length, address = self._socket.recvfrom_into(buffer)
+            length, address = end.recvfrom_into(buffer)
         except OSError:  # the interface is down, or gone
             time.sleep(0.01)
             return
         if address[2] == socket.PACKET_OUTGOING or self._loses():
             return
         frame = bytearray(memoryview(buffer)[:length])
-        if not self.line.carry(frame):
+        out = self._carry(frame, end)
+        if out is None:
             return
         self.frames += 1
         if not self._loses():
             try:
-                self._socket.send(frame)
+                out.send(frame)
             except OSError:
                 return
         for slave in self._slaves:  # after the answer, so that it does not wait for them

@@ -25,6 +25,7 @@ QUESTIONS: Final = 3  # without an answer
 FRAME_US: Final = 20_000  # how long a frame may be under way before there are cycles: busy hosts take their time
 LISTENED_S: Final = 0.05  # for another master
 APWR, STATION_ADDRESS = 2, 0x0010  # a command, and the register that it writes
+FIRST_SOURCE, SECOND_SOURCE = b"\x01\x01", b"\x04\x04"  # by interface: what the package has in the source of frames
 OWN_INDEX: Final = 0x7F  # of a frame; the package has 16 of them and takes no notice of others
 GET_FLAGS: Final = 0x8913  # of an interface, by ioctl
 GET_LINK, LINKED_WITH = 18, 5  # of rtnetlink
@@ -149,33 +150,35 @@ def another_master(interface: str, listened_s: float = LISTENED_S) -> bool:
 
 
 class Wire:
-    """The master on an interface. Everything but the exchange of process data may be done by one thread at a time
-    beside it, with `lock`."""
+    """The master on an interface, or on two at both ends of a ring. Everything but the exchange of process data may be
+    done by one thread at a time beside it, with `lock`."""
 
-    def __init__(self, bus: str) -> None:
+    def __init__(self, bus: str, ring: str | None = None) -> None:
         pysoem = self.pysoem = package()
         self.bus, self.interface = bus, parse(bus)
-        if another_master(self.interface):
-            raise TaktError(f"{bus}: another master is at work on {self.interface}; two on one wire disturb each other")
+        for interface in filter(None, (self.interface, ring)):
+            if another_master(interface):
+                raise TaktError(f"{bus}: another master is at work on {interface}; two on one wire disturb each other")
         self.master = pysoem.Master()
         self.lock = threading.Lock()
         before = _packet_sockets()
         try:
-            self.master.open(self.interface)
+            self.master.open(self.interface, ring)
         except Exception as error:
             raise TaktError(f"{bus}: the interface cannot be opened: {_line(error)}") from None
-        self._socket: int | None = next(iter(_packet_sockets() - before), None)
+        self._sockets = _packet_sockets() - before
+        self.ring_end = None if ring is None else ethernet_socket(ring)
 
     def hurry(self) -> None:
         """From now on there are cycles. The package waits for frames in the kernel, for several ms at the least where
         one is lost. So it looks again and again instead, and `await_frame` waits before that as long as a cycle may."""
-        if self._socket is not None:
-            os.set_blocking(self._socket, False)
+        for number in self._sockets:
+            os.set_blocking(number, False)
 
     def await_frame(self, within_s: float) -> None:
         """Until a frame has come, or for so long."""
-        if self._socket is not None:
-            select.select([self._socket], [], [], max(0.0, within_s))
+        if self._sockets:
+            select.select(self._sockets, [], [], max(0.0, within_s))
 
     def find(self) -> list[Any]:
         """Brings the slaves that there are to PREOP; in the order of their positions."""
@@ -184,6 +187,19 @@ class Wire:
         except Exception as error:
             raise TaktError(f"{self.bus}: the slaves cannot be set up: {_line(error)}") from None
         return list(self.master.slaves) if count > 0 else []
+
+    def ring_is_whole(self) -> bool:
+        """Whether what went out at the first interface has come in at the second one since the last question, and
+        nothing that had gone out there: a broken ring sends that back."""
+        came = set()
+        while self.ring_end is not None:
+            try:
+                frame, address = self.ring_end.recvfrom(2048, socket.MSG_DONTWAIT)
+            except OSError:  # no more, or the interface is down
+                break
+            if address[2] != socket.PACKET_OUTGOING:
+                came.add(frame[8:10])
+        return FIRST_SOURCE in came and SECOND_SOURCE not in came
 
     def give_address(self, position: int, address: bytes) -> None:
         """To the slave at a position, which has lost it with its supply. The package does that only for slaves without
@@ -209,7 +225,10 @@ class Wire:
         return Sdo(self, slave, position)
 
     def close(self) -> None:
-        self._socket = None
+        self._sockets = set()
+        if self.ring_end is not None:
+            self.ring_end.close()
+            self.ring_end = None
         self.master.close()
 
     def __enter__(self) -> Wire:

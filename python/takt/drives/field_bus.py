@@ -12,7 +12,7 @@ from takt import drive
 from takt.counted import counted
 from takt.drives import objects as od
 from takt.drives.cia402 import MODE_NAMES, Mode
-from takt.drives.homing import DriveHoming
+from takt.drives.homing import DriveHoming, watch_of
 from takt.drives.probe import ProbeLatch, latches
 from takt.drives.scaling import Scaling
 from takt.drives.sdo import Objects
@@ -49,8 +49,13 @@ def extras_of(
     """Keywords of a DriveAxis for an entry in the machine file."""
     homing, number = described.get("homing"), described["probe_latch"]
     counts = float(axis["limits"]["velocity"]) * float(axis["encoder"]["increments_per_unit"]) * period_s
+    sense = -1 if axis["encoder"]["invert"] else 1
     return {
-        "homing": DriveHoming(homing) if homing else None,
+        "homing": DriveHoming(homing, watch_of(homing, axis, scaling, period_s)) if homing else None,
+        "limit_senses": {
+            "limit_negative": (-sense, bool(axis["inputs"]["invert_limit_negative"])),
+            "limit_positive": (sense, bool(axis["inputs"]["invert_limit_positive"])),
+        },
         "probe": ProbeLatch(number) if number else None,
         "period_s": period_s,
         "largest_step": counts * float(scaling.increments_per_count) + 1,

@@ -15,13 +15,58 @@ from takt.drives.scaling import Scaling
 MODE_WITHIN_S: Final = 1.0  # from the request for the mode to the mode
 QUIET_CYCLES: Final = 2  # in the mode without the start bit, which counts by its edge
 ANSWER_CYCLES: Final = 4  # from the start bit to a status word that is about it
+BRAKING_SHARE: Final = 2.0  # times the braking distance: how far behind a limit switch a drive may come to rest
+BRAKING_CYCLES: Final = 4  # and that many cycles until it brakes
+
+
+class Watch:
+    """That a drive which homes stays where it may be: it comes to rest behind a limit switch, and does not go too far.
+    All in increments, with the sense of the axis.
+
+    most: how far from where it began; None: anywhere.
+    acceleration: increments/s²."""
+
+    def __init__(self, most: float | None, acceleration: float, period_s: float) -> None:
+        self._most, self._acceleration, self._period_s = most, acceleration, period_s
+        self.begin()
+
+    def begin(self) -> None:
+        self._from: int | None = None
+        self._before = 0
+        self._edges: dict[int, tuple[int, float]] = {}  # by sense: where its switch came on, and the speed there
+
+    def look(self, position: int, switches: Mapping[int, bool], cycles: int = 1) -> str:
+        """Once a cycle, or after so many; "": all is well, else why the drive must stop.
+
+        switches: by sense, -1 and 1, whether the limit switch at that end is on."""
+        if self._from is None:
+            self._from = self._before = position
+        speed = abs(position - self._before) / (cycles * self._period_s)
+        self._before = position
+        gone = abs(position - self._from)
+        if self._most is not None and gone > self._most:
+            return f"it has gone {gone} increments from where it began, more than the {self._most:.0f} of distance"
+        for sense, on in switches.items():
+            if not on:
+                self._edges.pop(sense, None)
+                continue
+            edge, speed_there = self._edges.setdefault(sense, (position, speed))
+            beyond = sense * (position - edge)
+            braking = BRAKING_SHARE * speed_there**2 / (2 * self._acceleration)
+            if beyond > braking + BRAKING_CYCLES * self._period_s * speed + 1:
+                end = "positive" if sense > 0 else "negative"
+                return f"it goes on behind the {end} limit switch, {beyond} increments by now"
+        return ""
 
 
 class DriveHoming:
-    """One homing of a drive after the other; the drive is in operation meanwhile."""
+    """One homing of a drive after the other; the drive is in operation meanwhile.
 
-    def __init__(self, described: Mapping[str, Any]) -> None:
+    watch: None: what the drive does is its own affair."""
+
+    def __init__(self, described: Mapping[str, Any], watch: Watch | None = None) -> None:
         self.method: int = described["method"]
+        self.watch = watch
         self.within_s = float(described["within_s"])
         self.homed = False
         self.failed = ""  # why; "": it has not
@@ -31,10 +76,17 @@ class DriveHoming:
         """The drive is not in operation: the next homing starts anew."""
         self._begin_s: float | None = None
         self._cycles = 0  # in the mode
+        if self.watch is not None:
+            self.watch.begin()
 
     @property
     def under_way(self) -> bool:
         return self._begin_s is not None and not self.homed and not self.failed
+
+    @property
+    def moves(self) -> bool:
+        """The drive was told to home, and has not ended by itself."""
+        return self._begin_s is not None and not self.homed
 
     def forget(self) -> None:
         """The drive has started anew."""
@@ -65,6 +117,14 @@ class DriveHoming:
             elif status & FOLLOWS_BIT and status & TARGET_REACHED_BIT:
                 self.homed = True
         return HOMING_START_BIT
+
+
+def watch_of(described: Mapping[str, Any], axis: Mapping[str, Any], scaling: Scaling, period_s: float) -> Watch:
+    """For the `homing` of a machine file; what it does not say of braking is as the axis does it."""
+    per_unit = float(axis["encoder"]["increments_per_unit"]) * float(scaling.increments_per_count)
+    limits, distance = axis["limits"], described.get("distance")
+    acceleration = described.get("acceleration") or limits.get("deceleration") or limits["acceleration"]
+    return Watch(None if distance is None else distance * per_unit, float(acceleration) * per_unit, period_s)
 
 
 def homing_objects(

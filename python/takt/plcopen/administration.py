@@ -7,6 +7,7 @@ from typing import Any
 
 from takt import _commands
 from takt.axis import Axis
+from takt.drives.error_texts import error_text as drive_error_text
 from takt.engine import error_text
 from takt.feedback import Feedback
 from takt.plcopen.base import AxisName, ExecuteBlock, FunctionBlock, Input, Output, ReadBlock, SettingBlock, in_control
@@ -164,8 +165,9 @@ class MC_ReadAxisError(ReadBlock):  # noqa: N801
 
     @property
     def text(self) -> str:
-        """The fault for people; empty without one."""
-        return error_text(self.AxisErrorID) if self.AxisErrorID else ""
+        """The fault for people, with what the drive says of it; empty without one."""
+        said = [drive_error_text(self.Axis.drive_error)] if self.Axis.drive_error else []
+        return ": ".join([error_text(self.AxisErrorID), *said]) if self.AxisErrorID else ""
 
 
 class MC_ReadActualPosition(ReadBlock):  # noqa: N801

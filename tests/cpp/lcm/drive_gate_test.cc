@@ -9,6 +9,7 @@
 #include <random>
 
 #include "takt/core/describe.h"
+#include "takt/core/drive_errors.h"
 #include "takt/core/hash.h"
 #include "takt/lcm/channels.h"
 #include "test_machine.h"
@@ -95,6 +96,23 @@ TEST_F(DriveGateTest, AnAnswerIsHandedOn) {
   EXPECT_EQ(refused, 0);
 }
 
+TEST_F(DriveGateTest, WhatADriveSaysOfItsFaultAndOfItsClock) {  // AX-87
+  msgs::drive_feedback m = Answer(9, 0);
+  m.drive_error = 0x8611;
+  m.later_s = -0.0004;
+  const auto sample = Take(m);
+  ASSERT_TRUE(sample);
+  EXPECT_EQ(sample->inputs.drive_error, 0x8611);
+  EXPECT_EQ(sample->later_s, -0.0004);
+  m = Answer(10, 1);
+  m.later_s = HUGE_VAL;
+  ExpectRefused(m, "later_s: expected a finite number, found inf");
+  EXPECT_EQ(DriveErrorText(0x8611), "0x8611 (following error)");
+  EXPECT_EQ(DriveErrorText(0x8619), "0x8619 (positioning)");
+  EXPECT_EQ(DriveErrorText(0xFF07), "0xFF07 (of the maker of the drive)");
+  EXPECT_EQ(DriveErrorText(-1), "0xFFFFFFFF (of the maker of the drive)");
+}
+
 TEST_F(DriveGateTest, TheJournalHasTheSameNumbers) {  // EN-07
   engine::DriveEntry entry{17, {16, 0, {}}};
   entry.sample.inputs = {.counts = 4'000'000'000u,
@@ -110,6 +128,7 @@ TEST_F(DriveGateTest, TheJournalHasTheSameNumbers) {  // EN-07
                          .probe_fall_age_s = 1e-9,
                          .drive_ready = true,
                          .drive_fault = true,
+                         .drive_error = 0x3210,
                          .torque_nm = -1.5};
   const msgs::journal_drive message = ToMessage(entry, machine);
   EXPECT_EQ(message.cycle, 17);

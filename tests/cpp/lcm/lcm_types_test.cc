@@ -135,7 +135,7 @@ void ExpectSameConstants(const std::string& file, const std::string& prefix, con
 
 // EN-11
 TEST(LcmTypes, StatesSayWhatTheDescriptionsOfOutputsSay) {
-  const std::set<std::string> own = {"utime", "cycle", "time_ns", "sequence", "name"};
+  const std::set<std::string> own = {"utime", "cycle", "time_ns", "sequence", "name", "drive_error_text"};
   for (const engine::ComponentKind& kind : engine::ComponentKinds()) {
     ExpectSameFields(std::string(kind.name) + "_state.lcm", *kind.outputs, own);
   }
@@ -165,7 +165,7 @@ TEST(LcmTypes, DriveMessagesSayWhatTheDescriptionsOfThePortsSay) {
   ExpectSameFields("drive_setpoint.lcm", TypeOf<ServoOutputs>(),
                    {"utime", "run_id", "cycle", "sequence", "axis", "period_s", "real_time"});
   ExpectSameFields("drive_feedback.lcm", TypeOf<ServoInputs>(),
-                   {"utime", "run_id", "cycle", "sequence", "axis", "plant"});
+                   {"utime", "run_id", "cycle", "sequence", "axis", "plant", "later_s"});
   ExpectSameConstants("drive_setpoint.lcm", "MODE_", TypeOf<DriveMode>());
 }
 
