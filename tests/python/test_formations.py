@@ -134,3 +134,18 @@ def test_replay_is_the_same(tmp_path: Path) -> None:
         session.wait(lambda: two.formation == 0, 5)
     result = takt.replay(log)
     assert result.same, result.sentence
+
+
+def test_a_planet_says_that_what_is_buffered_waits_for_the_end_of_the_formation() -> None:  # PL-84
+    with Engine(MACHINE) as engine:
+        star, two = formed(engine), engine.mover("two")
+        assert two.delay == "none"
+        since = engine.cycle
+        waits = two.move_to_position(x=900, y=240, buffer_mode="buffered")
+        engine.run(0.5)
+        assert waits.busy
+        assert (two.delay, two.blocked_by, two.x) == ("formation", star, 420)
+        assert two.delay_since < since
+        two.leave_formation().wait()
+        waits.wait()
+        assert (two.delay, two.blocked_by, two.x) == ("none", None, pytest.approx(900))

@@ -196,6 +196,34 @@ def test_more_across_the_track_than_there_is_is_refused(lateral: float, accelera
         assert recorder.recording.info("one")["limits"]["lateral_acceleration"] == 700
 
 
+@pytest.mark.parametrize("number", [7, 11])
+def test_movers_that_turn_brake_before_others_within_their_limits(number: int) -> None:  # PL-81, PL-82
+    """The area of what turns is a bound, and may come out larger while it brakes: no reason to stop at once."""
+    rng = random.Random(number)
+    turns = {"maximum": {"velocity": 720, "acceleration": 7200, "jerk": 144_000}, "lower": -1e4, "upper": 1e4}
+    sizes = {"one": (60, 150, 0), "two": (150, 50, 500)}
+    machine = {
+        "name": "plane",
+        "axes": [],
+        "movers": [
+            {"name": name, "width": width, "height": height, "initial": {"x": x, "c": rng.uniform(-90, 90)}, "c": turns}
+            for name, (width, height, x) in sizes.items()
+        ],
+    }
+    with takt.Engine(machine) as engine, engine.record() as recorder:
+        movers = list(engine.movers.values())
+        for mover in movers:
+            mover.enable().wait()
+        for _ in range(12):
+            dynamics = {"acceleration": rng.uniform(1000, 10_000)}
+            place = {"x": rng.uniform(0, 500), "y": rng.uniform(-80, 80), "c": rng.uniform(-90, 90)}
+            rng.choice(movers).move_to_position(**place, **dynamics)
+            engine.run(rng.uniform(0.05, 0.4))
+        engine.run(1)
+    for name in sizes:
+        expect.within_limits(recorder.recording, name)
+
+
 def test_set_points_from_outside_may_have_any_jerk() -> None:
     with takt.Engine(MACHINE) as engine, engine.record() as recorder:
         one = engine.mover("one")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -462,3 +463,30 @@ def test_a_mover_says_why_and_since_when_it_waits() -> None:
     assert mover.delay == "release"
     mover.release()
     held.wait()
+
+
+def test_what_ends_with_set_points_from_outside_names_what_was_in_the_way() -> None:  # PL-02, PL-84
+    machine = {
+        "name": "line",
+        "axes": [],
+        "movers": [{"name": "one"}, {"name": "two", "initial": {"x": 500, "y": 130}}],
+        "tracks": [{"name": "track", "elements": [{"from": {"x": 0, "y": 0}, "to": {"x": 1000, "y": 0}}]}],
+    }
+    with Engine(machine) as engine:
+        one, two = engine.mover("one"), engine.mover("two")
+        engine.track("track").enable().wait()
+        one.enable().wait()
+        one.join_track(track="track").wait()
+        move = one.move_on_track(position=900, velocity=500)
+        outside = one.start_external_setpoint_generation(mode="relative")
+        for i in range(1, 1500):
+            t = i * engine.period  # sways by 80 mm, which the way past the other mover has no room for
+            sways = {"y": 40 * (1 - math.cos(5 * t)), "velocity_y": 200 * math.sin(5 * t)}
+            one.set_external_setpoint(**sways, acceleration_y=1000 * math.cos(5 * t))
+            engine.step()
+            if outside.final:
+                break
+        engine.run(0.5)
+    for feedback in (outside, move):
+        assert (feedback.error_id, feedback.object) == (3024, two)
+        assert feedback.sentence == "something would touch something else on the way: mover two"

@@ -214,6 +214,9 @@ void Hold(const Context& c, std::uint32_t other, State& s) noexcept {
   }
   plane.motion = rest.motion;
   plane.begin = rest.begin;
+  // The rest of it is part of the course that the guard knows, though it may come out larger as seen from the next
+  // cycle: areas of what turns are bounds. So it stays the way to rest until a course is clear again.
+  s.escape = {rest.motion, rest.begin, c.cycle.count + 1};
   plane.passes = false;
   if (plane.goes && plane.held_by == kNobody) plane.held_since = c.cycle.count;
   if (plane.goes) plane.held_by = other;

@@ -160,7 +160,7 @@ bool CanFollowAsBody(const Context& c, const SetPoint& to, State& s) {
 
 }  // namespace
 
-ErrorId Follow(const Context& c, SetPoint& at, State& s) noexcept {
+ErrorId Follow(const Context& c, SetPoint& at, State& s, ObjectInfo& object) noexcept {
   External& external = s.external;
   external.missing = external.fresh ? 0 : external.missing + 1;
   if (external.missing >= c.params.missing_setpoints) return ErrorId::kNoSetPoint;
@@ -176,7 +176,6 @@ ErrorId Follow(const Context& c, SetPoint& at, State& s) noexcept {
   }
   const bool follows = IsStar(c) ? CanFollowAsBody(c, to, s) : CanFollow(c, s, s.set_point, to);
   if (!follows) return ErrorId::kWildSetPoint;
-  ObjectInfo object;
   if (IsOnTrack(s)) {
     const PlacesOff places = PlacesOffTrack(c, external.given);
     if (const ErrorId why = WhyNotOn(c, s, CoverOf(c, s, places)); why != ErrorId::kNone) return why;
@@ -189,10 +188,6 @@ ErrorId Follow(const Context& c, SetPoint& at, State& s) noexcept {
   }
   ErrorId why = object ? ErrorId::kCollision : ErrorId::kNone;
   if (!object && c.rider().on) why = GetOff(c, s, external.given, object);
-  if (object) {
-    Report(c, s.tickets[kExternal], FeedbackState::kError, ErrorId::kCollision, 0, s, object);
-    s.tickets[kExternal] = 0;
-  }
   if (why != ErrorId::kNone) return why;
   external.taken = external.given;
   at = to;

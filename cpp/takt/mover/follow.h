@@ -7,7 +7,7 @@ namespace takt::mover {
 
 // Takes the set point of this cycle into `at`, which holds where the mover would be without it. kNoSetPoint,
 // kWildSetPoint, kOffStators, kPartDisabled, kCollision: `at` means nothing.
-ErrorId Follow(const Context& c, SetPoint& at, State& s) noexcept;
+ErrorId Follow(const Context& c, SetPoint& at, State& s, ObjectInfo& object) noexcept;
 
 // mm, no more than that a mover may get off its place on a track by set points from outside, as those are now.
 double ReachOf(const Context& c, const State& s) noexcept;

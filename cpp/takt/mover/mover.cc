@@ -99,9 +99,10 @@ void MoveOn(const Context& c, State& s) {
     return;
   }
   if (s.external.mode != SetpointMode::kNone) {
-    const ErrorId error = Follow(c, at, s);
+    ObjectInfo object;
+    const ErrorId error = Follow(c, at, s, object);
     if (error != ErrorId::kNone) {
-      Fail(c, error, s);
+      Fail(c, error, s, false, object);
       at = Planned(c, s);
     }
   }
@@ -302,6 +303,10 @@ void PublishDelay(const Context& c, const State& s, Outputs& out) {
     Block(ObjectKind::kMover, rider.gear.master, out);
   } else if (s.buffer.held_by) {
     PublishHeld(s.buffer, out);
+  } else if (IsPlanet(s) && s.buffer.count > 0) {
+    out.delay = Delay::kFormation;
+    out.delay_since = s.begun[kFormation];
+    Block(ObjectKind::kMover, s.formation.star, out);
   } else if (IsHeldUpByPart(c, s)) {
     out.delay = Delay::kPart;
     out.delay_since = s.since;

@@ -67,7 +67,7 @@ void Step(const Context& c, const Inputs& inputs, State& s) noexcept;
 void Arrive(const Context& c, const State& s) noexcept;
 
 // Comes to rest with the maximum dynamics, and is in Error then. `aborts`: a reset leads to Disabled.
-void Fail(const Context& c, ErrorId error, State& s, bool aborts = false) noexcept;
+void Fail(const Context& c, ErrorId error, State& s, bool aborts = false, const ObjectInfo& object = {}) noexcept;
 
 void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& out) noexcept;
 

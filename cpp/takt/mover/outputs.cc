@@ -16,6 +16,8 @@ void describe(Enumeration<Delay>& e) {
   e.value(Delay::kPart, "part", "It waits for a part that is on its way, or not enabled: blocker.");
   e.value(Delay::kDeadlock, "deadlock", "The movers ahead of it wait for one another: waits_for.");
   e.value(Delay::kTrack, "track", "A track that is Moving is in its way: blocker.");
+  e.value(Delay::kFormation, "formation",
+          "What is buffered waits until the mover has left its formation: blocker is the star.");
 }
 
 void describe(Description<Outputs>& d) {

@@ -15,14 +15,15 @@ namespace takt::mover {
 // Why a mover that has a command does not go on (PL-70).
 enum class Delay : std::uint8_t {
   kNone,
-  kMover,     // another one is in its way: waits_for
-  kTrackEnd,  // its way ends here
-  kTime,      // a wait for some time
-  kRelease,   // one for a release
-  kMaster,    // its master is where it may not go, or is held up itself
-  kPart,      // a part of the surface is on its way, or not enabled
-  kDeadlock,  // the movers ahead of it wait for one another
-  kTrack,     // a track that is Moving is in its way
+  kMover,      // another one is in its way: waits_for
+  kTrackEnd,   // its way ends here
+  kTime,       // a wait for some time
+  kRelease,    // one for a release
+  kMaster,     // its master is where it may not go, or is held up itself
+  kPart,       // a part of the surface is on its way, or not enabled
+  kDeadlock,   // the movers ahead of it wait for one another
+  kTrack,      // a track that is Moving is in its way
+  kFormation,  // what is buffered waits until it has left its formation
 };
 
 struct Outputs {

@@ -26,15 +26,16 @@ void Report(const Context& c, Ticket ticket, FeedbackState state, ErrorId error,
   if (ticket != 0) s.history.Note(event);
 }
 
-void End(const Context& c, Slot slot, FeedbackState state, ErrorId error, State& s) noexcept {
+void End(const Context& c, Slot slot, FeedbackState state, ErrorId error, State& s, const ObjectInfo& object) noexcept {
   const bool done = state == FeedbackState::kDone;
-  if (s.tickets[slot] != 0) Report(c, s.tickets[slot], state, error, done ? Elapsed(c, s.begun[slot]) : 0, s);
+  if (s.tickets[slot] != 0) Report(c, s.tickets[slot], state, error, done ? Elapsed(c, s.begun[slot]) : 0, s, object);
   s.tickets[slot] = 0;
 }
 
-void EndAll(const Context& c, bool power, FeedbackState state, ErrorId error, State& s) noexcept {
+void EndAll(const Context& c, bool power, FeedbackState state, ErrorId error, State& s,
+            const ObjectInfo& object) noexcept {
   for (std::size_t slot = power ? 0 : kPower + 1; slot < kSlots; ++slot) {
-    End(c, static_cast<Slot>(slot), state, error, s);
+    End(c, static_cast<Slot>(slot), state, error, s, object);
   }
   AbortBuffered(c, s);
   s.buffer.releases = 0;
@@ -206,10 +207,10 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
   Reserve(c, s, IsOnTrack(s));
 }
 
-void Fail(const Context& c, ErrorId error, State& s, bool aborts) noexcept {
+void Fail(const Context& c, ErrorId error, State& s, bool aborts, const ObjectInfo& object) noexcept {
   using enum planar::ObjectState;
   if (s.state == kResetting || s.state == kErrorPending || s.state == kError) return;
-  EndAll(c, true, FeedbackState::kError, error, s);
+  EndAll(c, true, FeedbackState::kError, error, s, object);
   s.error = error;
   s.aborts = aborts || s.state == kDisabled || s.state == kDisabling;
   BringToRest(c, nullptr, s);

@@ -10,9 +10,11 @@ namespace takt::mover {
 void Report(const Context& c, Ticket ticket, FeedbackState state, ErrorId error, double value, State& s,
             const ObjectInfo& object = {}) noexcept;
 // The command in a slot is over.
-void End(const Context& c, Slot slot, FeedbackState state, ErrorId error, State& s) noexcept;
+void End(const Context& c, Slot slot, FeedbackState state, ErrorId error, State& s,
+         const ObjectInfo& object = {}) noexcept;
 // Those of all slots, but for enabling and the like if not `power`.
-void EndAll(const Context& c, bool power, FeedbackState state, ErrorId error, State& s) noexcept;
+void EndAll(const Context& c, bool power, FeedbackState state, ErrorId error, State& s,
+            const ObjectInfo& object = {}) noexcept;
 void Enter(const Context& c, planar::ObjectState state, State& s) noexcept;
 
 // s since `begin` when this cycle begins.

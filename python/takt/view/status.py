@@ -229,6 +229,7 @@ def _mover(v: Values, name_of: NamesOf, more: list[str], waits: list[str]) -> in
             "master": "waits for its master",
             "part": "waits for a part",
             "track": "waits until nothing moves on a track",
+            "formation": "waits until it has left its formation",
         }
         waits.append(words.get(delay, "waits to be released"))
     return int(v["delay_since"]) if waits else 0
