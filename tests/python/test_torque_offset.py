@@ -3,6 +3,7 @@ that are identified."""
 
 from __future__ import annotations
 
+import copy
 import math
 from typing import Any
 
@@ -124,6 +125,55 @@ def test_a_delta_in_mujoco_follows_better_with_it() -> None:
     }
     after, _ = errors(with_offset(bare, offset))
     assert after < 0.5 * before, (before, after)
+
+
+def test_a_payload_that_is_gripped_is_told_at_run_time() -> None:
+    """GR-46: with the load told as it comes the axis follows as without one; power off, a clone and what is left out
+    leave it as it is."""
+    heavy = copy.deepcopy(SERVO)
+    heavy["simulation"]["servos"][0]["mechanics"] |= {"inertia": 0.004, "load_torque": 9}
+
+    def worst(machine: dict[str, Any], told: dict[str, float] | None) -> float:
+        with takt.Engine(with_offset(machine, IDENTIFIED)) as engine:
+            axis = engine.axis("z")
+            axis.power().wait()
+            if told is not None:
+                axis.set_load(**told).wait()
+                axis.set_load().wait()
+                axis.power(enable=False).wait()
+                axis.power().wait()
+            goes_on = engine.clone()
+            found = []
+            for one in (engine, goes_on):
+                with one.record() as recorder:
+                    one.axis("z").move_relative(distance=100).wait()
+                found.append(error(recorder.recording, "z"))
+            assert found[0] == found[1]
+            return found[0]
+
+    empty, wrong = worst(SERVO, None), worst(heavy, None)
+    right = worst(heavy, {"inertia": 0.004, "load_torque": 9.0})
+    assert wrong > 2 * empty
+    assert right < 1.1 * empty
+
+
+def test_a_load_that_cannot_be() -> None:
+    """GR-46: values, an axis without `torque_offset`, a member of a group that moves."""
+    with takt.Engine(SERVO) as engine:
+        assert engine.axis("z").set_load(load_torque=1.0).wait_final().error_id == 3005
+    group = {"name": "g", "axes": ["z"], "path": {"velocity": 100, "acceleration": 1000, "jerk": 20000}}
+    with takt.Engine(with_offset(SERVO, {}) | {"groups": [group]}) as engine:
+        axis = engine.axis("z")
+        for wrong in ({"inertia": -1.0}, {"load_torque": 1e12}, {"coulomb_friction": math.nan}):
+            refused = axis.set_load(**wrong).wait_final()
+            assert refused.error_id == 5
+            assert next(iter(wrong)) in refused.sentence
+        engine.group("g").power().wait()
+        engine.group("g").enable().wait()
+        move = engine.group("g").move_direct_absolute(a1=50.0)
+        engine.run(0.1)
+        axis.set_load(load_torque=4.0).wait()
+        move.wait()
 
 
 def test_what_does_not_fit() -> None:

@@ -233,7 +233,7 @@ bool AsksToMove(const Command& command) noexcept {
         if constexpr (std::is_same_v<T, Power>) return body.enable;
         constexpr bool kRests = std::is_same_v<T, Reset> || std::is_same_v<T, Halt> || std::is_same_v<T, Stop> ||
                                 std::is_same_v<T, HaltSuperimposed> || std::is_same_v<T, CamTableSelect> ||
-                                std::is_same_v<T, SetConstants> || std::is_same_v<T, WriteParameter> ||
+                                std::is_same_v<T, SetConstants> || std::is_same_v<T, SetLoad> || std::is_same_v<T, WriteParameter> ||
                                 std::is_same_v<T, ReadParameter> || std::is_same_v<T, SetSoftLimits> ||
                                 std::is_same_v<T, WriteOutput> || std::is_same_v<T, SetPosition> ||
                                 std::is_same_v<T, SetOverride> || std::is_same_v<T, TouchProbe> ||

@@ -22,7 +22,7 @@ using Command =
                  CombineAxes, CamTableSelect, CamIn, CamAdd, CamRemove, CamOut, PositionProfile, VelocityProfile,
                  AccelerationProfile, Home, StepAbsSwitch, StepLimitSwitch, StepBlock, StepRefPulse, StepDistanceCoded,
                  StepDirect, StepAbsolute, FinishHoming, StepRefFlyingSwitch, StepRefFlyingRefPulse, AbortPassiveHoming,
-                 SetConstants, WriteParameter, ReadParameter, SetSoftLimits, DirectOutput, PulseOutput, WriteOutput,
+                 SetConstants, SetLoad, WriteParameter, ReadParameter, SetSoftLimits, DirectOutput, PulseOutput, WriteOutput,
                  SetPosition, SetOverride, TouchProbe, AbortTrigger, Touch, DigitalCamSwitch, Stream, StreamPoint>;
 
 }  // namespace takt::axis

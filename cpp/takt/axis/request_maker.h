@@ -81,6 +81,7 @@ bool Fill(const Maker& m, const Inch& c);
 bool Fill(const Maker& m, const MoveSuperimposed& c);
 bool Fill(const Maker& m, const HaltSuperimposed& c);
 bool Fill(const Maker& m, const SetConstants& c);
+bool Fill(const Maker& m, const SetLoad& c);
 bool Fill(const Maker& m, const WriteParameter& c);
 bool Fill(const Maker& m, const ReadParameter& c);
 bool Fill(const Maker& m, const SetSoftLimits& c);

@@ -193,6 +193,17 @@ Status CarryOut(const Context& c, Ticket ticket, const SetConstants& k, State& s
   return Done(c, ticket);
 }
 
+// At any time: the drive adds it to the torque of its own loops, and a payload comes when it is gripped.
+Status CarryOut(const Context& c, Ticket ticket, const SetLoad& load, State&) noexcept {
+  std::optional<TorqueOffset>& offset = c.params.drive.torque_offset;
+  if (!offset) return Status::Failed(ErrorId::kState);
+  offset->inertia = load.inertia.value_or(offset->inertia);
+  offset->coulomb_friction = load.coulomb_friction.value_or(offset->coulomb_friction);
+  offset->viscous_friction = load.viscous_friction.value_or(offset->viscous_friction);
+  offset->load_torque = load.load_torque.value_or(offset->load_torque);
+  return Done(c, ticket);
+}
+
 Status CarryOut(const Context& c, Ticket ticket, const WriteParameter& w, State& s) noexcept {
   const auto parameter = static_cast<Parameter>(w.number);
   Watch lower{c.params.limits.lower, s.dormant.lower};
@@ -322,6 +333,14 @@ bool Fill(const Maker& m, const SetConstants& k) {
          (!k.velocity_at_10v ||
           m.In("velocity_at_10v", *k.velocity_at_10v, std::numeric_limits<double>::min(), kMaxPosition)) &&
          position_if("lower", k.lower) && position_if("upper", k.upper);
+}
+
+bool Fill(const Maker& m, const SetLoad& load) {
+  const auto in_if = [&](const char* field, const std::optional<double>& value, double low) {
+    return !value || m.In(field, *value, low, kMaxTorque);
+  };
+  return in_if("inertia", load.inertia, 0) && in_if("coulomb_friction", load.coulomb_friction, 0) &&
+         in_if("viscous_friction", load.viscous_friction, 0) && in_if("load_torque", load.load_torque, -kMaxTorque);
 }
 
 constexpr auto kLastParameter = static_cast<std::int32_t>(Parameter::kTorqueLimit);

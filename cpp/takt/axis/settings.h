@@ -45,6 +45,7 @@ std::optional<double> ValueOf(const AxisParams& params, const State& state, std:
 // kTargetBehindLimit: a SW limit would lie before where the axis is, or before the end of a move that was promised.
 // kParameter: a value is out of its range, or the parameter cannot be written.
 Status CarryOut(const Context& c, Ticket ticket, const SetConstants& command, State& s) noexcept;
+Status CarryOut(const Context& c, Ticket ticket, const SetLoad& command, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const WriteParameter& command, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const ReadParameter& command, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const SetSoftLimits& command, State& s) noexcept;

@@ -212,6 +212,7 @@ const std::vector<Entry>& Entries() {
       Make<axis::Command, axis::StepRefFlyingRefPulse>(kAxis, "step_ref_flying_ref_pulse"),
       Make<axis::Command, axis::AbortPassiveHoming>(kAxis, "abort_passive_homing"),
       Make<axis::Command, axis::SetConstants>(kAxis, "set_constants"),
+      Make<axis::Command, axis::SetLoad>(kAxis, "set_load"),
       Make<axis::Command, axis::WriteParameter>(kAxis, "write_parameter"),
       Make<axis::Command, axis::ReadParameter>(kAxis, "read_parameter"),
       Make<axis::Command, axis::SetSoftLimits>(kAxis, "set_soft_limits"),

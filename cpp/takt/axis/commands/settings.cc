@@ -17,6 +17,17 @@ void describe(Description<SetConstants>& d) {
   d.defaulted<&C::upper>(unit::u, "LimPos.");
 }
 
+void describe(Description<SetLoad>& d) {
+  using C = SetLoad;
+  d.about(
+      "Says what the drive moves from now on (a payload that was gripped): the torque that it adds from the set point, "
+      "`drive: torque_offset` of the machine file; what is left out stays.");
+  d.defaulted<&C::inertia>(not_negative, "Torque per u/s².");
+  d.defaulted<&C::coulomb_friction>(not_negative, "Torque, in the sense of the set velocity.");
+  d.defaulted<&C::viscous_friction>(not_negative, "Torque per u/s.");
+  d.defaulted<&C::load_torque>("Torque, constant.");
+}
+
 void describe(Description<WriteParameter>& d) {
   using C = WriteParameter;
   d.about("Sets a parameter by its number (MC_WriteParameter).");

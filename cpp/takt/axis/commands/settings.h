@@ -13,6 +13,9 @@ struct SetConstants {  // GT_SetConstant
   std::optional<double> velocity_at_10v{};
   std::optional<double> lower{}, upper{};
 };
+struct SetLoad {  // of `drive: torque_offset`, from now on; unset: as before
+  std::optional<double> inertia{}, coulomb_friction{}, viscous_friction{}, load_torque{};
+};
 struct WriteParameter {  // MC_WriteParameter, MC_WriteBoolParameter
   std::int32_t number = 0;
   double value = 0;
@@ -49,6 +52,7 @@ struct SetOverride {  // MC_SetOverride
 };
 
 void describe(Description<SetConstants>&);
+void describe(Description<SetLoad>&);
 void describe(Description<WriteParameter>&);
 void describe(Description<ReadParameter>&);
 void describe(Description<SetSoftLimits>&);
