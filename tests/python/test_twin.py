@@ -223,6 +223,43 @@ def test_physics_that_explodes_is_said_and_stopped() -> None:
             engine.step()
 
 
+def test_physics_that_explodes_at_once_is_said_and_nowhere_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """PY-23: not on the terminal, and not in a file of MuJoCo's."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "m.xml").write_text(
+        "<mujoco><option gravity='1e12 0 0'/><worldbody><body name='b'><joint name='jx' type='slide' axis='1 0 0'/>"
+        "<geom size='0.05' mass='2'/></body></worldbody></mujoco>"
+    )
+    file = tmp_path / "machine.yaml"
+    file.write_text(
+        f"name: x\naxes: [{{name: x, {LIMITS}}}]\n"
+        "twin: {model: m.xml, axes: [{axis: x, joint: jx, max_torque: 9}]}\n"
+    )
+    with (
+        takt.Engine(file, plant="mujoco") as engine,
+        pytest.raises(takt.PlantError, match=r"exploded in the step before the first cycle: .* the state at the start"),
+    ):
+        engine.step(5)
+    assert [path.name for path in tmp_path.iterdir() if path.suffix == ".TXT"] == []
+    assert capfd.readouterr() == ("", "")
+
+
+def test_friction_holds() -> None:
+    """PY-23: what a motor is too weak for does not creep: 20 N against 30 N."""
+    text = (
+        "name: x\naxes: [{name: z, " + LIMITS + "}]\ngroups: []\n"
+        "simulation: {servos: [{axis: z, mechanics: {inertia: 0.001}}]}\n"
+        "twin: {axes: [{axis: z, mass: 2, max_torque: 20, coulomb_friction: 30}]}\n"
+    )
+    with takt.Engine(text, plant="mujoco") as engine:
+        engine.axis("z").power().wait()
+        engine.axis("z").move_absolute(position=50)
+        engine.run(1.0)
+        assert abs(engine.axis("z").true_position) < 0.05
+
+
 def test_motors_that_are_too_weak_and_what_must_not_touch() -> None:
     """Both are failures of the twin's own."""
     weak = GANTRY.replace("axis: z, max_torque: 900", "axis: z, max_torque: 30")  # 2 kg with c: 39 N of weight
