@@ -11,8 +11,9 @@ import pytest
 from takt import _core, msgs
 from takt.kinematics import Kinematics, pose_to_matrix
 from takt.ready import ready_machines
+from takt.recording import Recording
 from takt.scene import link_poses, make_scene, matrix_of, node_pose
-from takt.scene.moving import poses_of
+from takt.scene.moving import is_shown, poses_of
 from takt.scene.solids import MOST_TRIANGLES, along, thinned
 from takt.view.machine import Machine
 
@@ -79,6 +80,14 @@ def described(text: str, folder: Path | None = None) -> Machine:
     message = msgs.machine_description()
     message.name, message.version, message.period_s, message.text = "m", "0", 0.001, text
     return Machine(message, folder)
+
+
+def with_held(recording: Recording, start_s: float, end_s: float) -> Recording:
+    """As if module `picker` held something for that time."""
+    tables = {name: recording[name].copy() for name in recording.components}
+    time_s = tables["picker"]["time_s"]
+    tables["picker"]["held"] = (time_s > start_s) & (time_s < end_s)
+    return Recording(tables, meta=recording.meta)
 
 
 def kinds(machine: Machine) -> set[str]:
@@ -184,6 +193,25 @@ def test_every_ready_machine_has_a_scene(name: str) -> None:
             assert source.name in shown
         if source.kind == "axis":
             assert (source.name in shown) != (source.name in belts | members)
+
+
+def test_what_a_module_holds_hangs_from_the_tool() -> None:
+    """PY-27: as large as the twin's products, its top at the tool, while the module holds something."""
+    machine = described((EXAMPLES / "pick_cell" / "machine.yaml").read_text(), EXAMPLES / "pick_cell")
+    node = next(node for node in machine.scene["nodes"] if node["name"] == "picker.held")
+    (solid,) = node["solids"]
+    assert solid["size"] == [40, 30, 20] == machine.scene["belts"]["infeed"]["size"]
+    links = len(machine.mechanisms["robot"][0].links)
+    poses = {"robot": np.tile([100, 50, -700, 0, 0, 0, 1.0], (links, 1))}
+    middle = node_pose(machine.scene, node, poses, lambda *_: 1.0) @ [*np.array(solid["at"])[3::4], 1]
+    np.testing.assert_allclose(middle[:3], [100, 50, -710])
+    for held, shown in ((0.0, False), (1.0, True), (2.0, True), (math.nan, False)):
+        assert is_shown(node, lambda *_, held=held: held) is shown
+    # Tools of arms point away from their flange, so what they hold is there.
+    for kind, side in (("six_axis", 1), ("scara", 1)):  # one_group's tool is 50 mm along Z
+        scene = described(one_group(KINDS[kind]) + "pick_and_place: [{name: picker, group: robot}]\n").scene
+        (solid,) = next(node["solids"] for node in scene["nodes"] if node["name"] == "picker.held")
+        assert solid["at"][11] == side * 10
 
 
 def test_what_the_file_leaves_out_is_left_out() -> None:
