@@ -311,6 +311,31 @@ def test_urdf_has_its_meshes(tmp_path: Path) -> None:
     assert all(solid["kind"] != "mesh" for solid in nodes["robot.upper"]["solids"])  # a simple one in its place
 
 
+def test_urdf_has_what_is_to_be_seen(tmp_path: Path) -> None:
+    """PY-27: visuals before shapes for collisions, those before simple solids; of each link for itself."""
+    (tmp_path / "cover.stl").write_text(STL)
+    visual = """<visual><origin xyz="0 0 0.05" rpy="0 0 1.5707963267948966"/><geometry>%s</geometry></visual>"""
+    cover = visual % '<mesh filename="cover.stl" scale="2 2 2"/>'
+    column = visual % '<cylinder radius="0.04" length="0.2"/>'
+    text = URDF.replace('<link name="lower">', f'<link name="lower">{cover}{column}')
+    text = text.replace('<link name="upper">', '<link name="upper">' + visual % '<mesh filename="gone.dae"/>')
+    palm = visual % '<sphere radius="0.03"/>'
+    text = text.replace('<link name="hand"/>', f'<link name="hand">{palm}</link>')
+    (tmp_path / "two.urdf").write_text(text)
+    machine = one_group(KINDS["serial"]).replace(json.dumps({"urdf": URDF}), "{urdf: two.urdf}")
+    nodes = {node["name"]: node for node in described(machine, tmp_path).scene["nodes"]}
+    mesh, cylinder = nodes["robot.lower"]["solids"]
+    assert (mesh["kind"], max(mesh["vertices"]), mesh["part"], mesh["at"][11]) == ("mesh", 200, "lower", 50)
+    assert mesh["at"][:3] == pytest.approx([0, -1, 0], abs=1e-6)  # turned about Z
+    assert (cylinder["kind"], cylinder["size"]) == ("cylinder", [40, 200])
+    assert "mesh" not in {solid["kind"] for solid in nodes["robot.upper"]["solids"][1:]}
+    ball = next(s for node in nodes.values() for s in node["solids"] if s.get("part") == "hand")
+    assert (ball["kind"], ball["size"]) == ("sphere", [30])
+    # Without the folder: what is in no file.
+    apart = {node["name"]: node for node in described(machine.replace("two.urdf", json.dumps(text))).scene["nodes"]}
+    assert [solid["kind"] for solid in apart["robot.lower"]["solids"]] == ["cylinder"]
+
+
 def test_large_meshes_are_made_smaller() -> None:
     n = 120
     u, v = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
