@@ -39,8 +39,13 @@
 namespace takt::bindings {
 namespace {
 
-// In virtual time a scenario may command a thousand axes before it lets time pass.
-constexpr std::size_t kCommandQueue = 1 << 12;
+// In virtual time a scenario may command a thousand axes before it lets time pass. With what the engine keeps besides
+// it is just below a power of two, to which queues are rounded up: touching their memory is most of what an engine
+// costs.
+constexpr std::size_t kCommandQueue = 3 << 10;
+// Journals are taken after every cycle, which adds about a hundred commands at most, and what each drive has measured.
+constexpr std::size_t kJournalQueue = 1 << 9;
+constexpr std::size_t kJournalledPerDrive = 16;
 
 }  // namespace
 
@@ -120,9 +125,11 @@ class VirtualEngine {
   VirtualEngine(engine::LoadResult loaded, bool journal, const std::optional<std::string>& drives_url,
                 const std::optional<lcm::Keys>& drives_keys, const std::vector<std::uint32_t>& plant, bool checks)
       : journaling_(journal),
-        engine_(
-            std::move(*loaded.machine),
-            {.drives = drives_url.has_value() || !plant.empty(), .journal = journal, .command_queue = kCommandQueue}) {
+        journal_queue_(kJournalQueue + kJournalledPerDrive * loaded.machine->axes.size()),
+        engine_(std::move(*loaded.machine), {.drives = drives_url.has_value() || !plant.empty(),
+                                             .journal = journal,
+                                             .command_queue = kCommandQueue,
+                                             .snapshot_queue = journal_queue_}) {
     plant_.axes = plant;
     plant_.told.resize(plant.size());
     plant_.measured.resize(plant.size());
@@ -562,6 +569,7 @@ class VirtualEngine {
 
   const std::map<const Type*, std::vector<Column>> columns_ = ColumnsOfAll();
   const bool journaling_;
+  std::size_t journal_queue_;  // before the machine is given away
   std::mutex mutex_;
   engine::Engine engine_;
   std::optional<engine::PathChecks> checks_;

@@ -363,13 +363,15 @@ std::vector<std::string> ReasonTexts() {
   return texts;
 }
 
-// The shapes that URDF gives the links of a chain, as workspaces take them, each as JSON.
+// The shapes that URDF gives the links of a chain, as workspaces take them, each as JSON: those that are to be seen, or
+// those for collisions.
 std::vector<std::string> UrdfSolids(const std::string& urdf, const std::string& base, const std::string& tip,
-                                    const std::string& folder) {
+                                    const std::string& folder, bool visual) {
+  const auto purpose = visual ? kinematics::UrdfPurpose::kVisual : kinematics::UrdfPurpose::kCollision;
   std::string why;
   std::vector<std::string> solids;
   if (!kinematics::ReadUrdf(urdf, base, tip, why)) return solids;
-  for (const workspace::SolidParams& solid : workspace::LinksOfUrdf({urdf, base, tip}, folder).links)
+  for (const workspace::SolidParams& solid : workspace::LinksOfUrdf({urdf, base, tip}, folder, purpose).links)
     solids.push_back(ToJson(TypeOf<workspace::SolidParams>(), &solid).dump());
   return solids;
 }
@@ -398,7 +400,8 @@ void BindKinematics(py::module_& m) {
   m.def("reason_texts", &ReasonTexts, "The same as sentences.");
   m.def("poses_to_matrices", &ToMatrices, py::arg("poses"));
   m.def("matrices_to_poses", &ToPoses, py::arg("matrices"));
-  m.def("urdf_solids", &UrdfSolids, py::arg("urdf"), py::arg("base"), py::arg("tip"), py::arg("folder"));
+  m.def("urdf_solids", &UrdfSolids, py::arg("urdf"), py::arg("base"), py::arg("tip"), py::arg("folder"),
+        py::arg("visual"));
   m.def("surface_of_stl", &SurfaceOf, py::arg("path"), py::arg("scale"));
   m.def("poses_between", &Between, py::arg("ends"), py::arg("shares"));
 

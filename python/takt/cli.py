@@ -406,10 +406,11 @@ def foxglove(what: str | None, port: int, pace: str, key: Path | None) -> int:
 @click.option(
     "--watchdog", default=WATCHDOG, show_default=True, type=click.IntRange(1), help="Periods without a set point: off."
 )
+@click.option("--twin", is_flag=True, help="Axes of the machine's twin are in MuJoCo.")
 @KEY
-def plant(machine: Path, url: str | None, axes: tuple[str, ...], watchdog: int, key: Path | None) -> int:
+def plant(machine: Path, url: str | None, axes: tuple[str, ...], watchdog: int, twin: bool, key: Path | None) -> int:
     """Simulate the external drives of a MACHINE in this process, for an engine in another one."""
-    return simulate(machine, url, axes, watchdog, key)
+    return simulate(machine, url, axes, watchdog, key, twin=twin)
 
 
 cli.add_command(drives)

@@ -152,7 +152,7 @@ class _Line:
     drive: Drive | None  # None: it is on a bus
     bus: _Shared | None = field(default=None, repr=False)
     run_id: int = -1
-    cycle: int = -1  # carried out last
+    cycle: int = -2  # carried out last; the first one is -1
     sequence: int = 0  # of the next answer
     answer: bytes = b""
     real_time: bool = False
@@ -405,8 +405,11 @@ def simulate(
     axes: Sequence[str] = (),
     watchdog: int = WATCHDOG,
     key: KeyFile | None = None,
+    *,
+    twin: bool = False,
 ) -> int:
-    """Serves the external drives of a machine, or those of these axes, until SIGINT or SIGTERM."""
+    """Serves the external drives of a machine, or those of these axes, until SIGINT or SIGTERM. twin: those that it
+    moves are in MuJoCo."""
     from takt.engine import read_machine
 
     text, file_name = read_machine(machine)
@@ -417,11 +420,28 @@ def simulate(
             raise TaktError(f"{file_name}: external.drives has no axis {axis}; it has {', '.join(external) or 'none'}")
     if not external:
         raise TaktError(f"{file_name}: has no external drives (external: drives: - axis: NAME)")
-    drives = {axis: SimulatedServo(machine, axis) for axis in axes or external}
-    plant = Plant(drives, url or network_of(described), watchdog=watchdog, key=key)
+    if twin and axes:
+        raise TaktError("a twin moves all of its axes: give either --twin or --axis")
+    buses = [_twin_of(text, file_name, described, external)] if twin else []
+    moved = [axis for bus in buses for axis in bus.axes]
+    drives = {axis: SimulatedServo(machine, axis) for axis in axes or external if axis not in moved}
+    plant = Plant(drives, url or network_of(described), buses=buses, watchdog=watchdog, key=key)
     before = [signal.signal(number, lambda *_: plant.stop()) for number in (signal.SIGINT, signal.SIGTERM)]
-    print(f"simulating {', '.join(drives)}", file=sys.stderr, flush=True)
+    said = [f"simulating {', '.join(drives)}"] * bool(drives) + [f"in MuJoCo {', '.join(moved)}"] * twin
+    print("; ".join(said), file=sys.stderr, flush=True)
     plant.run()
     for number, handler in zip((signal.SIGINT, signal.SIGTERM), before, strict=True):
         signal.signal(number, handler)
     return 0
+
+
+def _twin_of(text: bytes, file_name: str, machine: Mapping[str, Any], external: Sequence[str]) -> Bus:
+    from takt.plant import OnNetwork
+    from takt.twin import Twin
+
+    bus = OnNetwork(lambda: Twin(text, file_name, machine), machine)
+    left = [axis for axis in bus.axes if axis not in external]
+    if left:
+        names = ", ".join(left)
+        raise TaktError(f"{file_name}: the twin moves {names}, expected them in external.drives, found {external}")
+    return bus

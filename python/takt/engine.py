@@ -218,6 +218,8 @@ class Engine(Session):
     @classmethod
     def restore(cls, saved: Saved) -> Engine:
         """An engine in the state that was saved, which it is held against. It has a journal, too."""
+        if not isinstance(saved, Saved):
+            raise TypeError(f"expected what Engine.save returned, not {saved!r}")
         engine = cls.__new__(cls)
         Engine.__init__(engine, _Text(saved.machine_text, saved.file_name), period=saved.period_s, journal=True)
         engine._go_to(saved)

@@ -96,7 +96,10 @@ class ReachEnv(gymnasium.Env[Floats, Floats]):
         return self._observed(), {"goal": self._middle + self._half * self._goal}
 
     def step(self, action: npt.ArrayLike) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
-        told = np.clip(np.asarray(action, float), -1, 1)
+        told = np.asarray(action, float)
+        if told.shape != self.action_space.shape or not np.isfinite(told).all():
+            raise ValueError(f"expected an action of {len(self._names)} numbers from -1 to 1, found {action!r}")
+        told = np.clip(told, -1, 1)
         for name, position in zip(self._names, self._middle + self._half * told, strict=True):
             self._engine.axis(name).move_absolute(position=float(position))
         self._engine.step(self._cycles)

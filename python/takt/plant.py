@@ -7,7 +7,7 @@ stands still meanwhile, and nothing goes over a network; drives in other process
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any, Final
 
@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from takt import _core
-from takt.drive import Drive, Measured, SetPoint
+from takt.drive import Bus, Drive, Measured, SetPoint
 from takt.errors import ConfigError, TaktError
 
 if TYPE_CHECKING:
@@ -78,6 +78,65 @@ class Drives(Plant):
             answer = drive.step(SetPoint(**values, period_s=self._period_s), self._period_s)
             said = [int(getattr(answer, n)) & _WRAP if n in _COUNTERS else getattr(answer, n) for n in _SAID]
             measured[row] = (*said, np.nan)
+
+
+class OnNetwork(Bus):
+    """A plant in a process of its own, for an engine on an LCM network, in real time or in step with it: hand it to
+    takt.drive.Plant as one of its buses. What it says of true_position stays here, and recordings of the engine do not
+    hear of it.
+
+    make: a plant that nothing has moved yet; called again for each engine that starts.
+    """
+
+    def __init__(self, make: Callable[[], Plant], machine: Mapping[str, Any]) -> None:
+        self._make, self._machine = make, machine
+        self.period_s = float(machine["cycle"]["period_s"])
+        self._begin()
+        self.axes = tuple(self.plant.axes)
+
+    def _begin(self) -> None:
+        self.plant = self._make()
+        self.plant.start(self._machine, self.period_s)
+        self._rows = {axis: row for row, axis in enumerate(self.plant.axes)}
+        self._told, self._measured = np.zeros(len(self._rows), TOLD), np.zeros(len(self._rows), MEASURED)
+        self._started: set[str] = set()
+        self._heard: set[str] = set()  # axes whose set point of this cycle has come
+        self._before: dict[str, Measured | None] = {}
+        self._cycle = -1
+
+    def start(self, axis: str, *, real_time: bool, period_s: float) -> None:
+        if period_s != self.period_s:
+            raise PlantError(f"the engine has cycles of {period_s:g} s, the machine file says {self.period_s:g} s")
+        if axis in self._started:  # of another engine
+            self._begin()
+        self._started.add(axis)
+
+    def exchange(self, told: Mapping[str, SetPoint], *, real_time: bool) -> Mapping[str, Measured | None]:
+        late = real_time and self._heard.isdisjoint(told)  # the rest of a cycle that was carried out without them
+        for axis, point in told.items():
+            self._told[self._rows[axis]] = tuple(getattr(point, name) for name in _TOLD)
+        if late and self._heard:
+            self._heard |= set(told)
+            return self._before
+        self._heard = set(told)
+        self._before = self._answers()
+        self._step()
+        return self._before if real_time else self._answers()
+
+    def idle(self, stop: Collection[str]) -> None:
+        if stop:  # there was an engine: motors are off, brakes hold
+            self._told[:] = np.zeros((), TOLD)
+            self._step()
+
+    def _step(self) -> None:
+        self.plant.step(self._cycle, self._told, self._measured)
+        self._cycle += 1
+
+    def _answers(self) -> dict[str, Measured | None]:
+        return {
+            axis: Measured(**{name: self._measured[name][row].item() for name in _SAID})
+            for axis, row in self._rows.items()
+        }
 
 
 _TOLD: Final = TOLD.names or ()

@@ -41,6 +41,9 @@ def test_gymnasium_checks_it() -> None:
     again = [env.reset(seed=7)[0].tolist() for _ in range(2)]
     assert again[0] == again[1]
     assert not np.allclose(env.reset(seed=8)[0], again[0])
+    for wrong in ([0.5], [0.5, float("nan")], [[0.5, 0.5]]):
+        with pytest.raises(ValueError, match="expected an action of 2 numbers from -1 to 1, found"):
+            env.step(wrong)
     env.close()
     with pytest.raises(takt.TaktError, match=r"axis y: no range: give ranges"):
         ReachEnv(MACHINE, ["y"])

@@ -125,5 +125,7 @@ def test_what_cannot_be_saved_is_said(tmp_path: Path) -> None:
     )
     with pytest.raises(takt.TaktError, match=r"after 5 cycles is not the one that was saved \(by version 0\.0\.1"):
         takt.Engine.restore(wrong)
+    with pytest.raises(TypeError, match=r"expected what Engine\.save returned, not 'x'"):
+        takt.Engine.restore("x")  # type: ignore[arg-type]
     with pytest.raises(takt.ClosedError):
         engine.save()

@@ -11,8 +11,9 @@ import pytest
 from takt import _core, msgs
 from takt.kinematics import Kinematics, pose_to_matrix
 from takt.ready import ready_machines
+from takt.recording import Recording
 from takt.scene import link_poses, make_scene, matrix_of, node_pose
-from takt.scene.moving import poses_of
+from takt.scene.moving import is_shown, poses_of
 from takt.scene.solids import MOST_TRIANGLES, along, thinned
 from takt.view.machine import Machine
 
@@ -79,6 +80,14 @@ def described(text: str, folder: Path | None = None) -> Machine:
     message = msgs.machine_description()
     message.name, message.version, message.period_s, message.text = "m", "0", 0.001, text
     return Machine(message, folder)
+
+
+def with_held(recording: Recording, start_s: float, end_s: float) -> Recording:
+    """As if module `picker` held something for that time."""
+    tables = {name: recording[name].copy() for name in recording.components}
+    time_s = tables["picker"]["time_s"]
+    tables["picker"]["held"] = (time_s > start_s) & (time_s < end_s)
+    return Recording(tables, meta=recording.meta)
 
 
 def kinds(machine: Machine) -> set[str]:
@@ -186,6 +195,25 @@ def test_every_ready_machine_has_a_scene(name: str) -> None:
             assert (source.name in shown) != (source.name in belts | members)
 
 
+def test_what_a_module_holds_hangs_from_the_tool() -> None:
+    """PY-27: as large as the twin's products, its top at the tool, while the module holds something."""
+    machine = described((EXAMPLES / "pick_cell" / "machine.yaml").read_text(), EXAMPLES / "pick_cell")
+    node = next(node for node in machine.scene["nodes"] if node["name"] == "picker.held")
+    (solid,) = node["solids"]
+    assert solid["size"] == [40, 30, 20] == machine.scene["belts"]["infeed"]["size"]
+    links = len(machine.mechanisms["robot"][0].links)
+    poses = {"robot": np.tile([100, 50, -700, 0, 0, 0, 1.0], (links, 1))}
+    middle = node_pose(machine.scene, node, poses, lambda *_: 1.0) @ [*np.array(solid["at"])[3::4], 1]
+    np.testing.assert_allclose(middle[:3], [100, 50, -710])
+    for held, shown in ((0.0, False), (1.0, True), (2.0, True), (math.nan, False)):
+        assert is_shown(node, lambda *_, held=held: held) is shown
+    # Tools of arms point away from their flange, so what they hold is there.
+    for kind, side in (("six_axis", 1), ("scara", 1)):  # one_group's tool is 50 mm along Z
+        scene = described(one_group(KINDS[kind]) + "pick_and_place: [{name: picker, group: robot}]\n").scene
+        (solid,) = next(node["solids"] for node in scene["nodes"] if node["name"] == "picker.held")
+        assert solid["at"][11] == side * 10
+
+
 def test_what_the_file_leaves_out_is_left_out() -> None:
     machine = described(f"name: m\naxes:\n  - {{name: x, unit: mm, {LIMITS}}}}}\n")
     assert set(machine.scene) == {"heights", "nodes"}
@@ -281,6 +309,31 @@ def test_urdf_has_its_meshes(tmp_path: Path) -> None:
     (tmp_path / "arm" / "meshes" / "tip.stl").write_text("solid tip\nvertex 1\n")
     nodes = {node["name"]: node for node in described(text, tmp_path).scene["nodes"]}
     assert all(solid["kind"] != "mesh" for solid in nodes["robot.upper"]["solids"])  # a simple one in its place
+
+
+def test_urdf_has_what_is_to_be_seen(tmp_path: Path) -> None:
+    """PY-27: visuals before shapes for collisions, those before simple solids; of each link for itself."""
+    (tmp_path / "cover.stl").write_text(STL)
+    visual = """<visual><origin xyz="0 0 0.05" rpy="0 0 1.5707963267948966"/><geometry>%s</geometry></visual>"""
+    cover = visual % '<mesh filename="cover.stl" scale="2 2 2"/>'
+    column = visual % '<cylinder radius="0.04" length="0.2"/>'
+    text = URDF.replace('<link name="lower">', f'<link name="lower">{cover}{column}')
+    text = text.replace('<link name="upper">', '<link name="upper">' + visual % '<mesh filename="gone.dae"/>')
+    palm = visual % '<sphere radius="0.03"/>'
+    text = text.replace('<link name="hand"/>', f'<link name="hand">{palm}</link>')
+    (tmp_path / "two.urdf").write_text(text)
+    machine = one_group(KINDS["serial"]).replace(json.dumps({"urdf": URDF}), "{urdf: two.urdf}")
+    nodes = {node["name"]: node for node in described(machine, tmp_path).scene["nodes"]}
+    mesh, cylinder = nodes["robot.lower"]["solids"]
+    assert (mesh["kind"], max(mesh["vertices"]), mesh["part"], mesh["at"][11]) == ("mesh", 200, "lower", 50)
+    assert mesh["at"][:3] == pytest.approx([0, -1, 0], abs=1e-6)  # turned about Z
+    assert (cylinder["kind"], cylinder["size"]) == ("cylinder", [40, 200])
+    assert "mesh" not in {solid["kind"] for solid in nodes["robot.upper"]["solids"][1:]}
+    ball = next(s for node in nodes.values() for s in node["solids"] if s.get("part") == "hand")
+    assert (ball["kind"], ball["size"]) == ("sphere", [30])
+    # Without the folder: what is in no file.
+    apart = {node["name"]: node for node in described(machine.replace("two.urdf", json.dumps(text))).scene["nodes"]}
+    assert [solid["kind"] for solid in apart["robot.lower"]["solids"]] == ["cylinder"]
 
 
 def test_large_meshes_are_made_smaller() -> None:

@@ -14,9 +14,10 @@ import takt
 from mcap.reader import make_reader
 from takt.export import to_mcap
 from takt.kinematics import Kinematics, pose_to_matrix
+from takt.ready import EXAMPLES
 from takt.recording import Recording
 from takt.scene import matrix_of
-from test_scene import one_group
+from test_scene import one_group, with_held
 
 DELTA = {"delta": {"base_radius": 200, "platform_radius": 45, "upper_arm": 235, "lower_arm": 800}}
 BELT = """  - {name: drive, unit: mm, limits: {velocity: 500, acceleration: 5000, jerk: 200000}}
@@ -95,6 +96,20 @@ def test_frames_and_solids_of_a_run(recording: Recording, tmp_path: Path) -> Non
             np.testing.assert_allclose(matrix_of(np.array(pose)), expected, atol=0.02)
             seen += 1
     assert seen > 10
+
+
+def test_what_a_module_holds_comes_and_goes(tmp_path: Path) -> None:
+    """Solids that go with the tool, as long as it holds something."""
+    with takt.Engine(EXAMPLES / "pick_cell" / "machine.yaml") as session:
+        recorder = session.record()
+        session.run(1.0)
+        recording = with_held(recorder.stop(), 0.3, 0.7)
+    to_mcap(recording, tmp_path / "a.mcap")
+    found = read(tmp_path / "a.mcap")
+    assert "picker.held" in {one["child_frame_id"] for _, message in found["/tf"] for one in message["transforms"]}
+    came = [at for at, message in found["/scene"] if any(e["id"] == "picker.held" for e in message["entities"])]
+    went = [at for at, message in found["/scene"] if any(d["id"] == "picker.held" for d in message["deletions"])]
+    assert np.array([*came, *went]) / 1e9 == pytest.approx([0.32, 0.72], abs=0.03)
 
 
 def test_what_is_not_known_is_left_out(recording: Recording, tmp_path: Path) -> None:

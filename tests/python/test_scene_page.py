@@ -15,9 +15,10 @@ from machines import new_url, running
 from pages import PATIENCE_S, needs_chromium, opened, served, until
 from playwright.sync_api import Browser, Page, expect
 from takt import report, view
+from takt.ready import EXAMPLES
 from takt.report.writing import three_inside
 from takt.scene import node_pose
-from test_scene import described
+from test_scene import described, with_held
 
 pytestmark = needs_chromium
 expect.set_options(timeout=PATIENCE_S * 1000)
@@ -246,6 +247,26 @@ def test_the_report_draws_any_time(browser: Browser, recording: takt.Recording, 
         assert page.evaluate("() => window.takt.clock.time") == time_s
         page.locator("#scene-tabs").get_by_text("From above").click()
         expect(page.locator("#plan-canvas")).to_be_visible()
+
+
+def test_what_a_module_holds_goes_with_the_tool(browser: Browser, tmp_path: Path) -> None:
+    with takt.Engine(EXAMPLES / "pick_cell" / "machine.yaml") as session:
+        recorder = session.record()
+        session.run(0.2)
+        recording = with_held(recorder.stop(), 0.1, 1.0)
+    file = tmp_path / "report.html"
+    file.write_text(report.render(recording, [], "t"), encoding="utf-8")
+    scene = described((EXAMPLES / "pick_cell" / "machine.yaml").read_text()).scene
+    with report_page(browser, file) as page:
+        page.locator("#scene-tabs").get_by_text("3D").click()
+        open_3d(page)
+        counts = []
+        for time_s in (0.05, 0.15, 0.05):
+            page.evaluate("(s) => window.takt.clock.set(s)", time_s)
+            seen = page.evaluate(PLACED)
+            counts.append(agrees(seen, scene))
+            assert {name: shown for name, shown, _ in seen["nodes"]}["picker.held"] == (time_s > 0.1)
+        assert counts == [len(scene["nodes"]) - 1, len(scene["nodes"]), len(scene["nodes"]) - 1]
 
 
 def test_a_machine_of_axes_alone_is_drawn_and_small(browser: Browser, tmp_path: Path) -> None:

@@ -287,8 +287,12 @@ def test_rows_that_are_not_in_order() -> None:
     sweep("scenario.py", grid, directory="d", workers=1, stop_after=1)
     table = Path("d/runs.csv")
     table.write_text(table.read_text().replace("\n0,", "\n1,"))
-    with pytest.raises(SweepError, match=r"runs\.csv:2: expected run 0 here"):
+    with pytest.raises(SweepError, match=r"runs\.csv:2: expected run 0 with \d+ columns here"):
         sweep("scenario.py", grid, directory="d", workers=1)
+    for damaged in ("0,foo,bar", '0,"foo,bar"', '0,"foo'):
+        table.write_text(table.read_text().splitlines()[0] + f"\n{damaged}\n")
+        with pytest.raises(SweepError, match=r"runs\.csv:2: expected run 0 with \d+ columns here"):
+            sweep("scenario.py", grid, directory="d", workers=1)
 
 
 def test_two_sweeps_at_once() -> None:

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import os
 import subprocess
 import sys
+from collections.abc import Callable
+from concurrent.futures import CancelledError
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
+import takt
 from takt.sweep import SweepError, sweep
 
 MACHINE = """name: press
@@ -83,9 +89,75 @@ def test_schedulers_that_do_not_answer(tmp_path: Path, monkeypatch: pytest.Monke
     file = tmp_path / "press.py"
     file.write_text(SCENARIO)
     (tmp_path / "machine.yaml").write_text(MACHINE)
-    for address in ("tcp://127.0.0.1:1", "nonsense://"):
+    for address in ("nonsense", "", "host:8786", "tcp://", "tcp://a b:1"):
+        with pytest.raises(SweepError, match=f"expected the address of a scheduler .*, found '{address}'"):
+            sweep(file, ["velocity=50:300:3"], directory=tmp_path / "x", scheduler=address)
+    for address in ("tcp://127.0.0.1:1", "nonsense://x"):
         with pytest.raises(SweepError, match="no scheduler of Dask answers at " + address):
             sweep(file, ["velocity=50:300:3"], directory=tmp_path / "x", scheduler=address)
+
+
+class Vanishing:
+    """A client of Dask whose scheduler has gone: all that it was given is cancelled."""
+
+    class Future:
+        status = "pending"
+        result: Any = None
+
+    def __init__(self, comes_back: bool) -> None:
+        self.status, self.comes_back = "running", comes_back
+        self.given: list[Vanishing.Future] = []
+
+    def __call__(self, *_: object, **__: object) -> Vanishing:
+        return self
+
+    def as_current(self) -> contextlib.nullcontext[None]:
+        return contextlib.nullcontext()
+
+    def scheduler_info(self, n_workers: int) -> dict[str, dict[str, dict[str, int]]]:
+        return {"workers": {"one": {"nthreads": 1}}}
+
+    def run(self, _: object) -> dict[str, str]:
+        return {"one": takt.__version__}
+
+    def submit(self, make: Callable[..., object], *arguments: object, pure: bool) -> Future:
+        future = self.Future()
+        if len(self.given) < 3:  # those of the beginning
+            self.given.append(future)
+        else:
+            future.status, future.result = "finished", lambda: make(*arguments)
+        return future
+
+    def wait(self, futures: list[Future], timeout: float, return_when: str) -> SimpleNamespace:
+        done = [future for future in futures if future.status == "finished"]
+        if not done:
+            for future in self.given:
+                future.status = "cancelled"
+            self.status = "running" if self.comes_back else "connecting"
+            raise CancelledError("Reasons: scheduler-connection-lost")
+        return SimpleNamespace(done=done)
+
+    def close(self, timeout: float) -> None:
+        pass
+
+
+@pytest.mark.parametrize("comes_back", [False, True])
+def test_a_scheduler_that_goes_away(comes_back: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is said in a sentence; where it comes back the runs that went with it are given again."""
+    monkeypatch.setattr("takt.sweep.cluster.GONE_S", 0.2)
+    monkeypatch.setattr("takt.sweep.cluster.LOOK_S", 0.02)
+    client = Vanishing(comes_back)
+    dask = SimpleNamespace(Client=client, wait=client.wait, TimeoutError=TimeoutError)
+    monkeypatch.setitem(sys.modules, "distributed", dask)
+    file = tmp_path / "press.py"
+    file.write_text(SCENARIO)
+    (tmp_path / "machine.yaml").write_text(MACHINE)
+    call = lambda: sweep(file, ["velocity=50:300:9"], directory=tmp_path / "x", scheduler="tcp://x:1")  # noqa: E731
+    if comes_back:
+        assert [row["run"] for row in rows(call().table)] == [str(run) for run in range(9)]
+    else:
+        with pytest.raises(SweepError, match="the scheduler at tcp://x:1 is gone; 0 runs are kept"):
+            call()
 
 
 def test_without_dask(tmp_path: Path) -> None:

@@ -7,13 +7,16 @@ import os
 import re
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import numpy as np
 import pytest
 import takt
-from takt import _core
+from machines import new_url
+from takt import _core, drive
 from takt.cli import main
+from takt.plant import OnNetwork
 from takt.ready import EXAMPLES, ready_machines
 
 mujoco = pytest.importorskip("mujoco")
@@ -221,6 +224,94 @@ def test_physics_that_explodes_is_said_and_stopped() -> None:
         assert np.isfinite(twin.frame.positions).all()
         with pytest.raises(RuntimeError, match="failed before"):
             engine.step()
+
+
+def test_physics_that_explodes_at_once_is_said_and_nowhere_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """PY-23: not on the terminal, and not in a file of MuJoCo's."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "m.xml").write_text(
+        "<mujoco><option gravity='1e12 0 0'/><worldbody><body name='b'><joint name='jx' type='slide' axis='1 0 0'/>"
+        "<geom size='0.05' mass='2'/></body></worldbody></mujoco>"
+    )
+    file = tmp_path / "machine.yaml"
+    file.write_text(
+        f"name: x\naxes: [{{name: x, {LIMITS}}}]\n"
+        "twin: {model: m.xml, axes: [{axis: x, joint: jx, max_torque: 9}]}\n"
+    )
+    with (
+        takt.Engine(file, plant="mujoco") as engine,
+        pytest.raises(takt.PlantError, match=r"exploded in the step before the first cycle: .* the state at the start"),
+    ):
+        engine.step(5)
+    assert [path.name for path in tmp_path.iterdir() if path.suffix == ".TXT"] == []
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_twin_in_a_process_of_its_own(tmp_path: Path) -> None:
+    """PY-23, EN-26: over LCM, in step with the engine, motion is the same, bit for bit; for the next engine, too."""
+    url = new_url()
+    text = GANTRY + "external: {answer_within_s: 20, drives: [" + ", ".join(f"{{axis: {a}}}" for a in "xyzc") + "]}\n"
+    described = json.loads(_core.load_machine(text.encode(), "m"))
+
+    def work(engine: takt.Engine) -> list[bytes]:
+        record = engine.record()
+        for axis in "xyzc":
+            engine.axis(axis).power().wait()
+        for axis in "xyzc":
+            engine.axis(axis).move_absolute(position=10)
+        engine.run(0.05)
+        recording = record.stop()
+        return [recording[axis]["actual_position"].tobytes() for axis in "xyzc"]
+
+    with takt.Engine(text, plant="mujoco") as engine:
+        expected = work(engine)
+    bus = OnNetwork(lambda: Twin(text.encode(), "m", described), described)
+    plant = drive.Plant({}, url, buses=[bus], say=lambda _: None)
+    thread = threading.Thread(target=plant.run)
+    thread.start()
+    try:
+        for _ in range(2):
+            with takt.Engine(text, url=url) as engine:
+                assert work(engine) == expected
+    finally:
+        plant.stop()
+        thread.join(60)
+    with pytest.raises(takt.PlantError, match=r"the engine has cycles of 0\.002 s, the machine file says 0\.001 s"):
+        bus.start("x", real_time=False, period_s=0.002)
+    # In real time what comes back was measured before, and without an engine nothing moves.
+    off = dict.fromkeys("xyzc", drive.SetPoint())
+    first = bus.exchange(off, real_time=True)
+    second = bus.exchange(off, real_time=True)
+    assert second != first
+    bus.idle([])
+    part = bus.exchange({axis: off[axis] for axis in "xy"}, real_time=True)
+    assert bus.exchange({axis: off[axis] for axis in "zc"}, real_time=True) is part  # of the same cycle, but late
+    assert part != second
+    file = tmp_path / "machine.yaml"
+    for wrong, options, said in (
+        (text, {"axes": ["x"]}, "give either --twin or --axis"),
+        (text.replace("{axis: c}", "").replace(", ]", "]"), {}, r"the twin moves c, expected them in external\.drives"),
+        (text[: text.index("twin:")] + text[text.index("external:") :], {}, "twin: expected a section"),
+    ):
+        file.write_text(wrong)
+        with pytest.raises(takt.TaktError, match=said):
+            drive.simulate(file, url, twin=True, **options)  # type: ignore[arg-type]
+
+
+def test_friction_holds() -> None:
+    """PY-23: what a motor is too weak for does not creep: 20 N against 30 N."""
+    text = (
+        "name: x\naxes: [{name: z, " + LIMITS + "}]\ngroups: []\n"
+        "simulation: {servos: [{axis: z, mechanics: {inertia: 0.001}}]}\n"
+        "twin: {axes: [{axis: z, mass: 2, max_torque: 20, coulomb_friction: 30}]}\n"
+    )
+    with takt.Engine(text, plant="mujoco") as engine:
+        engine.axis("z").power().wait()
+        engine.axis("z").move_absolute(position=50)
+        engine.run(1.0)
+        assert abs(engine.axis("z").true_position) < 0.05
 
 
 def test_motors_that_are_too_weak_and_what_must_not_touch() -> None:

@@ -61,7 +61,10 @@ struct UrdfChain {
 std::optional<UrdfChain> ReadUrdf(const std::string& xml, const std::string& base, const std::string& tip,
                                   std::string& why);
 
-// A shape that URDF gives a link for collisions. Lengths in mm.
+// What a shape in a URDF is for.
+enum class UrdfPurpose : std::uint8_t { kCollision, kVisual };
+
+// A shape that URDF gives a link. Lengths in mm.
 struct UrdfShape {
   enum class Kind : std::uint8_t { kBox, kCylinder, kSphere, kMesh };
   std::string link;   // as URDF calls it
@@ -74,6 +77,7 @@ struct UrdfShape {
 
 // Those of all links that go along with a link of the chain, or with its base, and have no axis of their own between.
 // The arguments are those of ReadUrdf, which must have read them.
-std::vector<UrdfShape> ReadUrdfShapes(const std::string& xml, const std::string& base, const std::string& tip);
+std::vector<UrdfShape> ReadUrdfShapes(const std::string& xml, const std::string& base, const std::string& tip,
+                                      UrdfPurpose purpose = UrdfPurpose::kCollision);
 
 }  // namespace takt::kinematics

@@ -119,7 +119,8 @@ bool TakeGeometry(const urdf::Geometry& geometry, UrdfShape& shape) {
 
 }  // namespace
 
-std::vector<UrdfShape> ReadUrdfShapes(const std::string& xml, const std::string& base, const std::string& tip) {
+std::vector<UrdfShape> ReadUrdfShapes(const std::string& xml, const std::string& base, const std::string& tip,
+                                      UrdfPurpose purpose) {
   const urdf::ModelInterfaceSharedPtr model = Parsed(xml);
   if (!model) return {};
   std::string why;
@@ -131,11 +132,17 @@ std::vector<UrdfShape> ReadUrdfShapes(const std::string& xml, const std::string&
     Frame at;
     const std::string fixed = FixedTo(*model, angles, link, way, begin, at);
     if (fixed.empty()) continue;
-    for (std::size_t i = 0; i < link->collision_array.size(); ++i) {
-      const urdf::Collision& collision = *link->collision_array[i];
-      const Frame origin = ToFrame(angles.collisions.at(name).at(i), collision.origin.position);
-      UrdfShape shape{.link = name, .fixed = fixed, .mesh = {}, .pose = at * origin};
-      if (collision.geometry && TakeGeometry(*collision.geometry, shape)) shapes.push_back(shape);
+    const auto take = [&](const auto& given, const std::vector<KDL::Rotation>& rotations) {
+      for (std::size_t i = 0; i < given.size(); ++i) {
+        const Frame origin = ToFrame(rotations.at(i), given[i]->origin.position);
+        UrdfShape shape{.link = name, .fixed = fixed, .mesh = {}, .pose = at * origin};
+        if (given[i]->geometry && TakeGeometry(*given[i]->geometry, shape)) shapes.push_back(shape);
+      }
+    };
+    if (purpose == UrdfPurpose::kCollision) {
+      take(link->collision_array, angles.collisions.at(name));
+    } else {
+      take(link->visual_array, angles.visuals.at(name));
     }
   }
   return shapes;

@@ -43,6 +43,8 @@ UrdfAngles ReadUrdfAngles(const std::string& xml) {
   ForEach(*robot, "link", [&](const TiXmlElement& link) {
     std::vector<KDL::Rotation>& collisions = out.collisions[NameOf(link)];
     ForEach(link, "collision", [&](const TiXmlElement& shape) { collisions.push_back(OriginIn(shape)); });
+    std::vector<KDL::Rotation>& visuals = out.visuals[NameOf(link)];
+    ForEach(link, "visual", [&](const TiXmlElement& shape) { visuals.push_back(OriginIn(shape)); });
   });
   return out;
 }

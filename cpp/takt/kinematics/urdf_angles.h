@@ -12,6 +12,7 @@ namespace takt::kinematics {
 struct UrdfAngles {
   std::map<std::string, KDL::Rotation> joints;                   // from the parent link, by joint
   std::map<std::string, std::vector<KDL::Rotation>> collisions;  // on the link, by link, in the file's order
+  std::map<std::string, std::vector<KDL::Rotation>> visuals;     // likewise
 };
 
 // Requires: urdfdom has read the text. Without rpy the orientation is that of the parent.

@@ -4,7 +4,6 @@
 #include <map>
 
 #include "takt/core/problem.h"
-#include "takt/kinematics/serial.h"
 
 namespace takt::workspace {
 namespace {
@@ -39,10 +38,11 @@ std::string WhyNot(const UrdfShape& shape) {
 
 }  // namespace
 
-UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const std::string& urdf_folder) {
+UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const std::string& urdf_folder,
+                      kinematics::UrdfPurpose purpose) {
   UrdfLinks out;
   std::map<std::string, int> named;
-  for (const UrdfShape& shape : kinematics::ReadUrdfShapes(serial.urdf, serial.base, serial.tip)) {
+  for (const UrdfShape& shape : kinematics::ReadUrdfShapes(serial.urdf, serial.base, serial.tip, purpose)) {
     SolidParams& solid = out.links.emplace_back();
     solid.link = shape.fixed;
     solid.pose = kinematics::ToPose(shape.pose);

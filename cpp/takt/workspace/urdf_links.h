@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "takt/kinematics/params.h"
+#include "takt/kinematics/serial.h"
 #include "takt/workspace/params.h"
 
 namespace takt::workspace {
@@ -16,6 +17,7 @@ struct UrdfLinks {
 
 // `serial`: with the text of the URDF, and good. `urdf_folder`: of its file, seen from the folder of the machine file;
 // meshes count from there, and package://NAME/ as well, if that folder or one above is called NAME.
-UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const std::string& urdf_folder);
+UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const std::string& urdf_folder,
+                      kinematics::UrdfPurpose purpose = kinematics::UrdfPurpose::kCollision);
 
 }  // namespace takt::workspace

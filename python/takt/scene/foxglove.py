@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from takt.recording import Array, Recording
-from takt.scene.moving import held, link_poses, node_pose, poses_of, rounded_poses
+from takt.scene.moving import held, is_shown, link_poses, node_pose, poses_of, rounded_poses
 
 WORLD = "world"
 RATE_HZ = 25.0  # of transforms
@@ -39,6 +39,7 @@ COLOURS = {
     "axis_y": (0.18, 0.62, 0.42, 1.0),
     "axis_z": (0.18, 0.44, 0.87, 1.0),
 }
+ONE = 0  # of Foxglove's kinds of deletions: the entity of that id
 TRACK = (0.18, 0.44, 0.87, 0.75)
 
 
@@ -58,7 +59,7 @@ def streams_of(recording: Recording, machine: Any) -> list[Stream]:
         return []
     times = np.linspace(start, end, max(2, math.ceil((end - start) * RATE_HZ) + 1))
     moved = list(_transforms(recording, machine, times))
-    looks = list(_products(recording, scene))
+    looks = [*_products(recording, scene), *_coming_and_going(recording, scene, times)]
     solids = [(start, {"deletions": [], "entities": [*entities(scene, start), *tracks(machine, start)]}), *looks]
     solids.sort(key=lambda one: one[0])
     return [
@@ -133,13 +134,41 @@ def transform(name: str, pose: list[float], time_s: float) -> dict[str, Any]:
 
 
 def entities(scene: Mapping[str, Any], time_s: float) -> Iterator[dict[str, Any]]:
-    """What is on each frame of a scene."""
+    """What is on each frame of a scene and never goes."""
     for node in scene["nodes"]:
-        shapes: dict[str, list[dict[str, Any]]] = {}
-        for solid in node["solids"]:
-            for kind, shape in _shapes(solid):
-                shapes.setdefault(kind, []).append(shape)
-        yield _entity(node["name"], node["name"], time_s, shapes)
+        if "shown" not in node:
+            yield entity(node, time_s)
+
+
+def entity(node: Mapping[str, Any], time_s: float) -> dict[str, Any]:
+    """What is on the frame of a node."""
+    shapes: dict[str, list[dict[str, Any]]] = {}
+    for solid in node["solids"]:
+        for kind, shape in _shapes(solid):
+            shapes.setdefault(kind, []).append(shape)
+    return _entity(node["name"], node["name"], time_s, shapes)
+
+
+def coming_or_going(node: Mapping[str, Any], shown: bool, time_s: float) -> dict[str, Any]:
+    """The update that shows a node, or takes it away."""
+    if shown:
+        return {"deletions": [], "entities": [entity(node, time_s)]}
+    return {"deletions": [{"timestamp": _time(time_s), "type": ONE, "id": node["name"]}], "entities": []}
+
+
+def _coming_and_going(
+    recording: Recording, scene: Mapping[str, Any], times: Array
+) -> Iterator[tuple[float, dict[str, Any]]]:
+    for node in scene["nodes"]:
+        if "shown" not in node:
+            continue
+        column = _column(recording, node["shown"]["component"], node["shown"]["field"], times)
+        before = False
+        for time_s, number in zip(times.tolist(), column.tolist(), strict=True):
+            now = is_shown(node, lambda *_, number=number: number)
+            if now != before:
+                yield time_s, coming_or_going(node, now, time_s)
+            before = now
 
 
 def _entity(name: str, frame: str, time_s: float, shapes: Mapping[str, list[dict[str, Any]]]) -> dict[str, Any]:

@@ -14,6 +14,8 @@ A scene is JSON. `nodes` are frames with solids on them, in mm:
     {"component": "x", "slide": "actual_position", "from": 0, "scale": 1, "wrap": 600, "turns": true}
                                                               along X, or about Z in deg
 
+`shown`, {"component": "picker", "field": "held"}: it is there while that is above 0; left out: always.
+
 `label` says how high above its frame a node has its name. `belts` says how large what lies on them is, `trails` which
 groups leave a line, `followed` what a camera can follow. Nothing is there whose section the machine file leaves out.
 """
@@ -65,6 +67,7 @@ def make_scene(
     made.belts()
     made.zones()
     made.groups()
+    made.held()
     made.poses()
     made.axes_alone()
     return made.scene()
@@ -90,7 +93,7 @@ class _Maker:
             "heights": self.heights,
             "spans": links,
             "nodes": self.nodes,
-            "belts": {b["name"]: {"size": [40.0, 40.0, PRODUCT]} for b in self.machine["belts"]},
+            "belts": {b["name"]: {"size": self._product()} for b in self.machine["belts"]},
             "trails": [{"group": g, "base": rounded(base[:3])} for g, (_, _, base) in self.mechanisms.items()],
             "parts": self._part_names(),
             "followed": [*self.mechanisms, *(mover["name"] for mover in self.machine["movers"])],
@@ -211,6 +214,28 @@ class _Maker:
                 self._add(f"{name}.{link}", solids[i], of=name, moved={"group": name, "link": i})
             self.room += _reach(mechanism, ranges, base)
             self._workspace(group, base)
+
+    def held(self) -> None:
+        """What pick and place modules hold: a product whose top touches the tool, on its far side from the flange."""
+        groups = {group["name"]: group for group in self.machine["groups"]}
+        for module in self.machine["pick_and_place"]:
+            name = module["group"]
+            if name not in self.mechanisms:
+                continue
+            kinematics, tool = groups[name]["kinematics"], pose_matrix(groups[name]["tool"])
+            outwards = 1.0 if kinematics.get("serial") or kinematics.get("six_axis") else -1.0
+            if abs(tool[2, 3]) > 1.0:
+                outwards = math.copysign(1.0, tool[2, 3] * tool[2, 2])
+            size = self._product()
+            solid = box(size, (0, 0, outwards * size[2] / 2), "product")
+            moved = {"group": name, "link": len(self.mechanisms[name][0].links) - 1}
+            shown = {"component": module["name"], "field": "held"}
+            self._add(f"{module['name']}.held", [solid], at=rounded(tool[:3]), of=name, moved=moved, shown=shown)
+
+    def _product(self) -> list[float]:
+        """Edges of a product: those of the twin, which alone knows them."""
+        told = (self.machine.get("twin") or {}).get("products")
+        return [told["length"], told["width"], told["height"]] if told else [40.0, 40.0, PRODUCT]
 
     def _workspace(self, group: Mapping[str, Any], base: Array) -> None:
         workspace = group.get("workspace")

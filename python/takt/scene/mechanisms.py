@@ -33,8 +33,8 @@ def solids_of_links(
     given = _given(group, mechanism, folder)
     serial = kinematics.get("serial")
     if serial and not any(given):
-        told = _core.urdf_solids(serial["urdf"], serial["base"], serial["tip"], str(urdf_folder or "."))
-        given = _placed(mechanism, [json.loads(one) for one in told], urdf_folder)
+        seen, simple = (_of_urdf(mechanism, serial, urdf_folder, visual=visual) for visual in (True, False))
+        given = [a or b for a, b in zip(seen, simple, strict=True)]
     made = _made(kind, kinematics.get(kind) or {}, mechanism, spans, ranges)
     shown = [given[i] or made[i] for i in range(len(made))]
     shown[-1] = [*_tool(group["tool"], _thickness(spans)), *_gripper(group, folder)]
@@ -43,6 +43,12 @@ def solids_of_links(
 
 def _given(group: Mapping[str, Any], mechanism: Kinematics, folder: Path | None) -> Solids:
     return _placed(mechanism, (group.get("workspace") or {}).get("links") or (), folder)
+
+
+def _of_urdf(mechanism: Kinematics, serial: Mapping[str, Any], folder: Path | None, *, visual: bool) -> Solids:
+    """The shapes that a URDF gives links to be seen, or for collisions; none of files that cannot be read."""
+    told = _core.urdf_solids(serial["urdf"], serial["base"], serial["tip"], str(folder or "."), visual)
+    return _placed(mechanism, [json.loads(one) for one in told], folder)
 
 
 def _placed(mechanism: Kinematics, solids: Sequence[Mapping[str, Any]], folder: Path | None) -> Solids:

@@ -101,6 +101,12 @@ def node_pose(scene: Mapping[str, Any], node: Mapping[str, Any], links: Mapping[
     return np.asarray(placed)
 
 
+def is_shown(node: Mapping[str, Any], value: Values) -> bool:
+    """Whether a node is there at all."""
+    shown = node.get("shown")
+    return shown is None or value(shown["component"], shown["field"]) > 0
+
+
 def height_of(scene: Mapping[str, Any], system: float) -> float:
     """How high a coordinate system is drawn, by its number from 1; machines without any have one."""
     heights = scene["heights"]

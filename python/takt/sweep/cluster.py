@@ -3,9 +3,13 @@ are those that local processes make. Dask is an extra: pip install "takt-motion[
 
 from __future__ import annotations
 
+import logging
+import re
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
+from contextlib import contextmanager
 from typing import Any
 
 import takt
@@ -17,6 +21,7 @@ AHEAD = 3  # ranges of runs that the scheduler has, for each thread of a worker
 CONNECT_S = 10.0
 LOOK_S = 1.0  # from one look at the scheduler to the next
 GONE_S = 10.0  # without a scheduler, after which a sweep ends
+ADDRESS = re.compile(r"[a-z][a-z0-9+]*://[^\s/]+(/\S*)?")
 _alone = threading.Lock()
 
 
@@ -37,6 +42,8 @@ class Cluster:
     def __init__(self, job: Job, design: Design, address: str, timeout_s: float) -> None:
         self._job, self._design, self._address, self._timeout_s = job, design, address, timeout_s
         self._made = 0
+        if not ADDRESS.fullmatch(address):  # Dask would take it for the name of a host, and look for it for long
+            raise SweepError(f"expected the address of a scheduler as tcp://host:8786, found '{address}'")
         try:
             import distributed
         except ImportError:
@@ -52,15 +59,16 @@ class Cluster:
         return self._design.keys
 
     def run(self, first: int, end: int, take: Callable[[Row], None]) -> None:
-        try:
-            client = self._dask.Client(self._address, timeout=CONNECT_S, set_as_default=False)
-        except (OSError, ValueError, TimeoutError) as error:
-            raise SweepError(f"no scheduler of Dask answers at {self._address}: {_line(error)}") from None
-        try:
-            with client.as_current():
-                self._run(client, first, end, take)
-        finally:
-            client.close(timeout=LOOK_S)
+        with _quiet():
+            try:
+                client = self._dask.Client(self._address, timeout=CONNECT_S, set_as_default=False)
+            except (OSError, ValueError, TimeoutError) as error:
+                raise SweepError(f"no scheduler of Dask answers at {self._address}: {_line(error)}") from None
+            try:
+                with client.as_current():
+                    self._run(client, first, end, take)
+            finally:
+                client.close(timeout=LOOK_S)
 
     def _run(self, client: Any, first: int, end: int, take: Callable[[Row], None]) -> None:
         threads = self._check(client)
@@ -70,6 +78,7 @@ class Cluster:
         following = oldest = first
         heard = time.monotonic()
         while oldest < end:
+            self._give_again(client, pending)
             while following < end and len(pending) < AHEAD * threads:
                 span = (following, min(following + each, end))
                 pending[client.submit(make, self._job, self._design, *span, pure=False)] = span
@@ -98,12 +107,25 @@ class Cluster:
                 self._made += 1
                 take(found)
 
+    def _give_again(self, client: Any, pending: dict[Any, tuple[int, int]]) -> None:
+        """Runs that a scheduler took with it when it went away, once one answers again."""
+        if client.status != "running":
+            return
+        for future in [future for future in pending if future.status in ("cancelled", "lost")]:
+            span = pending.pop(future)
+            pending[client.submit(make, self._job, self._design, *span, pure=False)] = span
+
     def _done(self, client: Any, pending: dict[Any, tuple[int, int]]) -> list[Any]:
+        # Without a scheduler all futures are cancelled at once, and a wait for them raises.
+        open_ = [future for future in pending if future.status not in ("cancelled", "lost")]
+        if not open_:
+            time.sleep(LOOK_S)
+            return []
         try:
-            ended = self._dask.wait(list(pending), timeout=LOOK_S, return_when="FIRST_COMPLETED").done
+            ended = self._dask.wait(open_, timeout=LOOK_S, return_when="FIRST_COMPLETED").done
         except (self._dask.TimeoutError, TimeoutError):
             return []
-        except (OSError, self._dask.client.FutureCancelledError):
+        except (OSError, CancelledError):
             time.sleep(LOOK_S)
             return []
         return [future for future in ended if future.status in ("finished", "error")]
@@ -142,6 +164,20 @@ class Cluster:
                     f"worker {worker} has takt {said}, this is {takt.__version__}: rows would not be the same"
                 )
         return sum(worker["nthreads"] for worker in workers.values())
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """What Dask logs of a connection that is lost, with where in its own code, a sweep says in a sentence."""
+    loggers = [logging.getLogger(name) for name in ("distributed.client", "distributed.core", "distributed.comm")]
+    before = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        for logger, level in zip(loggers, before, strict=True):
+            logger.setLevel(level)
 
 
 def _line(error: object) -> str:

@@ -115,16 +115,17 @@ class Table:
     def _take_up(self) -> None:
         """Counts the rows that are whole, and cuts off what was not written to its end."""
         with self.path.open("rb+") as file:
-            size = 0
+            size = commas = 0
             for number, line in enumerate(file):
                 if not line.endswith(b"\n"):
                     break
                 if number == 0:
                     self.columns = next(csv.reader([line.decode("utf-8", "replace")]))
-                elif line.split(b",", 1)[0] != str(number - 1).encode():
+                    commas = len(self.columns) - 1
+                elif not (line.split(b",", 1)[0] == str(number - 1).encode() and _is_whole(line, commas)):
                     raise SweepError(
-                        f"{self.path}:{number + 1}: expected run {number - 1} here; --fresh begins again, -o names "
-                        "another directory"
+                        f"{self.path}:{number + 1}: expected run {number - 1} with {commas + 1} columns here; --fresh "
+                        "begins again, -o names another directory"
                     )
                 self.count = number
                 size += len(line)
@@ -146,6 +147,13 @@ class Table:
                 file.write(line.rstrip("\n") + "," * len(new) + "\n")
         other.replace(self.path)
         self._file = self.path.open("a", newline="", encoding="utf-8")
+
+
+def _is_whole(line: bytes, commas: int) -> bool:
+    """Whether a row has as many cells as there are columns."""
+    if b'"' not in line:
+        return line.count(b",") == commas
+    return len(next(csv.reader([line.decode("utf-8", "replace")]))) == commas + 1
 
 
 def rows_of(path: Path) -> Iterator[dict[str, str]]:
@@ -178,7 +186,9 @@ def _line(cells: list[Any]) -> str:
 
 
 def _said(value: Any) -> str:
-    return ", ".join(map(str, value)) or "none" if isinstance(value, list) else str(value)
+    if isinstance(value, list):
+        return ", ".join(map(str, value)) or "none"
+    return str(value) or "the one beside the scenario"  # a machine
 
 
 def _hash(path: Path) -> str:

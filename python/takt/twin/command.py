@@ -41,6 +41,7 @@ def run(machine: Path, scenario: Scenario, *, compare: bool = True, report: Path
     """Runs a scenario in the twin of a machine, and with our servo model to compare."""
     servo = None
     servo_rate = None
+    Twin.of(machine)  # what is wrong with it is said before anything runs
     if compare:
         with Engine(machine) as session:
             start = time.perf_counter()

@@ -19,7 +19,7 @@ import numpy as np
 from takt import _core
 from takt.plant import Plant, PlantError, Rows
 from takt.twin.cargo import Cargo
-from takt.twin.model import Array, Model, build
+from takt.twin.model import Array, Model, build, silent
 
 if TYPE_CHECKING:
     from takt.recording import Recording
@@ -78,6 +78,7 @@ class Twin(Plant):
         import mujoco
 
         self._mj_step = mujoco.mj_step
+        self._warned, self._warn = mujoco.get_mju_user_warning, mujoco.set_mju_user_warning
         self._servos = _core.MovedServos(text, os.fspath(file_name), self._period_s, self.steps)
         for joint, told, inertia in zip(self.built.joints, twin["axes"], self.built.inertia, strict=True):
             most = told["max_torque"]
@@ -125,11 +126,14 @@ class Twin(Plant):
             self.cargo.before(cycle)
         servos.begin(told)
         at = qpos
+        warned = self._warned()
+        self._warn(silent)
         for i in range(self.steps):
             servos.ask(i, qpos, qvel, self._ahead, self._torques)
             if i == last:
                 at = qpos[self._places]
             step(model, data)
+        self._warn(warned)
         # NaN is not below either.
         if not qvel.dot(qvel) < FASTEST * FASTEST or self._warnings.tobytes() != self._no_warnings:
             self._explode(cycle)
@@ -151,17 +155,19 @@ class Twin(Plant):
         model = self.built.model
         finite = np.isfinite(data.qvel)
         dof = int(np.flatnonzero(~finite)[0]) if not finite.all() else int(np.abs(data.qvel).argmax())
-        joint = model.joint(int(model.dof_jntid[dof])).name or f"number {int(model.dof_jntid[dof])}"
-        why = f"joint '{joint}' has a speed of {data.qvel[dof]:.3g}"
+        joint = model.joint(int(model.dof_jntid[dof]))
+        called = f"joint '{joint.name}'" if joint.name else f"a joint of body '{model.body(int(joint.bodyid[0])).name}'"
+        why = f"{called} has a speed of {data.qvel[dof]:.3g}"
         if finite.all() and abs(data.qvel[dof]) < FASTEST and data.warning.number.any():
             import mujoco
 
             number = int(np.flatnonzero(data.warning.number)[0])
             why = f"MuJoCo warns {mujoco.mjtWarning(number).name}"
-        raise PlantError(
-            f"the physics of {self.name} exploded in cycle {cycle} ({cycle * self._period_s:.4f} s): {why}; stopped, "
-            f"the state after cycle {self._cycle} is kept (Twin.frame)"
+        when = (
+            f"in cycle {cycle} ({cycle * self._period_s:.4f} s)" if cycle >= 0 else "in the step before the first cycle"
         )
+        kept = f"the state after cycle {self._cycle}" if cycle > 0 else "the state at the start"
+        raise PlantError(f"the physics of {self.name} exploded {when}: {why}; stopped, {kept} is kept (Twin.frame)")
 
     def _touch(self, cycle: int) -> None:
         model, data = self.built.model, self.built.data

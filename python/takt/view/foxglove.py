@@ -24,7 +24,7 @@ from takt.errors import TaktError
 from takt.keys import KeyFile, read_key
 from takt.network import usual_url
 from takt.scene import foxglove as types
-from takt.scene.moving import node_pose, poses_of, rounded_poses
+from takt.scene.moving import is_shown, node_pose, poses_of, rounded_poses
 from takt.tables import KINDS, unit_of, units_of
 from takt.view.feed import Feed
 from takt.view.machine import Machine, Source
@@ -80,6 +80,11 @@ class Link:
             entities = [*types.entities(machine.scene, time_s), *types.tracks(machine, time_s)]
             self._say("/scene", {"deletions": [], "entities": entities}, time_s)
         self._say_transforms(machine, time_s)
+        for node in machine.scene["nodes"]:
+            shown = is_shown(node, overview.value)
+            if "shown" in node and self._last.get(f"shown {node['name']}", False) != shown:
+                self._last[f"shown {node['name']}"] = shown
+                self._say("/scene", types.coming_or_going(node, shown, time_s), time_s)
         for belt, rows in self._feed.objects.items():
             size = machine.scene.get("belts", {}).get(belt, {}).get("size")
             if size and self._last.get(f"belt {belt}") != rows:

@@ -27,7 +27,7 @@ LIVE: dict[str, tuple[str, ...]] = {
     ),
     "belt": ("position", "velocity"),
     "pose": ("pose_x", "pose_y", "pose_z", "pose_a", "pose_b", "pose_c"),
-    "pick_place": ("position_x", "position_y", "position_z", "set_path_velocity"),
+    "pick_place": ("position_x", "position_y", "position_z", "set_path_velocity", "held"),
     "mover": (
         *(
             "x",

@@ -17,7 +17,7 @@ export class Scene {
     this.model = new Model();
     this.model.begin(data.machine);
     const { plan, scene } = data.machine;
-    const moved = scene.nodes.map((node) => node.moved?.component).filter(Boolean);
+    const moved = scene.nodes.flatMap((node) => [node.moved?.component, node.shown?.component]).filter(Boolean);
     const shown = [...[...plan.movers, ...plan.parts, ...plan.belts, ...plan.groups].map(({ name }) => name), ...moved];
     this.shown = [...new Set(shown)].map((name) => this.model.byName.get(name));
     this.model.live = new Float64Array(this.model.components.reduce((sum, one) => sum + this.model.kinds[one.kind].live.length, 0)).fill(NaN);

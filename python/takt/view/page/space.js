@@ -218,11 +218,15 @@ export class Space {
   place() {
     for (const one of this.nodes) {
       const known = this.placed(one);
-      one.root.visible = known;
+      one.root.visible = known && this.shown(one);
       if (!known) continue;
       one.root.matrixWorldNeedsUpdate = true;
       if (this.floor && one.node.moved?.group) this.floor.position.z = Math.min(this.floor.position.z, one.root.matrix.elements[14] - 10);
     }
+  }
+
+  shown({ node: { shown } }) {
+    return !shown || this.model.liveOf(this.model.byName.get(shown.component), shown.field) > 0;
   }
 
   placed({ node, root, rest, component }) {
@@ -367,7 +371,7 @@ export class Space {
     this.lay();
     this.drawTrails();
     this.world.updateMatrixWorld();
-    const seen = this.nodes.filter(({ root }) => root.visible).length;
+    const seen = this.nodes.filter(({ node, root }) => root.visible && !node.shown).length; // not what comes and goes
     if (!this.fitted || (this.fitted !== "by hand" && seen > this.seen)) this.fit(); // one more to be seen
     this.seen = seen;
     const at = this.followedPlace();
