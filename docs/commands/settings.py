@@ -1,7 +1,7 @@
 """Settings at run time.
 
 Constants of the loop, parameters by their standard numbers, SW limits, other numbers for where the axis is, and, with
-the loop open, the output itself.
+the loop open, the output itself. `set_load` says what the axis carries where the machine file has `drive: torque_offset`.
 """
 
 import takt
@@ -9,6 +9,7 @@ from takt import expect
 
 COMMANDS = (
     "set_constants",
+    "set_load",
     "read_parameter",
     "write_parameter",
     "write_output",
@@ -35,6 +36,7 @@ def scenario(session: takt.Session) -> None:
     session.run(1.0)
     assert x.state == "ErrorStop", x.state
     assert x.set_position <= 80
+    assert x.set_load(load_torque=2.0).wait_final().error_id == 3005  # the machine file has no `torque_offset`
     session.mark("reset", axis="x")
     x.reset().wait()
     x.move_absolute(position=0, velocity=200).wait()

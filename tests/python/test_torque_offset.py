@@ -134,7 +134,7 @@ def test_a_payload_that_is_gripped_is_told_at_run_time() -> None:
     heavy["simulation"]["servos"][0]["mechanics"] |= {"inertia": 0.004, "load_torque": 9}
 
     def worst(machine: dict[str, Any], told: dict[str, float] | None) -> float:
-        with takt.Engine(with_offset(machine, IDENTIFIED)) as engine:
+        with takt.Engine(with_offset(machine, IDENTIFIED), journal=True) as engine:
             axis = engine.axis("z")
             axis.power().wait()
             if told is not None:
