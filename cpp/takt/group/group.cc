@@ -233,7 +233,7 @@ double WayAlongPath(const Context& c, const axis::State& member, const State& s)
 }
 
 // Whether a member goes further onto a limit switch, or in a direction that is not enabled, along the path than by the
-// ramp that is its own for that (AX-112). Each fault is weighed once, in the cycle after it, when the path is braked.
+// ramp that the machine file gives it for that (AX-112). Each fault is weighed once, in the cycle after it, when the path is braked.
 bool GoesFurtherThanAlone(const Context& c, State& s) {
   constexpr double kSame = 1.05;  // paths are braked with a little less than the limits
   constexpr double kCycles = 2;   // in which faults are noticed and weighed
@@ -248,7 +248,9 @@ bool GoesFurtherThanAlone(const Context& c, State& s) {
     const bool at_switch = v > 0 ? member.limit_positive : member.limit_negative;
     const bool barred = at_switch || axis::FollowerThatBars(own, member, v > 0 ? 1 : -1) != axis::kNoAxis ||
                         axis::Bars(own, member, v > 0 ? 1 : -1);
-    if (!barred) continue;
+    // Without a ramp of its own nothing says how much way there is: the path counts for more (GR-03).
+    const axis::StopRamp& own_ramp = at_switch ? own.params.limit_stop : own.params.fault_stop;
+    if (!barred || !(own_ramp.deceleration || own_ramp.jerk)) continue;
     const trajectory::Limits ramp = axis::StopLimits(own.params, member.error);
     const double alone = std::abs(trajectory::StopPosition(member.setpoint, ramp) - member.setpoint.position);
     if (WayAlongPath(c, member, s) > kSame * alone + kCycles * std::abs(v) * c.cycle.period_s) return true;

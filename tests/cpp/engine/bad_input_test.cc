@@ -59,7 +59,8 @@ std::vector<axis::Command> GoodAxisCommands() {
           axis::TouchProbe{},
           axis::Touch{},
           axis::Stream{},
-          axis::StreamPoint{.position = 1}};
+          axis::StreamPoint{.position = 1},
+          axis::SetLoad{.inertia = 1, .coulomb_friction = 1, .viscous_friction = 1, .load_torque = 1}};
 }
 
 struct AxisSituation {

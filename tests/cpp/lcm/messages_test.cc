@@ -314,6 +314,7 @@ TEST(Messages, GroupStateKeepsEveryNumber) {
           FIELD(group_state, zones),
           FIELD(group_state, waits_for),
           FIELD(group_state, waits_zone),
+          POSE(group_state, tool),
       },
       machine, "robot");
   EXPECT_EQ(static_cast<int>(group::GroupState::kErrorStop), msgs::group_state::STATE_GROUP_ERROR_STOP);
