@@ -1,7 +1,8 @@
 """Settings at run time.
 
 Constants of the loop, parameters by their standard numbers, SW limits, other numbers for where the axis is, and, with
-the loop open, the output itself. `set_load` says what the axis carries where the machine file has `drive: torque_offset`.
+the loop open, the output itself. `set_load` says what the axis carries, where the machine file has
+`drive: torque_offset`.
 """
 
 import takt

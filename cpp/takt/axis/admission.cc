@@ -231,14 +231,14 @@ bool AsksToMove(const Command& command) noexcept {
   return std::visit(
       []<typename T>(const T& body) {
         if constexpr (std::is_same_v<T, Power>) return body.enable;
-        constexpr bool kRests = std::is_same_v<T, Reset> || std::is_same_v<T, Halt> || std::is_same_v<T, Stop> ||
-                                std::is_same_v<T, HaltSuperimposed> || std::is_same_v<T, CamTableSelect> ||
-                                std::is_same_v<T, SetConstants> || std::is_same_v<T, SetLoad> || std::is_same_v<T, WriteParameter> ||
-                                std::is_same_v<T, ReadParameter> || std::is_same_v<T, SetSoftLimits> ||
-                                std::is_same_v<T, WriteOutput> || std::is_same_v<T, SetPosition> ||
-                                std::is_same_v<T, SetOverride> || std::is_same_v<T, TouchProbe> ||
-                                std::is_same_v<T, AbortTrigger> || std::is_same_v<T, AbortPassiveHoming> ||
-                                std::is_same_v<T, StreamPoint> || std::is_same_v<T, DigitalCamSwitch>;
+        constexpr bool kRests =
+            std::is_same_v<T, Reset> || std::is_same_v<T, Halt> || std::is_same_v<T, Stop> ||
+            std::is_same_v<T, HaltSuperimposed> || std::is_same_v<T, CamTableSelect> ||
+            std::is_same_v<T, SetConstants> || std::is_same_v<T, SetLoad> || std::is_same_v<T, WriteParameter> ||
+            std::is_same_v<T, ReadParameter> || std::is_same_v<T, SetSoftLimits> || std::is_same_v<T, WriteOutput> ||
+            std::is_same_v<T, SetPosition> || std::is_same_v<T, SetOverride> || std::is_same_v<T, TouchProbe> ||
+            std::is_same_v<T, AbortTrigger> || std::is_same_v<T, AbortPassiveHoming> ||
+            std::is_same_v<T, StreamPoint> || std::is_same_v<T, DigitalCamSwitch>;
         return !kRests;
       },
       command);

@@ -15,14 +15,13 @@
 
 namespace takt::axis {
 
-using Command =
-    std::variant<Power, Reset, Straighten, MoveAbsolute, MoveRelative, MoveAdditive, MoveVelocity,
-                 MoveContinuousAbsolute, MoveContinuousRelative, Inch, Halt, Stop, Jog, MoveSuperimposed,
-                 HaltSuperimposed, TorqueControl, GearIn, GearOut, GearInPos, PhasingAbsolute, PhasingRelative,
-                 CombineAxes, CamTableSelect, CamIn, CamAdd, CamRemove, CamOut, PositionProfile, VelocityProfile,
-                 AccelerationProfile, Home, StepAbsSwitch, StepLimitSwitch, StepBlock, StepRefPulse, StepDistanceCoded,
-                 StepDirect, StepAbsolute, FinishHoming, StepRefFlyingSwitch, StepRefFlyingRefPulse, AbortPassiveHoming,
-                 SetConstants, SetLoad, WriteParameter, ReadParameter, SetSoftLimits, DirectOutput, PulseOutput, WriteOutput,
-                 SetPosition, SetOverride, TouchProbe, AbortTrigger, Touch, DigitalCamSwitch, Stream, StreamPoint>;
+using Command = std::variant<
+    Power, Reset, Straighten, MoveAbsolute, MoveRelative, MoveAdditive, MoveVelocity, MoveContinuousAbsolute,
+    MoveContinuousRelative, Inch, Halt, Stop, Jog, MoveSuperimposed, HaltSuperimposed, TorqueControl, GearIn, GearOut,
+    GearInPos, PhasingAbsolute, PhasingRelative, CombineAxes, CamTableSelect, CamIn, CamAdd, CamRemove, CamOut,
+    PositionProfile, VelocityProfile, AccelerationProfile, Home, StepAbsSwitch, StepLimitSwitch, StepBlock,
+    StepRefPulse, StepDistanceCoded, StepDirect, StepAbsolute, FinishHoming, StepRefFlyingSwitch, StepRefFlyingRefPulse,
+    AbortPassiveHoming, SetConstants, SetLoad, WriteParameter, ReadParameter, SetSoftLimits, DirectOutput, PulseOutput,
+    WriteOutput, SetPosition, SetOverride, TouchProbe, AbortTrigger, Touch, DigitalCamSwitch, Stream, StreamPoint>;
 
 }  // namespace takt::axis

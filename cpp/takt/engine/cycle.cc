@@ -187,8 +187,9 @@ bool IsForMembers(const axis::Command& command) {
       []<typename T>(const T&) {
         return std::is_same_v<T, axis::Power> || std::is_same_v<T, axis::Reset> ||
                std::is_same_v<T, axis::ReadParameter> || std::is_same_v<T, axis::CamTableSelect> ||
-               std::is_same_v<T, axis::TouchProbe> || std::is_same_v<T, axis::SetLoad> || std::is_same_v<T, axis::AbortTrigger> ||
-               std::is_same_v<T, axis::AbortPassiveHoming> || std::is_same_v<T, axis::DigitalCamSwitch>;
+               std::is_same_v<T, axis::TouchProbe> || std::is_same_v<T, axis::SetLoad> ||
+               std::is_same_v<T, axis::AbortTrigger> || std::is_same_v<T, axis::AbortPassiveHoming> ||
+               std::is_same_v<T, axis::DigitalCamSwitch>;
       },
       command);
 }

@@ -233,7 +233,8 @@ double WayAlongPath(const Context& c, const axis::State& member, const State& s)
 }
 
 // Whether a member goes further onto a limit switch, or in a direction that is not enabled, along the path than by the
-// ramp that the machine file gives it for that (AX-112). Each fault is weighed once, in the cycle after it, when the path is braked.
+// ramp that the machine file gives it for that (AX-112). Each fault is weighed once, in the cycle after it, when the
+// path is braked.
 bool GoesFurtherThanAlone(const Context& c, State& s) {
   constexpr double kSame = 1.05;  // paths are braked with a little less than the limits
   constexpr double kCycles = 2;   // in which faults are noticed and weighed
