@@ -139,9 +139,7 @@ def way_to_rest(velocity: float, acceleration: float, limits: Mapping[str, Any])
     return float(fastest * (faster + deceleration) / jerk + fastest**2 / (2 * deceleration))
 
 
-def wrong_of(
-    s: takt.Engine, recording: takt.Recording, held: list[tuple[int, int]], stopped: list[Held]
-) -> list[str]:
+def wrong_of(s: takt.Engine, recording: takt.Recording, held: list[tuple[int, int]], stopped: list[Held]) -> list[str]:
     """What of the invariants a recording breaks."""
     wrong = []
     for name, begin, end in stopped:
