@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 import takt
 from seams import MACHINE, commands
@@ -185,3 +187,47 @@ def test_the_reset_of_a_group_does_not_lose_its_power() -> None:
         assert (power.error, power.error_id) == (True, 11)
         portal.power().wait()
         assert all(s.axis(name).loop_closed for name in "xyz")
+
+
+def test_an_emergency_stop_without_hold_lasts_its_cycle() -> None:
+    """AX-100: what asks for power or motion in the same cycle is refused."""
+    with takt.Engine(MACHINE) as s:
+        web = s.axis("web")
+        web.power().wait()
+        web.move_velocity(velocity=50)
+        s.run(0.2)
+        s.command("machine", "emergency_stop")
+        power, move = web.power(), web.move_velocity(velocity=50, buffer_mode="buffered")
+        s.run(0.3)
+        assert (power.error_id, move.error_id) == (3100, 3100)
+        assert web.emergency_stopped
+        web.power().wait()
+
+
+def test_more_holders_of_an_emergency_stop_than_there_is_room_for() -> None:
+    """AX-100: the seventeenth is told so, and the stop ends when the others have let go."""
+    with takt.Engine(MACHINE) as s:
+        holders = [s.command("machine", "emergency_stop", {"hold": True}) for _ in range(16)]
+        assert s.command("machine", "emergency_stop", {"hold": True}).wait_final().error_id == 3003
+        for holder in holders:
+            assert s.axis("web").power().wait_final().error_id == 3100
+            holder.release()
+            s.step(2)
+        s.axis("web").power().wait()
+
+
+def test_stops_end_a_voltage_that_is_put_out_directly() -> None:
+    """EN-32: with the loop open, too."""
+    stops: list[Callable[[takt.Engine], takt.Feedback]] = [
+        lambda s: s.axis("valve").stop(),
+        lambda s: s.axis("valve").halt(),
+        lambda s: s.command("machine", "stop_all"),
+    ]
+    for stop in stops:
+        with takt.Engine(MACHINE) as s:
+            s.axis("valve").direct_output(voltage=2).wait()
+            s.run(0.3)
+            assert s.axis("valve").actual_velocity > 50
+            assert stop(s).wait().done
+            s.run(0.5)
+            assert abs(s.axis("valve").actual_velocity) < 1

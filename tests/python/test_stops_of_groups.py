@@ -230,3 +230,102 @@ def test_a_fault_is_braked_for_along_the_path_as_hard_as_the_axes_can(planned_ah
         expect.continuous(recording, name)
     x, y = (np.asarray(recording[name]["set_position"]) for name in "xy")
     assert np.abs(y - x / 10).max() < 1e-6
+
+
+# --- what stops a group ranks, and holds ---
+
+
+def moving(machine: dict[str, Any] | None = None) -> tuple[takt.Engine, takt.Group]:
+    s, g = ready(machine or cell())
+    g.move_linear_absolute(x=2000)
+    s.run(0.3)
+    assert s.axis("x").set_velocity > 400
+    return s, g
+
+
+WEAKER: dict[str, Callable[[takt.Engine, takt.Group], takt.Feedback]] = {
+    "stop": lambda s, g: g.stop(deceleration=20),
+    "held stop": lambda s, g: g.stop(hold=True),
+    "halt": lambda s, g: g.halt(deceleration=20),
+    "stop_all": lambda s, g: s.command("machine", "stop_all"),
+    "move": lambda s, g: g.move_linear_absolute(x=100),
+    "buffered move": lambda s, g: g.move_linear_relative(x=50, buffer_mode="buffered"),
+    "jog": lambda s, g: g.jog(x=10),
+    "power": lambda s, g: g.power(),
+    "disable": lambda s, g: g.disable(),
+}
+
+
+@pytest.mark.parametrize("weaker", WEAKER)
+@pytest.mark.parametrize("after", [0, 3])
+@pytest.mark.parametrize("by_machine", [True, False])
+def test_nothing_weaker_overtakes_a_power_off(weaker: str, after: int, by_machine: bool) -> None:
+    """EN-32: power off ranks above all that moves or stops a group."""
+    s, g = moving()
+    with s:
+        begin = s.axis("x").set_position
+        off = s.command("machine", "stop_all", {"open_loops": True}) if by_machine else g.power(enable=False)
+        s.step(after)
+        WEAKER[weaker](s, g)
+        s.run(0.5)
+        assert off.done
+        assert not any(axis.loop_closed for axis in s.axes.values())
+        assert s.axis("x").set_position - begin < 60
+
+
+@pytest.mark.parametrize("first", [{}, {"deceleration": 20}])
+@pytest.mark.parametrize("second", [{}, {"deceleration": 20}])
+def test_no_stop_of_a_group_softens_another(first: dict[str, float], second: dict[str, float]) -> None:
+    """EN-32: of several the one that brakes harder, in whatever order."""
+    s, g = moving()
+    with s:
+        begin = s.axis("x").set_position
+        g.stop(**first)
+        s.step(5)
+        g.stop(**second)
+        s.run(1)
+        way = s.axis("x").set_position - begin
+        assert (way < 60) is (first == {} or second == {})
+
+
+@pytest.mark.parametrize(
+    "between",
+    [
+        lambda s, g: g.power(enable=False),
+        lambda s, g: s.command("machine", "stop_all", {"open_loops": True}),
+        lambda s, g: s.command("machine", "emergency_stop"),
+        lambda s, g: s.command("machine", "fail_all_axes"),
+        lambda s, g: g.stop(),
+        lambda s, g: s.command("machine", "stop_all"),
+        lambda s, g: g.disable(),
+    ],
+)
+@pytest.mark.parametrize("moment", ["moving", "standing"])
+def test_a_held_stop_of_a_group_outlasts_whatever_comes(
+    between: Callable[[takt.Engine, takt.Group], takt.Feedback], moment: str
+) -> None:
+    """AX-37, for groups: two holders, of which the last one lets the group go."""
+    s, g = moving()
+    with s:
+        holders = [g.stop(hold=True), g.stop(hold=True)]
+        s.run(0.5 if moment == "standing" else 0.02)
+        between(s, g)
+        s.run(0.5)
+        g.reset()
+        s.run(0.1)
+        g.enable()
+        s.step(2)
+        g.power()
+        s.run(0.5)
+        stands = s.axis("x").set_position
+        for holder in holders:
+            assert g.state == "GroupStopping"
+            for give in OUTWARDS.values():
+                assert give(g).wait_final().error_id == 6
+            assert g.home().wait_final().error
+            s.run(0.1)
+            assert s.axis("x").set_position == stands
+            holder.release()
+            s.step(3)
+        assert g.state == "GroupStandby"
+        g.move_linear_relative(x=-5).wait()

@@ -172,6 +172,10 @@ Status Admit(const Context& c, const Request& r, State& s) {
     if (buffered) return Enqueue(c, r, s);
     return stops ? StopBeforeReady(c, r, s), Status::Ok() : Status::Failed(ErrorId::kPowerOff);
   }
+  if (stops && s.direct_voltage_v != 0) {  // put out with the loop open
+    s.direct_voltage_v = 0;
+    return StopBeforeReady(c, r, s), Status::Ok();
+  }
   if (!s.loop_closed) return Status::Failed(ErrorId::kPowerOff);
   if (SwitchingOff(s)) return Status::Failed(ErrorId::kAxisStopping);
   if (buffered) return Enqueue(c, r, s);

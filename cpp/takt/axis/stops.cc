@@ -17,22 +17,9 @@ std::span<const StopOrder> All(const State& s) {
   return {s.stops.of.data(), s.stops.count};
 }
 
-StopOrder* Find(Ticket ticket, State& s) {
-  const auto found = std::ranges::find(All(s), ticket, &StopOrder::ticket);
-  return found == All(s).end() ? nullptr : &*found;
-}
-
-// Forgets those that neither hold nor wait.
-void Tidy(State& s) {
-  const auto over = [](const StopOrder& o) { return o.reported && !o.hold; };
-  const auto removed = std::ranges::remove_if(All(s), over);
-  std::ranges::fill(removed, StopOrder{});
-  s.stops.count -= static_cast<std::uint32_t>(removed.size());
-}
-
 // Another component has one order, however often it stops the axis.
 void Note(const Context& c, const Request& r, bool stands, State& s) {
-  if (StopOrder* const known = Find(r.ticket, s)) {
+  if (StopOrder* const known = s.stops.Find(r.ticket)) {
     known->hold |= r.hold;
     known->reported &= stands;
     return;
@@ -41,18 +28,12 @@ void Note(const Context& c, const Request& r, bool stands, State& s) {
   s.stops.of[s.stops.count++] = {r.ticket, r.lease_s, CycleIn(c.cycle, r.lease_s), r.hold, stands};
 }
 
-// The one that is longest in force gives its name.
-const StopOrder* Holder(const State& s) {
-  const auto found = std::ranges::find(All(s), true, &StopOrder::hold);
-  return found == All(s).end() ? nullptr : &*found;
-}
-
 void WatchLeases(const Context& c, State& s) {
   const bool held = IsHeldStopped(s);
   for (StopOrder& order : All(s)) {
     if (order.lease_s > 0 && c.cycle.count >= order.lease_end_cycle) order.hold = false;
   }
-  Tidy(s);
+  s.stops.Tidy();
   // Nobody has said that what waits behind it may begin; another stop may.
   const bool lost = held && !IsHeldStopped(s);
   if (lost && s.buffered > 0 && s.buffer[0].kind != RequestKind::kStop) AbortBuffer(c, s);
@@ -60,8 +41,26 @@ void WatchLeases(const Context& c, State& s) {
 
 }  // namespace
 
+const StopOrder* StopOrders::Holder() const noexcept {
+  const auto found = std::find_if(of.begin(), of.begin() + count, [](const StopOrder& o) { return o.hold; });
+  return found == of.begin() + count ? nullptr : &*found;
+}
+
+StopOrder* StopOrders::Find(Ticket ticket) noexcept {
+  const auto end = of.begin() + count;
+  const auto found = std::find_if(of.begin(), end, [&](const StopOrder& o) { return o.ticket == ticket; });
+  return found == end ? nullptr : &*found;
+}
+
+void StopOrders::Tidy() noexcept {
+  const auto end = of.begin() + count;
+  const auto kept = std::remove_if(of.begin(), end, [](const StopOrder& o) { return o.reported && !o.hold; });
+  std::fill(kept, end, StopOrder{});
+  count = static_cast<std::uint32_t>(kept - of.begin());
+}
+
 bool IsHeldStopped(const State& s) noexcept {
-  return s.stops.count > 0 && Holder(s) != nullptr;
+  return s.stops.count > 0 && s.stops.Holder() != nullptr;
 }
 
 bool HoldsStop(Ticket ticket, const State& s) noexcept {
@@ -96,7 +95,7 @@ void TellStopped(const Context& c, bool just_arrived, State& s) noexcept {
     Report(c, order.ticket, FeedbackState::kDone);
     order.reported = true;
   }
-  Tidy(s);
+  s.stops.Tidy();
 }
 
 void EndStops(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
@@ -104,19 +103,19 @@ void EndStops(const Context& c, FeedbackState feedback, ErrorId error, State& s)
     if (!order.reported) ReportEnd(c, order.ticket, feedback, error, s);
     order.reported = true;
   }
-  Tidy(s);
+  s.stops.Tidy();
 }
 
 bool LetGoOfStop(Ticket ticket, State& s) noexcept {
-  StopOrder* const order = Find(ticket, s);
+  StopOrder* const order = s.stops.Find(ticket);
   if (order == nullptr) return false;
   order->hold = false;
-  Tidy(s);
+  s.stops.Tidy();
   return true;
 }
 
 bool RenewStop(const Context& c, Ticket ticket, State& s) noexcept {
-  StopOrder* const order = Find(ticket, s);
+  StopOrder* const order = s.stops.Find(ticket);
   if (order == nullptr || order->lease_s <= 0) return false;
   order->lease_end_cycle = CycleIn(c.cycle, order->lease_s);
   return true;
@@ -124,7 +123,7 @@ bool RenewStop(const Context& c, Ticket ticket, State& s) noexcept {
 
 void FollowStops(const Context& c, State& s) noexcept {
   WatchLeases(c, s);
-  const StopOrder* const holder = Holder(s);
+  const StopOrder* const holder = s.stops.Holder();
   const bool free = s.plc == PlcState::kStandstill && s.active.kind == RequestKind::kNone && !s.superimposed;
   if (holder == nullptr || !free) return;
   s.active = Request{};

@@ -27,10 +27,17 @@ struct StopOrder {
   bool reported = false;  // its final feedback is out
 };
 
+// Of an axis, or of a group of axes.
 struct StopOrders {
   static constexpr std::size_t kMost = 8;
   std::array<StopOrder, kMost> of{};
   std::uint32_t count = 0;
+
+  // The one that has held for the longest time; null: none holds.
+  const StopOrder* Holder() const noexcept;
+  StopOrder* Find(Ticket ticket) noexcept;
+  // Forgets those that neither hold nor wait.
+  void Tidy() noexcept;
 };
 
 // Whether nothing may move the axis before it is released.
@@ -41,7 +48,7 @@ bool HoldsStop(Ticket ticket, const State& s) noexcept;
 void BeginStop(const Context& c, const Request& request, State& s) noexcept;
 // Another one while the axis stops already.
 void JoinStop(const Context& c, const Request& request, State& s) noexcept;
-// One while the drive gets ready or the brake opens: nothing moves yet, and what waits for that is aborted.
+// One with no motion to brake, while the drive gets ready or the brake opens: what waits for that is aborted.
 void StopBeforeReady(const Context& c, const Request& request, State& s) noexcept;
 // The axis stands. Those that hold are done; the others one cycle later, so that Stopping is seen.
 void TellStopped(const Context& c, bool just_arrived, State& s) noexcept;

@@ -251,7 +251,8 @@ struct MachineApplier {
       axis::State& state = world.axis_states[i];
       if (c.open_loops) {
         axis::Apply(ContextOf(world, i), 0, 0, axis::Power{.enable = false}, state);
-      } else if ((state.loop_closed || state.enable) && state.plc != axis::PlcState::kErrorStop) {
+      } else if ((state.loop_closed || state.enable || state.direct_voltage_v != 0) &&
+                 state.plc != axis::PlcState::kErrorStop) {
         axis::Apply(ContextOf(world, i), 0, 0, axis::Stop{}, state);
       }
     }
@@ -277,9 +278,10 @@ struct MachineApplier {
       const PickPlace& module = world.pick_places[i];
       pickplace::EmergencyStop(ContextOf(world, module), world.group_states[module.group], world.pick_place_states[i]);
     }
-    if (c.hold) world.emergency.Add(ticket);
+    world.emergency.Pulse(world.cycle.count);
+    const bool held = !c.hold || world.emergency.Add(ticket);
     EndEmergency();
-    Report(FeedbackState::kDone);
+    held ? Report(FeedbackState::kDone) : Report(FeedbackState::kError, ErrorId::kBufferFull);
   }
   void operator()(const ReleaseEmergencyStop&) const {
     world.emergency.Clear();
@@ -400,7 +402,7 @@ void Apply(World& w, const Command& command) noexcept {
   const std::uint32_t component = command.target - 1;  // none has the machine's number less one
   if (component < w.first_of[kind] || component >= w.first_of[kind + 1]) return refuse(ErrorId::kUnknownTarget);
   const std::size_t i = component - w.first_of[kind];
-  if (w.emergency.held() && AsksToMove(command)) return refuse(ErrorId::kEmergencyStop);
+  if (w.emergency.on(w.cycle.count) && AsksToMove(command)) return refuse(ErrorId::kEmergencyStop);
   if (const auto* for_axis = std::get_if<axis::Command>(&command.body)) {
     // What stops a follower stops its leader, which may be the group's (AX-101, GR-03).
     const bool of_leader =

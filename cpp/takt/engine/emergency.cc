@@ -7,12 +7,10 @@
 
 namespace takt::engine {
 
-void EmergencyHolders::Add(Ticket ticket) noexcept {
-  if (count_ == kMost) {
-    nameless_ = true;
-    return;
-  }
+bool EmergencyHolders::Add(Ticket ticket) noexcept {
+  if (count_ == kMost) return false;
   tickets_[count_++] = ticket;
+  return true;
 }
 
 bool EmergencyHolders::Remove(Ticket ticket) noexcept {

@@ -9,20 +9,23 @@
 
 namespace takt::engine {
 
-// Commands that hold the emergency stop. It is on while any does.
+// Commands that hold the emergency stop. It is on while any does, and in the cycle in which one came that does not.
 class EmergencyHolders {
  public:
-  void Add(Ticket ticket) noexcept;
+  // False: as many hold it as there is room for.
+  bool Add(Ticket ticket) noexcept;
+  void Pulse(std::uint64_t cycle) noexcept { pulse_ = cycle; }
   // True: it held the stop.
   bool Remove(Ticket ticket) noexcept;
   void Clear() noexcept { *this = {}; }
-  bool held() const noexcept { return count_ > 0 || nameless_; }
+  bool held() const noexcept { return count_ > 0; }
+  bool on(std::uint64_t cycle) const noexcept { return held() || pulse_ == cycle; }
 
  private:
   static constexpr std::size_t kMost = 16;
   std::array<Ticket, kMost> tickets_{};
   std::uint32_t count_ = 0;
-  bool nameless_ = false;  // more than there is room for: until all are released
+  std::uint64_t pulse_ = UINT64_MAX;  // cycle
 };
 
 // Whether a command asks for power or motion, of whatever component: refused while an emergency stop is on.

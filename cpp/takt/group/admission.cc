@@ -41,10 +41,14 @@ struct Applier {
     return error;
   }
 
+  // Power off ranks above all that moves or stops a group: it goes on to its end.
+  bool SwitchingOff() const { return s.task == Task::kPower && !s.power_on; }
+
   ErrorId MayMove() const {
     if (Is(GroupState::kDisabled)) return ErrorId::kGroupDisabled;
+    if (SwitchingOff()) return ErrorId::kAxisStopping;
     if (Is(GroupState::kErrorStop)) return ErrorId::kErrorStop;
-    if (Is(GroupState::kStopping)) return ErrorId::kAxisStopping;
+    if (Is(GroupState::kStopping) || s.holds.Holder() != nullptr) return ErrorId::kAxisStopping;
     if (Is(GroupState::kHoming)) return ErrorId::kState;
     if (CountOf(s) == 0) return ErrorId::kGroupEmpty;
     for (std::size_t k = 0; k < kMaxAxes; ++k) {
@@ -114,6 +118,7 @@ struct Applier {
   void operator()(const Stop& m) const {
     if (Is(GroupState::kDisabled)) return Refuse(ErrorId::kGroupDisabled);
     if (Is(GroupState::kErrorStop)) return Refuse(ErrorId::kErrorStop);
+    if (SwitchingOff()) return Refuse(ErrorId::kAxisStopping);
     EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
     AbortAll({m.deceleration.value_or(0), m.jerk.value_or(0)});
     if (Is(GroupState::kHoming)) TellAll(c, s, axis::Stop{});
@@ -121,9 +126,7 @@ struct Applier {
     s.task = Task::kStop;
     s.ticket = ticket;
     s.stop_reported = false;
-    s.hold = m.hold;
-    s.lease_s = lease_s;
-    s.lease_end_cycle = CycleIn(c.cycle, lease_s);
+    if (m.hold) Hold(c, ticket, lease_s, s);
     Report(c, ticket, FeedbackState::kActive);
     Enter(GroupState::kStopping, s);
   }
@@ -169,6 +172,7 @@ struct Applier {
   }
   void operator()(const UngroupAllAxes&) const {
     if (Is(GroupState::kErrorStop)) return Refuse(ErrorId::kErrorStop);
+    if (SwitchingOff() && s.begun) return Refuse(ErrorId::kAxisStopping);
     if (CountOf(s) > 0) LeaveAll();
     const ErrorId error = Ungroup(c, s);
     if (!Is(GroupState::kDisabled)) Enter(GroupState::kDisabled, s);
@@ -193,7 +197,7 @@ struct Applier {
     LetGoOfMembers(c, s);
     LetGoOfSynced(c, FeedbackState::kDone, s);
     ForgetPlan(c, s);
-    s.begun = s.ends = s.hold = s.lets_go = false;
+    s.begun = s.ends = s.lets_go = false;
     s.clutches = {};
     s.ridden = {};
     s.rise = {};
@@ -201,6 +205,7 @@ struct Applier {
   }
   void operator()(const Disable&) const {
     if (Is(GroupState::kErrorStop)) return Refuse(ErrorId::kErrorStop);
+    if (SwitchingOff() && s.begun) return Refuse(ErrorId::kAxisStopping);
     LeaveAll();
     if (!Is(GroupState::kDisabled)) Enter(GroupState::kDisabled, s);
     Finish(ErrorId::kNone);
@@ -216,14 +221,13 @@ struct Applier {
   }
   void operator()(const Power& m) const {
     if (m.enable && Is(GroupState::kErrorStop)) return Refuse(ErrorId::kErrorStop);
-    if (m.enable && Is(GroupState::kStopping)) return Refuse(ErrorId::kAxisStopping);
+    if (m.enable && (Is(GroupState::kStopping) || SwitchingOff())) return Refuse(ErrorId::kAxisStopping);
     if (m.enable && Is(GroupState::kHoming)) return Refuse(ErrorId::kState);
     if (CountOf(s) == 0) return Refuse(ErrorId::kGroupEmpty);
     if (m.enable && s.guides) return Finish(ErrorId::kNone);
     if (!m.enable && (s.begun || s.queue.count > 0 || Streams(s))) {  // along the path first
       EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
       AbortAll();
-      s.hold = false;
       s.task = Task::kPower;
       s.power_on = false;
       s.ticket = ticket;
@@ -231,10 +235,7 @@ struct Applier {
     }
     AbortTask();
     if (!m.enable) EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
-    if (!m.enable && Is(GroupState::kStopping)) {
-      s.hold = false;
-      Enter(GroupState::kStandby, s);
-    }
+    if (!m.enable && Is(GroupState::kStopping)) Enter(GroupState::kStandby, s);
     const ErrorId error = m.enable ? TellAll(c, s, axis::Power{}) : SwitchOffAll(c, s);
     if (error != ErrorId::kNone) return Refuse(error);
     s.task = Task::kPower;
@@ -244,6 +245,7 @@ struct Applier {
   }
   void operator()(const Home&) const {
     if (!Is(GroupState::kStandby)) return Refuse(Is(GroupState::kDisabled) ? ErrorId::kGroupDisabled : ErrorId::kState);
+    if (s.holds.Holder() != nullptr) return Refuse(ErrorId::kAxisStopping);
     const ErrorId error = TellAll(c, s, axis::Home{});
     if (error != ErrorId::kNone) {
       // Those that have begun stop; until then it is homing.

@@ -26,11 +26,10 @@ void Fail(const Context& c, ErrorId error, State& s) {
   if (s.state == GroupState::kErrorStop) return;
   // A fault does not end a power-off.
   if (s.task != Task::kPower || s.power_on) EndTask(c, FeedbackState::kError, error, s);
-  s.hold = false;
   EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
   EndStream(c, FeedbackState::kError, error, s);
   AbortMoves(c, error, s);
-  EndMotion({.full = true}, true, s);
+  EndMotion(c, {.full = true}, true, s);
   s.weighed = 0;
   if (s.state == GroupState::kHoming) TellAll(c, s, axis::Stop{});
   Enter(GroupState::kErrorStop, s);
@@ -52,7 +51,7 @@ void ComeToRest(const Context& c, State& s) {
   if (s.task == Task::kStop) {
     if (!s.stop_reported) Report(c, s.ticket, FeedbackState::kDone);
     s.stop_reported = true;
-    if (s.hold) return LetGoOfMembers(c, s);
+    if (s.holds.Holder() != nullptr) return LetGoOfMembers(c, s);
     s.ticket = 0;
     EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
   }
@@ -211,12 +210,24 @@ void AskForReset(const Context& c, State& s) {
   }
 }
 
-void WatchLease(const Context& c, State& s) {
-  if (s.lease_s <= 0 || c.cycle.count < s.lease_end_cycle) return;
-  if (!Jogs(s)) {
-    Release(c, s.ticket, s);
-    return;
+// A group that is held and has come to rest otherwise (powered, reset, enabled since) is in GroupStopping again.
+void FollowHolds(const Context& c, State& s) {
+  for (std::uint32_t i = 0; i < s.holds.count;) {
+    const axis::StopOrder order = s.holds.of[i];
+    const bool over = order.lease_s > 0 && c.cycle.count >= order.lease_end_cycle;
+    over ? static_cast<void>(Release(c, order.ticket, s)) : static_cast<void>(++i);
   }
+  const axis::StopOrder* const holder = s.holds.Holder();
+  if (holder == nullptr || s.state != GroupState::kStandby || s.task != Task::kNone) return;
+  if (!AllMembers(c, s, [](const axis::State& member) { return member.loop_closed; })) return;
+  s.task = Task::kStop;
+  s.ticket = holder->ticket;
+  s.stop_reported = true;
+  Enter(GroupState::kStopping, s);
+}
+
+void WatchLease(const Context& c, State& s) {
+  if (s.lease_s <= 0 || c.cycle.count < s.lease_end_cycle || !Jogs(s)) return;
   Report(c, MoveAt(s, s.done).ticket, FeedbackState::kAborted, ErrorId::kLeaseExpired);
   EndJog(c, 0, s);
 }
@@ -296,6 +307,7 @@ State MakeState(std::span<const std::uint32_t> axes) noexcept {
 void Step(const Context& c, State& s) noexcept {
   c.ahead.blame = {};
   WatchLease(c, s);
+  if (s.holds.count > 0) FollowHolds(c, s);
   WatchMembers(c, s);
   if (s.resetting) {
     AskForReset(c, s);
@@ -333,10 +345,12 @@ bool Release(const Context& c, Ticket ticket, State& s) noexcept {
     EndJog(c, ticket, s);
     return true;
   }
-  if (ticket == 0 || s.task != Task::kStop || s.ticket != ticket) return false;
-  s.hold = false;
-  s.lease_s = 0;
-  if (!s.begun && !s.ends) {
+  axis::StopOrder* const order = ticket == 0 ? nullptr : s.holds.Find(ticket);
+  if (order == nullptr) return false;
+  order->hold = false;
+  s.holds.Tidy();
+  const bool rests = s.task == Task::kStop && s.holds.Holder() == nullptr && !s.begun && !s.ends;
+  if (rests) {
     s.ticket = 0;
     EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
     Enter(GroupState::kStandby, s);
@@ -345,8 +359,11 @@ bool Release(const Context& c, Ticket ticket, State& s) noexcept {
 }
 
 bool Renew(const Context& c, Ticket ticket, State& s) noexcept {
-  const bool stops = ticket != 0 && s.task == Task::kStop && s.ticket == ticket;
-  if ((!stops && !IsJogOf(ticket, s)) || s.lease_s <= 0) return false;
+  if (axis::StopOrder* const order = ticket == 0 ? nullptr : s.holds.Find(ticket)) {
+    if (order->lease_s > 0) order->lease_end_cycle = CycleIn(c.cycle, order->lease_s);
+    return order->lease_s > 0;
+  }
+  if (!IsJogOf(ticket, s) || s.lease_s <= 0) return false;
   s.lease_end_cycle = CycleIn(c.cycle, s.lease_s);
   return true;
 }

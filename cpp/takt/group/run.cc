@@ -75,7 +75,7 @@ bool FollowCarried(const Context& c, const Stretch& stretch, double way, State& 
   if (!s.lets_go && !CanLetGo(c, s)) {
     EndTracking(c, FeedbackState::kError, ErrorId::kUnreachable, s);
     AbortMoves(c, ErrorId::kUnreachable, s);
-    EndMotion({}, true, s);
+    EndMotion(c, {}, true, s);
   }
   return true;
 }
@@ -322,19 +322,23 @@ void SitOn(const Context& c, const Ride& ride, const path::Point& place, State& 
 
 void GiveUpPath(const Context& c, const Brake& brake, bool lets_go, State& s) noexcept {
   if (s.begun || s.planning.stage != Stage::kIdle || c.ahead.known) {
-    EndMotion(brake, lets_go || s.lets_go, s);
+    EndMotion(c, brake, lets_go || s.lets_go, s);
   } else {
     ForgetPlan(c, s);
   }
   s.interrupted = false;
 }
 
-void EndMotion(const Brake& brake, bool lets_go, State& s) noexcept {
+void EndMotion(const Context& c, const Brake& brake, bool lets_go, State& s) noexcept {
+  // Of several the one that brakes harder: 0 is the path's own.
+  const double own = s.begun && c.ahead.known ? c.ahead.window[s.pace.node].bounds.deceleration : 0;
+  const auto strength = [&](const Brake& b) { return b.full ? HUGE_VAL : b.deceleration > 0 ? b.deceleration : own; };
+  const bool softer = s.ends && s.begun && strength(brake) < strength(s.brake);
   s.ends = true;
   s.lets_go = lets_go;
   for (Clutch& clutch : s.clutches) clutch.law_length = 0;  // whoever takes over does not wait for the carrier
   s.interrupted = false;
-  s.brake = brake;
+  if (!softer) s.brake = brake;
 }
 
 }  // namespace takt::group

@@ -21,7 +21,7 @@ bool Advance(const Context& c, State& s) noexcept;
 bool Rests(const State& s) noexcept;
 
 // Comes to rest on the path, which is then forgotten. mm/s²; 0: as the path says.
-void EndMotion(const Brake& brake, bool lets_go, State& s) noexcept;
+void EndMotion(const Context& c, const Brake& brake, bool lets_go, State& s) noexcept;
 
 // The same wherever it has got to with that: what is only planned is forgotten at once.
 void GiveUpPath(const Context& c, const Brake& brake, bool lets_go, State& s) noexcept;

@@ -133,7 +133,7 @@ void describe(Description<State>& d) {
   d.internal<&S::ridden>("Carriers that take part now.");
   d.internal<&S::rise>("Above the path, while it is braked.");
   d.internal<&S::track>("Tracking of an object.");
-  d.internal<&S::hold>("Stop: until released.");
+  d.internal<&S::holds>("Stops that hold it until they are released.");
   d.internal<&S::ticket>("Of stop, halt, interrupt, home or power.");
   d.internal<&S::task>("Which of them.");
   d.internal<&S::lease_s>("Dead man's lease; 0: none.");

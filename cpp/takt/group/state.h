@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "takt/axis/stops.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
 #include "takt/core/kinematic_state.h"
@@ -171,10 +172,10 @@ struct State {
   std::array<std::uint32_t, kClutches> ridden{};  // numbers of the carriers that take part in the motion now
   Rise rise;
   Track track;
-  bool hold = false;  // stop: until released
-  Ticket ticket = 0;  // of the task
+  axis::StopOrders holds;  // stops that hold it, whatever has come since
+  Ticket ticket = 0;       // of the task
   Task task = Task::kNone;
-  double lease_s = 0;  // of a held stop or a jog
+  double lease_s = 0;  // of a jog
   std::uint64_t lease_end_cycle = 0;
   kinematics::Joints joints{};   // where the members are told to be
   kinematics::Joints origins{};  // whole turns and zeros taken out of their positions when they began to be guided

@@ -123,7 +123,7 @@ void Wait(const Context& c, const kinematics::Carrier& carrier, State& s) {
     for (std::uint32_t i = 0; i < s.queue.count; ++i) waits &= WaitsForTracking(s, MoveAt(s, s.done + i));
     if (!waits) {
       AbortMoves(c, ErrorId::kNone, s);
-      return EndMotion({}, true, s);
+      return EndMotion(c, {}, true, s);
     }
   }
   SitDown(c, carrier, s);
@@ -139,7 +139,7 @@ Clutch* ClutchOf(const Context& c, State& s) {
 // The object leaves where it may be tracked.
 void Leave(const Context& c, double distance, double of_tool, State& s) {
   AbortMoves(c, ErrorId::kNone, s);
-  EndMotion({}, true, s);
+  EndMotion(c, {}, true, s);
   s.track.ends = true;
   if (Clutch* clutch = ClutchOf(c, s); clutch && distance > 0) {
     clutch->law_begin = clutch->travel.position;

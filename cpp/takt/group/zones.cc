@@ -413,12 +413,12 @@ ErrorId StepZones(const Context& c, State& s) noexcept {
   EndStream(c, FeedbackState::kError, ErrorId::kZoneTaken, s);
   if (!s.begun) return ErrorId::kNone;
   if (s.ends && s.lets_go) {  // as strongly as it can
-    EndMotion({}, true, s);
+    EndMotion(c, {}, true, s);
     return ErrorId::kNone;
   }
   if (s.state == GroupState::kErrorStop) return ErrorId::kNone;
   if (!only_waits || s.task != Task::kNone) return ErrorId::kZoneTaken;
-  EndMotion({}, true, s);
+  EndMotion(c, {}, true, s);
   s.gets_off = true;
   return ErrorId::kNone;
 }
