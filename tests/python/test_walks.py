@@ -214,8 +214,8 @@ def wrong_of(s: takt.Engine, recording: takt.Recording, held: list[tuple[int, in
 @pytest.mark.parametrize("name", MACHINES)
 def test_walk(name: str) -> None:
     """AX-13, AX-37, AX-83, AX-100, AX-101, AX-112: in every cycle: while an emergency stop is held no axis is powered
-    or moves, while a stop holds an axis that one does not move; none moves onto a switch that is on, or goes further onto
-    one than by its own limits; set points keep their limits."""
+    or moves, while a stop holds an axis that one does not move; none moves onto a switch that is on, or goes further
+    onto one than by its own limits; set points keep their limits."""
     failures = []
     for seed in SEEDS:
         rnd = random.Random(seed)
