@@ -363,8 +363,8 @@ std::vector<std::string> ReasonTexts() {
   return texts;
 }
 
-// The shapes that URDF gives the links of a chain, as workspaces take them, each as JSON: those that are to be seen, or
-// those for collisions.
+// Returns the solids of the links of a chain as JSON, in the form of a workspace: the <visual> elements of the URDF, or
+// the <collision> elements.
 std::vector<std::string> UrdfSolids(const std::string& urdf, const std::string& base, const std::string& tip,
                                     const std::string& folder, bool visual) {
   const auto purpose = visual ? kinematics::UrdfPurpose::kVisual : kinematics::UrdfPurpose::kCollision;

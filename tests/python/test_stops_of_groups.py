@@ -329,3 +329,19 @@ def test_a_held_stop_of_a_group_outlasts_whatever_comes(
             s.step(3)
         assert g.state == "GroupStandby"
         g.move_linear_relative(x=-5).wait()
+
+
+def test_more_holders_of_a_group_than_there_is_room_for_are_told_so() -> None:
+    """EN-32: the ninth brakes the group, holds nothing, and gets error 3003."""
+    s, g = moving()
+    with s:
+        holders = [g.stop(hold=True, deceleration=50) for _ in range(8)]
+        late = g.stop(hold=True)
+        s.run(0.3)
+        assert late.wait_final().error_id == 3003
+        assert s.axis("x").set_velocity == 0
+        for holder in holders:
+            assert g.state == "GroupStopping"
+            holder.release()
+            s.step(2)
+        assert g.state == "GroupStandby"

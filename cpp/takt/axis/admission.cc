@@ -170,11 +170,11 @@ Status Admit(const Context& c, const Request& r, State& s) {
   if (ComesTooLate(r, s)) return Report(c, r.ticket, FeedbackState::kAborted), Status::Ok();
   if (SwitchingOn(s)) {  // the drive gets ready or the brake opens
     if (buffered) return Enqueue(c, r, s);
-    return stops ? StopBeforeReady(c, r, s), Status::Ok() : Status::Failed(ErrorId::kPowerOff);
+    return stops ? StopAtOnce(c, r, s), Status::Ok() : Status::Failed(ErrorId::kPowerOff);
   }
   if (stops && s.direct_voltage_v != 0) {  // put out with the loop open
     s.direct_voltage_v = 0;
-    return StopBeforeReady(c, r, s), Status::Ok();
+    return StopAtOnce(c, r, s), Status::Ok();
   }
   if (!s.loop_closed) return Status::Failed(ErrorId::kPowerOff);
   if (SwitchingOff(s)) return Status::Failed(ErrorId::kAxisStopping);
@@ -280,7 +280,7 @@ void Apply(const Context& c, Ticket ticket, double lease_s, const Command& comma
 }
 
 bool Release(const Context& c, Ticket ticket, State& s) noexcept {
-  if (EndProbing(c, ticket, s) || (ticket != 0 && LetGoOfStop(ticket, s))) return true;
+  if (EndProbing(c, ticket, s) || (ticket != 0 && s.stops.LetGo(ticket))) return true;
   Request* const request = Find(ticket, s);
   if (request == nullptr) return false;
   request->hold = false;
@@ -290,7 +290,7 @@ bool Release(const Context& c, Ticket ticket, State& s) noexcept {
 }
 
 bool Renew(const Context& c, Ticket ticket, State& s) noexcept {
-  if (RenewStop(c, ticket, s)) return true;
+  if (s.stops.Renew(c.cycle, ticket)) return true;
   const Request* const request = Find(ticket, s);
   if (request == nullptr || request->lease_s <= 0) return false;
   if (request == &s.active) s.lease_end_cycle = CycleIn(c.cycle, request->lease_s);

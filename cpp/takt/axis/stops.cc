@@ -17,26 +17,15 @@ std::span<const StopOrder> All(const State& s) {
   return {s.stops.of.data(), s.stops.count};
 }
 
-// Another component has one order, however often it stops the axis.
 void Note(const Context& c, const Request& r, bool stands, State& s) {
-  if (StopOrder* const known = s.stops.Find(r.ticket)) {
-    known->hold |= r.hold;
-    known->reported &= stands;
-    return;
-  }
-  if (s.stops.count == StopOrders::kMost) return Report(c, r.ticket, FeedbackState::kError, ErrorId::kBufferFull);
-  s.stops.of[s.stops.count++] = {r.ticket, r.lease_s, CycleIn(c.cycle, r.lease_s), r.hold, stands};
+  if (s.stops.Add({r.ticket, r.lease_s, CycleIn(c.cycle, r.lease_s), r.hold, stands})) return;
+  Report(c, r.ticket, FeedbackState::kError, ErrorId::kBufferFull);
 }
 
-void WatchLeases(const Context& c, State& s) {
-  const bool held = IsHeldStopped(s);
-  for (StopOrder& order : All(s)) {
-    if (order.lease_s > 0 && c.cycle.count >= order.lease_end_cycle) order.hold = false;
-  }
-  s.stops.Tidy();
-  // Nobody has said that what waits behind it may begin; another stop may.
-  const bool lost = held && !IsHeldStopped(s);
-  if (lost && s.buffered > 0 && s.buffer[0].kind != RequestKind::kStop) AbortBuffer(c, s);
+StopOrder* Find(Ticket ticket, StopOrders& stops) {
+  const auto end = stops.of.begin() + stops.count;
+  const auto found = std::find_if(stops.of.begin(), end, [&](const StopOrder& o) { return o.ticket == ticket; });
+  return found == end ? nullptr : &*found;
 }
 
 }  // namespace
@@ -46,10 +35,39 @@ const StopOrder* StopOrders::Holder() const noexcept {
   return found == of.begin() + count ? nullptr : &*found;
 }
 
-StopOrder* StopOrders::Find(Ticket ticket) noexcept {
-  const auto end = of.begin() + count;
-  const auto found = std::find_if(of.begin(), end, [&](const StopOrder& o) { return o.ticket == ticket; });
-  return found == end ? nullptr : &*found;
+bool StopOrders::Add(const StopOrder& order) noexcept {
+  if (StopOrder* const known = axis::Find(order.ticket, *this)) {  // another component has one, however often it stops
+    known->hold |= order.hold;
+    known->reported &= order.reported;
+    return true;
+  }
+  if (count == kMost) return false;
+  of[count++] = order;
+  return true;
+}
+
+bool StopOrders::LetGo(Ticket ticket) noexcept {
+  StopOrder* const order = axis::Find(ticket, *this);
+  if (order == nullptr) return false;
+  order->hold = false;
+  Tidy();
+  return true;
+}
+
+bool StopOrders::Renew(const Cycle& cycle, Ticket ticket) noexcept {
+  StopOrder* const order = axis::Find(ticket, *this);
+  if (order == nullptr || order->lease_s <= 0) return false;
+  order->lease_end_cycle = CycleIn(cycle, order->lease_s);
+  return true;
+}
+
+bool StopOrders::EndLeases(const Cycle& cycle) noexcept {
+  const bool held = Holder() != nullptr;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (of[i].lease_s > 0 && cycle.count >= of[i].lease_end_cycle) of[i].hold = false;
+  }
+  Tidy();
+  return held && Holder() == nullptr;
 }
 
 void StopOrders::Tidy() noexcept {
@@ -82,7 +100,7 @@ void JoinStop(const Context& c, const Request& r, State& s) noexcept {
   if (sooner.duration() < left_s) StartMotion(sooner, sooner.end().position, FromCycleBefore(c), s);
 }
 
-void StopBeforeReady(const Context& c, const Request& r, State& s) noexcept {
+void StopAtOnce(const Context& c, const Request& r, State& s) noexcept {
   AbortBuffer(c, s);
   Report(c, r.ticket, FeedbackState::kActive);
   Report(c, r.ticket, FeedbackState::kDone);
@@ -106,23 +124,10 @@ void EndStops(const Context& c, FeedbackState feedback, ErrorId error, State& s)
   s.stops.Tidy();
 }
 
-bool LetGoOfStop(Ticket ticket, State& s) noexcept {
-  StopOrder* const order = s.stops.Find(ticket);
-  if (order == nullptr) return false;
-  order->hold = false;
-  s.stops.Tidy();
-  return true;
-}
-
-bool RenewStop(const Context& c, Ticket ticket, State& s) noexcept {
-  StopOrder* const order = s.stops.Find(ticket);
-  if (order == nullptr || order->lease_s <= 0) return false;
-  order->lease_end_cycle = CycleIn(c.cycle, order->lease_s);
-  return true;
-}
-
 void FollowStops(const Context& c, State& s) noexcept {
-  WatchLeases(c, s);
+  const bool lost = s.stops.EndLeases(c.cycle);
+  // Without a release buffered motions must not begin; another stop may.
+  if (lost && s.buffered > 0 && s.buffer[0].kind != RequestKind::kStop) AbortBuffer(c, s);
   const StopOrder* const holder = s.stops.Holder();
   const bool free = s.plc == PlcState::kStandstill && s.active.kind == RequestKind::kNone && !s.superimposed;
   if (holder == nullptr || !free) return;

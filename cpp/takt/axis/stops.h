@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "takt/core/cycle.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
 #include "takt/core/status.h"
@@ -15,10 +16,10 @@ struct Request;
 struct State;
 
 // Invariants:
-// - While any of them holds nothing moves the axis: it is in Stopping, or the loop is open, or it is in ErrorStop.
-//   Power off, faults, resets and emergency stops leave a hold as it is; only its release or its lease ends it.
-// - The axis brakes along the one that brings it to rest soonest; all are done when it stands.
-// - One that neither holds nor waits for standstill is forgotten. While one waits a stop is in control.
+// - While any stop is held nothing moves the axis: it is in Stopping or ErrorStop, or its loop is open. Power off,
+//   faults, resets and emergency stops do not end a hold; its release or the end of its lease does.
+// - The axis brakes on the ramp with the shortest time to rest; all stops are done at standstill.
+// - A stop that is reported and not held is removed. While one is not reported a stop is in control.
 struct StopOrder {
   Ticket ticket = 0;  // 0: another component's
   double lease_s = 0;
@@ -33,10 +34,17 @@ struct StopOrders {
   std::array<StopOrder, kMost> of{};
   std::uint32_t count = 0;
 
-  // The one that has held for the longest time; null: none holds.
+  // Returns the oldest stop that is held; null: there is none.
   const StopOrder* Holder() const noexcept;
-  StopOrder* Find(Ticket ticket) noexcept;
-  // Forgets those that neither hold nor wait.
+  // Adds a stop, or joins it to one with the same ticket. Returns false if there is no room.
+  bool Add(const StopOrder& order) noexcept;
+  // Ends a hold. Returns false if there is no stop with this ticket.
+  bool LetGo(Ticket ticket) noexcept;
+  // Extends a lease. Returns false if there is none with this ticket.
+  bool Renew(const Cycle& cycle, Ticket ticket) noexcept;
+  // Ends the holds whose lease is over. Returns true if this ended the last hold.
+  bool EndLeases(const Cycle& cycle) noexcept;
+  // Removes what is reported and not held.
   void Tidy() noexcept;
 };
 
@@ -44,20 +52,19 @@ struct StopOrders {
 bool IsHeldStopped(const State& s) noexcept;
 bool HoldsStop(Ticket ticket, const State& s) noexcept;
 
-// A stop takes control. With no room for another one it holds nothing: error kBufferFull, braked all the same.
+// A stop takes control. If there is no room for it the axis brakes, but the stop is not held: error kBufferFull.
 void BeginStop(const Context& c, const Request& request, State& s) noexcept;
 // Another one while the axis stops already.
 void JoinStop(const Context& c, const Request& request, State& s) noexcept;
-// One with no motion to brake, while the drive gets ready or the brake opens: what waits for that is aborted.
-void StopBeforeReady(const Context& c, const Request& request, State& s) noexcept;
-// The axis stands. Those that hold are done; the others one cycle later, so that Stopping is seen.
+// A stop with no motion to brake: the drive gets ready, the brake opens, or a voltage was put out with the loop open.
+// Buffered commands are aborted; the stop is done at once.
+void StopAtOnce(const Context& c, const Request& request, State& s) noexcept;
+// The axis is at rest: reports held stops as done, the others one cycle later, so that Stopping is seen.
 void TellStopped(const Context& c, bool just_arrived, State& s) noexcept;
-// The stop in control ends before the axis stands. What holds goes on holding.
+// The stop in control ends before the axis is at rest; holds stay.
 void EndStops(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
-// False: there is none of this ticket.
-bool LetGoOfStop(Ticket ticket, State& s) noexcept;
-bool RenewStop(const Context& c, Ticket ticket, State& s) noexcept;
-// Leases, and back into Stopping what is held and has come to Standstill (powered or reset since).
+// Ends expired leases, and enters Stopping again if the axis is held and has come to Standstill (powered or reset
+// since).
 void FollowStops(const Context& c, State& s) noexcept;
 
 void describe(Description<StopOrder>&);

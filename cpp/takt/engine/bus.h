@@ -34,7 +34,7 @@ struct BusHoming {
   std::optional<double> velocity_pulse{};   // u/s, 0x6099:2
   std::optional<double> acceleration{};     // u/s^2, 0x609A
   double within_s = 60;                     // s from its begin to the reference
-  std::optional<double> distance{};         // u, the axis goes no further from where it began; unset: anywhere
+  std::optional<double> distance{};         // u, most distance from the start of the search; unset: unlimited
 };
 
 // Written to an object of a drive at start.

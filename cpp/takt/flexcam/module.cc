@@ -73,7 +73,7 @@ void HoldStopped(const Context& c, axis::State& slave, State& s) {
   s.holds = axis::HoldsStop(0, slave);
 }
 void LetGoOfStop(axis::State& slave, State& s) {
-  if (s.holds) axis::LetGoOfStop(0, slave);
+  if (s.holds) slave.stops.LetGo(0);
   s.holds = false;
 }
 

@@ -124,10 +124,11 @@ struct Applier {
     if (Is(GroupState::kHoming)) TellAll(c, s, axis::Stop{});
     s.ends = true;
     s.task = Task::kStop;
-    s.ticket = ticket;
+    const bool room = !m.hold || s.holds.Add({ticket, lease_s, CycleIn(c.cycle, lease_s), true, true});
+    s.ticket = room ? ticket : 0;
     s.stop_reported = false;
-    if (m.hold) Hold(c, ticket, lease_s, s);
     Report(c, ticket, FeedbackState::kActive);
+    if (!room) Refuse(ErrorId::kBufferFull);  // it brakes all the same
     Enter(GroupState::kStopping, s);
   }
   void operator()(const Halt& m) const {

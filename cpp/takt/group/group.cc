@@ -210,13 +210,18 @@ void AskForReset(const Context& c, State& s) {
   }
 }
 
-// A group that is held and has come to rest otherwise (powered, reset, enabled since) is in GroupStopping again.
+// The last hold has ended: a group at rest leaves GroupStopping.
+void EndStopping(const Context& c, State& s) {
+  if (s.task != Task::kStop || s.holds.Holder() != nullptr || s.begun || s.ends) return;
+  s.ticket = 0;
+  EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
+  Enter(GroupState::kStandby, s);
+}
+
+// Ends expired leases, and enters GroupStopping again if the group is held and has come to rest otherwise (powered,
+// reset, enabled since).
 void FollowHolds(const Context& c, State& s) {
-  for (std::uint32_t i = 0; i < s.holds.count;) {
-    const axis::StopOrder order = s.holds.of[i];
-    const bool over = order.lease_s > 0 && c.cycle.count >= order.lease_end_cycle;
-    over ? static_cast<void>(Release(c, order.ticket, s)) : static_cast<void>(++i);
-  }
+  if (s.holds.EndLeases(c.cycle)) EndStopping(c, s);
   const axis::StopOrder* const holder = s.holds.Holder();
   if (holder == nullptr || s.state != GroupState::kStandby || s.task != Task::kNone) return;
   if (!AllMembers(c, s, [](const axis::State& member) { return member.loop_closed; })) return;
@@ -345,24 +350,13 @@ bool Release(const Context& c, Ticket ticket, State& s) noexcept {
     EndJog(c, ticket, s);
     return true;
   }
-  axis::StopOrder* const order = ticket == 0 ? nullptr : s.holds.Find(ticket);
-  if (order == nullptr) return false;
-  order->hold = false;
-  s.holds.Tidy();
-  const bool rests = s.task == Task::kStop && s.holds.Holder() == nullptr && !s.begun && !s.ends;
-  if (rests) {
-    s.ticket = 0;
-    EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
-    Enter(GroupState::kStandby, s);
-  }
+  if (!s.holds.LetGo(ticket)) return false;
+  EndStopping(c, s);
   return true;
 }
 
 bool Renew(const Context& c, Ticket ticket, State& s) noexcept {
-  if (axis::StopOrder* const order = ticket == 0 ? nullptr : s.holds.Find(ticket)) {
-    if (order->lease_s > 0) order->lease_end_cycle = CycleIn(c.cycle, order->lease_s);
-    return order->lease_s > 0;
-  }
+  if (s.holds.Renew(c.cycle, ticket)) return true;
   if (!IsJogOf(ticket, s) || s.lease_s <= 0) return false;
   s.lease_end_cycle = CycleIn(c.cycle, s.lease_s);
   return true;

@@ -20,12 +20,6 @@ void Enter(GroupState to, State& s) noexcept {
   s.state = to;
 }
 
-void Hold(const Context& c, Ticket ticket, double lease_s, State& s) noexcept {
-  axis::StopOrders& holds = s.holds;
-  if (holds.Find(ticket) != nullptr || holds.count == axis::StopOrders::kMost) return;
-  holds.of[holds.count++] = {ticket, lease_s, CycleIn(c.cycle, lease_s), true, true};
-}
-
 void EndTask(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
   const bool stopped = s.task == Task::kStop && s.stop_reported;
   if (s.task != Task::kNone && !stopped) Report(c, s.ticket, feedback, error);

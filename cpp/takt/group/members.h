@@ -8,8 +8,6 @@ namespace takt::group {
 void Enter(GroupState to, State& s) noexcept;
 
 // What is being done besides moves is over: its command is told, if it was not before.
-// A stop that holds the group until it is released. With no room for another one it holds nothing.
-void Hold(const Context& c, Ticket ticket, double lease_s, State& s) noexcept;
 void EndTask(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
 
 axis::State& MemberOf(const Context& c, const State& s, std::size_t place) noexcept;
