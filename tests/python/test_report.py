@@ -20,6 +20,7 @@ from matplotlib.image import imread
 from motion_curves import DT, one_axis, positions
 from takt import checks, report
 from takt.cli import main
+from takt.events import SYNC
 from takt.recording import Recording
 from takt.report import writing
 
@@ -420,7 +421,8 @@ def test_a_log_that_ends_in_the_middle_of_a_message(here: Path, capsys: pytest.C
         session.axis("x").power().wait()
         session.axis("x").move_absolute(position=20.0).wait()
     data = Path("whole.log").read_bytes()
-    Path("torn.log").write_bytes(data[: len(data) * 2 // 3])
+    inside = data.rfind(SYNC, 0, len(data) * 2 // 3) + 20  # bytes, of which no event is made
+    Path("torn.log").write_bytes(data[:inside])
     for name in ("whole", "torn"):
         capsys.readouterr()
         assert main(["report", f"{name}.log"]) == 0

@@ -619,8 +619,7 @@ void describe(Description<SetCoordinateTransform>& d) {
 void describe(Description<SetTool>& d) {
   d.about(
       "Says where the tool centre point is on the flange from now on: the tool was changed (GR-46). The group stands "
-      "and "
-      "nothing waits. `tool` of the group in the machine file counts until then, and again when the engine starts "
+      "and nothing waits. `tool` of the group in the machine file counts until then, and again when the engine starts "
       "anew.");
   DescribePose(d);
 }
