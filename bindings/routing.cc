@@ -16,7 +16,7 @@ namespace {
 using routing::MoverIndex;
 using routing::PlaceIndex;
 using LegRow = py::typing::Tuple<double, int, int>;
-using VisitRow = py::typing::Tuple<int, double, int, int>;
+using VisitRow = py::typing::Tuple<int, double, double, int, int>;
 
 void Check(const routing::SurfaceProblem& problem) {
   const std::vector<bool>& blocked = problem.blocked;
@@ -45,12 +45,14 @@ void Check(const routing::SurfaceProblem& problem) {
   check(problem.targets, true);
 }
 
-routing::SurfacePlan Plan(int width, int height, double pitch, double velocity, double acceleration, double jerk,
-                          std::vector<bool> blocked, std::vector<PlaceIndex> starts, std::vector<PlaceIndex> targets,
-                          std::vector<routing::PoolIndex> pools, std::int64_t effort, std::uint64_t seed) {
+routing::SurfacePlan Plan(int width, int height, double pitch, double size, double velocity, double acceleration,
+                          double jerk, std::vector<bool> blocked, std::vector<PlaceIndex> starts,
+                          std::vector<PlaceIndex> targets, std::vector<routing::PoolIndex> pools, std::int64_t effort,
+                          std::uint64_t seed) {
   const routing::SurfaceProblem problem{.width = width,
                                         .height = height,
                                         .pitch = pitch,
+                                        .size = size,
                                         .dynamics = {.velocity = velocity, .acceleration = acceleration, .jerk = jerk},
                                         .blocked = std::move(blocked),
                                         .starts = std::move(starts),
@@ -92,7 +94,7 @@ py::typing::List<py::typing::List<VisitRow>> VisitsOf(const routing::SurfacePlan
   for (const std::vector<routing::Visit>& visits : plan.visits) {
     py::typing::List<VisitRow> rows;
     for (const routing::Visit& visit : visits) {
-      rows.append(py::make_tuple(visit.place, visit.entry, visit.before, visit.before_index));
+      rows.append(py::make_tuple(visit.place, visit.entry, visit.left, visit.before, visit.before_index));
     }
     movers.append(rows);
   }
@@ -111,8 +113,8 @@ void BindRouting(py::module_& m) {
       .def_readonly("first_sum", &P::first_sum)
       .def_readonly("lower_bound", &P::lower_bound)
       .def_property_readonly("legs", &LegsOf, "by mover: departure, place, place")
-      .def_property_readonly("visits", &VisitsOf, "by mover: place, entry, who before, which of its visits");
-  m.def("plan_surface", &Plan, py::kw_only(), py::arg("width"), py::arg("height"), py::arg("pitch"),
+      .def_property_readonly("visits", &VisitsOf, "by mover: place, entry, left, who before, which of its visits");
+  m.def("plan_surface", &Plan, py::kw_only(), py::arg("width"), py::arg("height"), py::arg("pitch"), py::arg("size"),
         py::arg("velocity"), py::arg("acceleration"), py::arg("jerk"), py::arg("blocked"), py::arg("starts"),
         py::arg("targets"), py::arg("pools"), py::arg("effort"), py::arg("seed"));
   m.def(

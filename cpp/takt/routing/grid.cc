@@ -9,20 +9,23 @@
 namespace takt::routing {
 namespace {
 
-constexpr double kSampled = 5e-4;    // s
-constexpr int kSamples = 60;         // of the time in which both of a lane move
-constexpr double kLagMargin = 5e-4;  // s, for what lies between the samples
+constexpr double kSampled = 5e-4;  // s
+constexpr double kNoLag = -1e6;    // s: it ends behind where the leader starts
 
 }  // namespace
 
-Grid::Grid(int width, int height, double pitch, const Dynamics& dynamics, std::vector<bool> blocked)
+Grid::Grid(int width, int height, double pitch, double mover_size, const Dynamics& dynamics, std::vector<bool> blocked)
     : width_(width),
       height_(height),
       pitch_(pitch),
+      mover_size_(mover_size),
       blocked_(std::move(blocked)),
       beside_(blocked_.size()),
+      steps_{0, 1, -1, width, -width},
       room_(blocked_.size()) {
   for (PlaceIndex place = 0; place < size(); ++place) {
+    const int column = place % width_, row = place / width_;
+    along_.push_back({0, column, -column, row, -row});
     if (this->blocked(place)) continue;
     Beside& its = beside_[static_cast<std::size_t>(place)];
     for (const Direction direction : kDirections) {
@@ -43,12 +46,18 @@ Grid::Grid(int width, int height, double pitch, const Dynamics& dynamics, std::v
   }
   const int longest = std::max(width_, height_);
   for (int count = 0; count < longest; ++count) {
-    Lane lane{
-        .run = StraightRun(count * pitch, dynamics), .duration = 0, .entry = {}, .exit = {}, .at = {}, .stop = {}};
+    Lane lane{.run = StraightRun(count * pitch, dynamics),
+              .duration = 0,
+              .entry = {},
+              .exit = {},
+              .middle = {},
+              .at = {},
+              .stop = {}};
     lane.duration = lane.run.duration();
     for (int k = 0; k <= count; ++k) {
       lane.entry.push_back(std::max(0.0, lane.run.LastStopWithin((k - 1) * pitch) - kEarly));
-      lane.exit.push_back(lane.run.TimeAt((k + 1) * pitch));
+      lane.exit.push_back(lane.run.TimeAt(k * pitch + (pitch + mover_size) / 2));
+      lane.middle.push_back(lane.run.TimeAt(k * pitch));
     }
     for (double t = 0; count > 0 && t < lane.duration; t += kSampled) {
       lane.at.push_back(lane.run.At(t));
@@ -109,49 +118,9 @@ Direction Grid::Towards(PlaceIndex from, PlaceIndex to) const noexcept {
   return Direction::kNone;
 }
 
-PlaceIndex Grid::Step(Direction direction) const noexcept {
-  switch (direction) {
-    case Direction::kRight:
-      return 1;
-    case Direction::kLeft:
-      return -1;
-    case Direction::kUp:
-      return width_;
-    case Direction::kDown:
-      return -width_;
-    case Direction::kNone:
-      break;
-  }
-  return 0;
-}
-
 int Grid::Count(PlaceIndex from, PlaceIndex to) const noexcept {
   const int between = std::abs(to - from);
   return from / width_ == to / width_ ? between : between / width_;
-}
-
-int Grid::Along(Direction direction, PlaceIndex place) const noexcept {
-  switch (direction) {
-    case Direction::kRight:
-      return place % width_;
-    case Direction::kLeft:
-      return -(place % width_);
-    case Direction::kUp:
-      return place / width_;
-    case Direction::kDown:
-      return -(place / width_);
-    case Direction::kNone:
-      break;
-  }
-  return 0;
-}
-
-double Grid::Sample(const std::vector<double>& samples, double t) noexcept {
-  if (t <= 0) return samples.front();
-  const double scaled = t / kSampled;
-  const auto i = static_cast<std::size_t>(scaled);
-  if (i + 1 >= samples.size()) return samples.back();
-  return samples[i] + (samples[i + 1] - samples[i]) * (scaled - static_cast<double>(i));
 }
 
 double Grid::Lag(int leader, int follower, int ahead) const {
@@ -161,26 +130,18 @@ double Grid::Lag(int leader, int follower, int ahead) const {
   if (!std::isnan(known)) return known;
   const Lane& front = lane(leader);
   const Lane& back = lane(follower);
-  const double offset = ahead * pitch_, least = pitch_ - kSampling / 2;
-  const auto apart = [&](double lag) {
-    const double from = std::max(0.0, lag), to = std::min(front.duration, lag + back.duration);
-    for (int i = 0; from < to && i <= kSamples; ++i) {
-      const double t = from + (to - from) * i / kSamples;
-      if (offset + Sample(front.at, t) - Sample(back.at, t - lag) < least) return false;
-      if (offset + Sample(front.stop, t) - Sample(back.stop, t - lag + kEarly) < least) return false;
-    }
-    return true;
-  };
-  double low = -back.duration, high = front.duration;
-  if (ahead > 0 && (ahead - follower) * pitch_ >= least && apart(low + kSampled)) {
-    return known = -1e6;  // it ends behind where the leader starts
+  const double behind = mover_size_ - ahead * pitch_;
+  double lag = kNoLag;
+  // Both functions rise, so between two samples no more is needed than with the time of one and the place of the next.
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < back.stop.size(); ++i) {
+    const double place = back.stop[i] + behind;  // where the leader has to be by then
+    if (place <= 0) continue;
+    while (k < front.at.size() && front.at[k] < place) ++k;
+    const double there = std::min(static_cast<double>(k) * kSampled, front.duration);
+    lag = std::max(lag, there - static_cast<double>(i > 0 ? i - 1 : 0) * kSampled + kEarly);
   }
-  constexpr int kHalvings = 18;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = (low + high) / 2;
-    (apart(middle) ? high : low) = middle;
-  }
-  return known = high + kLagMargin;
+  return known = lag;
 }
 
 }  // namespace takt::routing

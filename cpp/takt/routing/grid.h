@@ -2,11 +2,12 @@
 // straight along rows and columns, in runs over one or more places.
 //
 // What a plan keeps, and why it is safe even if movers brake at any moment (PL-72): between the middles of two places a
-// mover has both. It takes the next place at the last moment at which it could still rest in the middle of the one
-// before (less kEarly), and gives a place back when it has reached the middle of the next one. A mover is smaller
-// than a place, so two of them that brake at once come to rest apart. One that follows another in the same lane need
-// not wait for that: it leaves so much later that positions, and the positions where both would come to rest, stay a
-// pitch apart while both move (Lag).
+// mover has both, until it has left the first one with all of its size. It takes the next place at the last moment at
+// which it could still rest in the middle of the one before (less kEarly). A mover is smaller than a place, so two of
+// them that brake at once come to rest apart. One that follows another in the same lane need not wait for that: it
+// leaves so much later that where it would come to rest is always a mover's size behind where the leader is by then
+// (Lag). That is what the guard of movers (planar/guard.h) lets it do: it takes no account of how far a leader would
+// still go.
 #pragma once
 
 #include <array>
@@ -21,8 +22,7 @@ namespace takt::routing {
 using PlaceIndex = std::int32_t;
 using MoverIndex = std::int32_t;
 inline constexpr std::int32_t kNone = -1;
-inline constexpr double kSampling = 0.01;  // mm that movers are smaller than a place, at least, for errors of samples
-inline constexpr double kEarly = 0.002;    // s, for the cycles between a look and a command
+inline constexpr double kEarly = 0.002;  // s, for the cycles between a look and a command
 
 enum class Direction : std::uint8_t { kNone, kRight, kLeft, kUp, kDown };
 inline constexpr std::array kDirections{Direction::kRight, Direction::kLeft, Direction::kUp, Direction::kDown};
@@ -35,8 +35,8 @@ decltype(auto) At(Values& values, std::int32_t i) noexcept {
 
 class Grid {
  public:
-  // Requires: width, height > 0; blocked: by place, row by row from below.
-  Grid(int width, int height, double pitch, const Dynamics& dynamics, std::vector<bool> blocked);
+  // Requires: width, height > 0; 0 < mover_size <= pitch, mm; blocked: by place, row by row from below.
+  Grid(int width, int height, double pitch, double mover_size, const Dynamics& dynamics, std::vector<bool> blocked);
 
   int width() const noexcept { return width_; }
   int height() const noexcept { return height_; }
@@ -56,11 +56,14 @@ class Grid {
 
   // Direction of a run between two places of one row or column; kNone: the same place, or no run.
   Direction Towards(PlaceIndex from, PlaceIndex to) const noexcept;
-  PlaceIndex Step(Direction direction) const noexcept;  // to be added to a place
+  // To be added to a place.
+  PlaceIndex Step(Direction direction) const noexcept { return steps_[static_cast<std::size_t>(direction)]; }
   // Places of a run. Requires: both in one row or column.
   int Count(PlaceIndex from, PlaceIndex to) const noexcept;
   // Places ahead of others in this direction have larger numbers.
-  int Along(Direction direction, PlaceIndex place) const noexcept;
+  int Along(Direction direction, PlaceIndex place) const noexcept {
+    return along_[static_cast<std::size_t>(place)][static_cast<std::size_t>(direction)];
+  }
   // Places that a run in this direction may go on from `from`.
   int Room(Direction direction, PlaceIndex from) const noexcept {
     return room_[static_cast<std::size_t>(from)][static_cast<std::size_t>(direction)];
@@ -72,12 +75,10 @@ class Grid {
   double Exit(int count, int k) const noexcept {
     return lane(count).exit[static_cast<std::size_t>(k)];
   }  // gives it back
-  double Middle(int count, int k) const noexcept {
-    return k == 0 ? 0 : lane(count).exit[static_cast<std::size_t>(k) - 1];
-  }
+  double Middle(int count, int k) const noexcept { return lane(count).middle[static_cast<std::size_t>(k)]; }
   const StraightRun& run(int count) const noexcept { return lane(count).run; }
   // Returns how much later [s] than a leader on a run over `leader` places a follower on one over `follower` places may
-  // depart at the earliest, `ahead` places behind it in the same lane, so that it stays a pitch behind while both move.
+  // depart at the earliest, `ahead` places behind it in the same lane, so that it stays behind while both move.
   // Below 0: before it.
   double Lag(int leader, int follower, int ahead) const;
 
@@ -89,20 +90,20 @@ class Grid {
   struct Lane {
     StraightRun run;
     double duration;
-    std::vector<double> entry, exit;  // exit of the last: its duration
-    std::vector<double> at, stop;     // StraightRun::At and StopAt, every kSampled s
+    std::vector<double> entry, exit, middle;  // exit of the last: its duration
+    std::vector<double> at, stop;             // StraightRun::At and StopAt, every kSampled s
   };
-  // Interpolated; off by less than kSampling.
-  static double Sample(const std::vector<double>& samples, double t) noexcept;
   const Lane& lane(int count) const noexcept { return lanes_[static_cast<std::size_t>(count)]; }
 
   int width_, height_;
-  double pitch_;
+  double pitch_, mover_size_;
   std::vector<bool> blocked_;
   std::vector<Beside> beside_;
-  std::vector<std::array<int, 5>> room_;
-  std::vector<Lane> lanes_;           // by count
-  mutable std::vector<double> lags_;  // computed when asked for; nan: not yet
+  std::array<PlaceIndex, 5> steps_;        // by direction
+  std::vector<std::array<int, 5>> room_;   // by place and direction
+  std::vector<std::array<int, 5>> along_;  // by place and direction
+  std::vector<Lane> lanes_;                // by count
+  mutable std::vector<double> lags_;       // computed when asked for; nan: not yet
 };
 
 }  // namespace takt::routing

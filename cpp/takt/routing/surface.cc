@@ -61,8 +61,11 @@ void MakeVisits(const Grid& grid, const SurfaceProblem& problem, SurfacePlan& pl
     for (const Leg& leg : plan.legs[i]) {
       const int count = grid.Count(leg.from, leg.to);
       const PlaceIndex step = grid.Step(grid.Towards(leg.from, leg.to));
+      std::vector<Visit>& visits = plan.visits[i];
+      visits.back().left = leg.departure + grid.Exit(count, 0);
       for (int k = 1; k <= count; ++k) {
         add(mover, leg.from + k * step, leg.departure + grid.Entry(count, k), leg.departure + grid.Middle(count, k));
+        visits.back().left = leg.departure + grid.Exit(count, k);
       }
     }
   }
@@ -80,7 +83,7 @@ void MakeVisits(const Grid& grid, const SurfaceProblem& problem, SurfacePlan& pl
 }  // namespace
 
 SurfacePlan PlanSurface(const SurfaceProblem& problem) {
-  const Grid grid(problem.width, problem.height, problem.pitch, problem.dynamics, problem.blocked);
+  const Grid grid(problem.width, problem.height, problem.pitch, problem.size, problem.dynamics, problem.blocked);
   Alone alone(grid);
   SurfacePlan result;
   Task task{.starts = problem.starts, .targets = problem.targets};

@@ -22,8 +22,8 @@ namespace takt::routing {
 using PoolIndex = std::int32_t;
 
 struct SurfaceProblem {
-  int width = 0, height = 0;  // places
-  double pitch = 0;           // mm
+  int width = 0, height = 0;   // places
+  double pitch = 0, size = 0;  // mm; of the largest mover, no more than the pitch
   Dynamics dynamics{};
   std::vector<bool> blocked{};        // by place, row by row: no mover can be there
   std::vector<PlaceIndex> starts{};   // by mover, all different, none of them blocked
@@ -33,11 +33,12 @@ struct SurfaceProblem {
   std::uint64_t seed = 1;
 };
 
-// A mover at a place. It may be made as soon as the visit before it is over: when that mover has reached its next
-// place, or is on its way there straight ahead in the same lane.
+// A mover at a place. It may be made as soon as the visit before it is over: when that mover has left the place, or is
+// on its way to the next one straight ahead in the same lane.
 struct Visit {
   PlaceIndex place = 0;
   double entry = 0;                   // s: from here on it cannot rest before the place any more
+  double left = 0;                    // s, when it gives the place back; where it stays: when it has come
   MoverIndex before = kNone;          // who is at the place before it, kNone: nobody
   std::int32_t before_index = kNone;  // the number of that visit
 };

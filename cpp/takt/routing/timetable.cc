@@ -56,19 +56,6 @@ void Timetable::Remove(MoverIndex who) {
   places.clear();
 }
 
-std::size_t Timetable::FirstEndingAfter(PlaceIndex place, double t) const noexcept {
-  // Who comes later to a place also leaves it later.
-  const std::vector<Stay>& its = stays(place);
-  const auto found =
-      std::partition_point(its.begin(), its.end(), [t](const Stay& stay) { return stay.to <= t + kTimeRounding; });
-  return static_cast<std::size_t>(found - its.begin());
-}
-
-double Timetable::FreeUntil(PlaceIndex place, double t) const noexcept {
-  const std::size_t i = FirstEndingAfter(place, t);
-  return i < stays(place).size() ? stays(place)[i].from : kForever;
-}
-
 double Timetable::LastEnd(PlaceIndex place) const noexcept {
   return stays(place).empty() ? -1 : stays(place).back().to;
 }

@@ -1,6 +1,8 @@
 // Legs of movers, and who has which place when.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -44,9 +46,18 @@ class Timetable {
   void Remove(MoverIndex who);
 
   // Returns the index of the first stay that ends after t.
-  std::size_t FirstEndingAfter(PlaceIndex place, double t) const noexcept;
+  std::size_t FirstEndingAfter(PlaceIndex place, double t) const noexcept {
+    // Who comes later to a place also leaves it later.
+    const std::vector<Stay>& its = stays(place);
+    const auto found =
+        std::partition_point(its.begin(), its.end(), [t](const Stay& stay) { return stay.to <= t + kTimeRounding; });
+    return static_cast<std::size_t>(found - its.begin());
+  }
   // Returns until when the place is free from t on; t itself or before, if it is not.
-  double FreeUntil(PlaceIndex place, double t) const noexcept;
+  double FreeUntil(PlaceIndex place, double t) const noexcept {
+    const std::size_t i = FirstEndingAfter(place, t);
+    return i < stays(place).size() ? stays(place)[i].from : kForever;
+  }
   // Returns when the last of its stays ends; -1 without any.
   double LastEnd(PlaceIndex place) const noexcept;
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 STATOR = 240.0  # mm, side
 ROOM = 2.0  # mm between movers in neighbouring places, unless a pitch is given
 CLEARANCE = 0.01  # mm that a mover has to be smaller than a place
+APART = 1.0  # mm between movers where one is smaller than its place by more, at least
 NEAR = 0.05  # mm that a mover may be off the middle of a place
 MOST_PLACES = 128  # each way
 Point = tuple[float, float]

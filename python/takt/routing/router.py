@@ -34,7 +34,7 @@ from takt.routing.surface import (
     orders_of,
 )
 from takt.routing.surface_journey import dynamics_of
-from takt.routing.traveller import Before, Traveller
+from takt.routing.traveller import ANSWER_S, Before, Traveller
 
 if TYPE_CHECKING:
     from takt.mover import Mover
@@ -42,7 +42,6 @@ if TYPE_CHECKING:
 
 CYCLES = 8  # until a command is carried out, in process, and until movers are looked at again
 MOVERS_A_CYCLE = 16  # that are looked at: with more, not in every cycle
-ANSWER_S = 0.1  # over LCM: until a mover does what it is told by what it was seen to do
 
 
 @dataclass

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from takt import _core
 from takt.counted import counted
-from takt.routing.raster import Point, Raster, make_raster
+from takt.routing.raster import APART, Point, Raster, extent_of, make_raster
 from takt.routing.streets import RoutingError
 from takt.routing.traveller import DYNAMICS, STANDS
 
@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from takt.mover import Mover
     from takt.session import Session
 
-EFFORT = 3_000  # states that improvements look at
+EFFORT = 3_000  # states that improvements look at, at least
+EFFORT_BY_MOVERS = 50  # times the square of their number: it is planned about as long as they gain on their way
+MOST_EFFORT = 500_000  # 2 to 5 s
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,7 @@ class Visit:
 
     place: int
     entry_s: float  # from here on it cannot rest before the place any more
+    left_s: float  # when it covers nothing of the place any more
     before: tuple[int, int] | None  # mover and number of its visit that has to be over before
 
 
@@ -124,7 +127,7 @@ def plan_surface(
     environment: str | None = None,
     pitch: float | None = None,
     origin: Point | None = None,
-    effort: int = EFFORT,
+    effort: int | None = None,
     seed: int = 1,
     **dynamics: float,
 ) -> SurfacePlan:
@@ -138,12 +141,13 @@ def plan_surface(
     pitch: mm between places, no less than the largest mover; else the least that divides a stator (240 mm).
     origin: lower left corner of the raster; else that of the stators.
     effort: states that are looked at to make the first plan better. Counted, so that the plan is the same each time.
+        Unless given, 50 times the square of the number of movers, from 3,000 to 500,000.
     seed: another one gives another plan.
     dynamics: velocity, acceleration (of braking, too), jerk of all moves; else the least of the movers' own.
 
     Raises RoutingError, with the reason, if there is no plan.
     """
-    options = Options(environment, pitch, origin, effort, seed, dynamics)
+    options = Options(environment, pitch, origin, EFFORT if effort is None else effort, seed, dynamics)
     orders = orders_of(session, targets, movers)
     wanted = [name for order in orders for name in order.movers]
     free = free_of(session, may_move)
@@ -156,6 +160,8 @@ def plan_surface(
     if may_move is True and session.parts and wanted:  # those elsewhere are in nobody's way
         here = session.mover(wanted[0]).coordinate_system
         routed = {name: m for name, m in routed.items() if name in wanted or m.coordinate_system == here}
+    if effort is None:
+        options = replace(options, effort=min(max(EFFORT, EFFORT_BY_MOVERS * len(routed) ** 2), MOST_EFFORT))
     raster = make_raster(
         session, list(routed.values()) or list(session.movers.values()), environment, pitch, options.origin
     )
@@ -260,6 +266,7 @@ def make_plan(
         width=raster.width,
         height=raster.height,
         pitch=raster.pitch,
+        size=min(raster.pitch, max((max(extent_of(m)) for m in routed), default=0.0) + APART),
         **limits,
         blocked=[not on or place in standing for place, on in enumerate(raster.free)],
         starts=start_places,
@@ -278,7 +285,7 @@ def make_plan(
             made.append(SurfaceLeg(departure, departure + duration, start, end))
         legs[name] = tuple(made)
     visits = tuple(
-        tuple(Visit(place, entry, None if who < 0 else (who, k)) for place, entry, who, k in rows)
+        tuple(Visit(place, entry, left, None if who < 0 else (who, k)) for place, entry, left, who, k in rows)
         for rows in routes.visits
     )
     own = {order.movers[0] for order in orders if order.own}

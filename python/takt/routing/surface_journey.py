@@ -5,17 +5,20 @@ clock: a mover that is late holds up those behind it.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from takt.errors import TimeoutError
 from takt.feedback import DEFAULT_TIMEOUT_S
 from takt.routing.streets import RoutingError
-from takt.routing.surface import SurfacePlan, Targets, plan_surface
-from takt.routing.traveller import Traveller
+from takt.routing.surface import SurfacePlan, Targets, Visit, plan_surface
+from takt.routing.timetable import Leg, Timetable
+from takt.routing.traveller import ANSWER_S, Traveller
 
 if TYPE_CHECKING:
     from takt.session import Session
+
+EARLY_S = 0.002  # by which a mover takes a place before it has to: kEarly of routing/grid.h
 
 
 def dynamics_of(plan: SurfacePlan) -> dict[str, Any]:
@@ -30,7 +33,23 @@ def travellers_of(session: Session, plan: SurfacePlan) -> list[Traveller]:
     ]
     for one, visits in zip(made, plan.visits, strict=True):
         one.before = [None if visit.before is None else (made[visit.before[0]], visit.before[1]) for visit in visits]
+        one.timetable = _timetable(plan, one.mover.name, visits)
     return made
+
+
+def _later(session: Session) -> float:
+    from takt.remote import RemoteSession
+
+    return ANSWER_S if isinstance(session, RemoteSession) else session.period - EARLY_S
+
+
+def _timetable(plan: SurfacePlan, name: str, visits: Sequence[Visit]) -> Timetable:
+    legs, first = [], 0
+    for leg in plan.legs[name]:
+        last = first + round(math.dist(leg.start, leg.end) / plan.raster.pitch)
+        legs.append(Leg(leg.departure_s, leg.arrival_s, first, last))
+        first = last
+    return Timetable(legs, [visit.entry_s for visit in visits], [visit.left_s for visit in visits])
 
 
 class SurfaceJourney:
@@ -48,6 +67,7 @@ class SurfaceJourney:
         self._left = [one for one in self._all if one.directions]
         self._interrupted = False
         self._dynamics = dynamics_of(plan)
+        self._later_s = _later(session)
         for one in self._left:
             one.check_on_way()
 
@@ -65,13 +85,14 @@ class SurfaceJourney:
         """Lets movers go on whose turn it is. True: all are there."""
         if self._interrupted:
             self._go_on_again()
+        now_s = self.session.now - self.started_s
         for one in self._left:
             one.look()
             self._check(one)
         for one in self._left:
             one.grant()
         for one in self._left:
-            one.go_on(self._dynamics)
+            one.go_on(self._dynamics, now_s, self._later_s)
             if one.there:
                 one.arrived_s = self.session.now - self.started_s
         self._left = [one for one in self._left if math.isnan(one.arrived_s)]

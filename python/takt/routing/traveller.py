@@ -1,8 +1,12 @@
 """One mover on its planned route over the free surface: sent straight on as far as it is its turn, and further while it
 moves.
 
-A place is its turn when the mover that visits it before has reached the middle of its own next place, or is ahead on
-its way straight through it, in the same lane: then it cannot be overtaken, and the guard beneath keeps both apart.
+A place is its turn when the mover that visits it before has left it, or is ahead on its way straight through it, in the
+same lane: then it cannot be overtaken, and the guard beneath keeps both apart.
+
+With a timetable it sets out on a whole leg of its plan when all its places are expected to be free by the time it gets
+there, as late as everyone is by then: the plan's motion, without braking on the way. Where a place is not its turn when
+it could last stop before it, it brakes, and goes on by turns.
 
 A mover in an enabled group is sent only where others have left, so what it reserves there is free: else its command
 would be refused. From rest its commands are buffered ones, which wait; one further on that is refused while it moves
@@ -17,8 +21,9 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, Literal
 
 from takt.feedback import QUEUE_FULL, Feedback
-from takt.routing.raster import NEAR, Point
+from takt.routing.raster import APART, NEAR, Point, extent_of
 from takt.routing.streets import RoutingError
+from takt.routing.timetable import Leg, Timetable
 
 if TYPE_CHECKING:
     from takt.mover import Mover
@@ -27,6 +32,8 @@ STANDS = 1e-3  # mm/s
 DYNAMICS = ("velocity", "acceleration", "jerk")
 COLLISION = 3024  # error number of a command that something is in the way of
 AGAIN = 8  # looks, until a command that was refused so is given again
+ANSWER_S = 0.1  # over LCM: until a mover does what it is told by what it was seen to do
+PATIENCE_S = 10.0  # for which a leg is put off as others are late; then it goes by turns
 Before = tuple["Traveller", int]  # a visit of another mover
 
 
@@ -44,9 +51,11 @@ class Traveller:
         self.told: Point | None = None  # where its command in progress ends
         self.feedback: Feedback | None = None
         self.grouped = is_grouped(mover)
+        self._size = max(extent_of(mover)) + APART
         self._before_that: tuple[Feedback | None, int, Point | None] | None = None  # what it goes on with if refused
         self._pause = 0
         self.halts = False  # that is of a halt
+        self.timetable: Timetable | None = None
         self.arrived_s = math.nan if self.directions else 0.0
 
     @property
@@ -79,6 +88,13 @@ class Traveller:
         (x, y), (dx, dy) = self.points[self.passed], self.directions[self.passed]
         return (self.mover.x - x) * dx + (self.mover.y - y) * dy
 
+    def has_left(self, visit: int) -> bool:
+        """It covers nothing of that place any more, and goes on from it."""
+        if self.passed != visit or visit == len(self.directions):
+            return self.passed > visit
+        pitch = math.dist(self.points[visit], self.points[visit + 1])
+        return self.along() >= (pitch + min(self._size, pitch)) / 2 - NEAR
+
     def look(self, as_far_as: int | None = None) -> None:
         """Sees which places it has passed."""
         last = self.sent if as_far_as is None else as_far_as
@@ -96,18 +112,27 @@ class Traveller:
         if before is None or before[0] is self:
             return True
         other, its = before
-        if other.passed > its or self.grouped:
-            return other.passed > its
+        if self.grouped:
+            return other.passed > its  # what is reserved for it ends there
+        if other.has_left(its):
+            return True
         direction = self.directions[visit - 1]
         if other.granted <= its or other.directions[its] != direction:
             return False
         return all(other.directions[k] == direction for k in range(other.passed, its))
 
-    def go_on(self, dynamics: Mapping[str, Any]) -> None:
-        """Sends it straight on as far as it may go."""
+    def go_on(self, dynamics: Mapping[str, Any], now_s: float = 0.0, later_s: float = 0.0) -> None:
+        """Sends it straight on as far as it may go.
+
+        now_s: by the clock of the plan. later_s: so much later a command may be carried out."""
         if self._pause > 0:
             self._pause -= 1
             return
+        if self.timetable is not None and not self.grouped:
+            self.timetable.passed(self.passed, rests=self.rests)
+            leg = self.timetable.leg
+            if leg is not None and self._goes_by_time(self.timetable, leg, dynamics, now_s, later_s):
+                return
         if self.rests or self.passed < self.sent:
             first = self.passed
         elif self.sent > 0 and self.feedback is not None:
@@ -122,6 +147,11 @@ class Traveller:
         if self.points[last] == self.told and not self.rests:
             self.sent = last  # it goes there already
             return
+        if self.timetable is not None:
+            self.timetable.disturbed()
+        self._send(last, dynamics)
+
+    def _send(self, last: int, dynamics: Mapping[str, Any]) -> None:
         x, y = self.points[last]
         starts = self.rests
         self._before_that = None if starts else (self.feedback, self.sent, self.told)
@@ -129,6 +159,49 @@ class Traveller:
         mode: Literal["buffered", "aborting"] = "buffered" if waits else "aborting"
         self.feedback = self.mover.move_to_position(x=x, y=y, use_orientation=False, buffer_mode=mode, **dynamics)
         self.sent, self.told = last, (x, y)
+
+    def _goes_by_time(
+        self, timetable: Timetable, leg: Leg, dynamics: Mapping[str, Any], now_s: float, later_s: float
+    ) -> bool:
+        """On this leg, or waits for it. False: it goes by turns."""
+        if timetable.late_s is None:
+            begins_s = self._begins(timetable, leg, now_s)
+            if not self.rests or self.passed != leg.first or begins_s == math.inf:
+                return False
+            if now_s > max(begins_s, leg.departure_s) + PATIENCE_S:
+                return False
+            if now_s >= begins_s:
+                timetable.late_s = now_s - leg.departure_s
+                self._send(leg.last, dynamics)
+            return True
+        if not timetable.holds:
+            return False
+        for visit in range(self.granted + 1, leg.last + 1):
+            if now_s + later_s < timetable.entries_s[visit] + timetable.late_s:
+                break
+            timetable.disturbed()
+            self._send(self.granted, dynamics)
+            break
+        return True
+
+    def _begins(self, timetable: Timetable, leg: Leg, now_s: float) -> float:
+        """When it can set out on its leg, s by the clock of the plan: everything on it is left by the time it gets
+        there. Infinite: nobody knows."""
+        begins_s = -math.inf
+        for visit in range(leg.first + 1, leg.last + 1):
+            before = self.before[visit]
+            if before is None or before[0] is self or before[0].has_left(before[1]):
+                continue
+            other, its = before
+            if other.timetable is None:
+                return math.inf
+            late = other.timetable.late(its, now_s)
+            if other.directions[its] == self.directions[visit - 1]:  # it follows that one
+                begins_s = max(begins_s, leg.departure_s + late)
+            else:
+                ahead_s = timetable.entries_s[visit] - leg.departure_s
+                begins_s = max(begins_s, other.timetable.left_s[its] + late - ahead_s)
+        return begins_s
 
     def _would_run_up(self, first: int, dynamics: Mapping[str, Any]) -> bool:
         """It rests behind a mover that goes the same way, and would have to brake for it. The guard lets it go no
@@ -166,6 +239,8 @@ class Traveller:
     def stay(self) -> None:
         """It has no command any more: it goes on from the place that it has passed."""
         self.feedback, self.told, self.sent = None, None, self.passed
+        if self.timetable is not None and self.timetable.late_s is not None:
+            self.timetable.disturbed()
 
     def check_on_way(self) -> None:
         """It is where it can go on from: between the place that it has passed and the next one."""
