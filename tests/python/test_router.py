@@ -53,6 +53,17 @@ def test_a_stream_of_orders(stators: int, count: int, seconds: float) -> None:
     assert there > 3 * seconds
 
 
+@pytest.mark.parametrize("pooled", [False, True])
+def test_the_first_order_is_for_a_mover_between_two_places(pooled: bool) -> None:
+    engine = engine_of({"a": (0, 0), "b": (0, 3)}, square(3))
+    a = engine.mover("a")
+    a.move_to_position(x=100, y=60).wait()
+    goals = [at((3, 2)), at((4, 2))]
+    order = engine.route_any(goals) if pooled else engine.route({"a": at((3, 2))})
+    order.wait()
+    assert {(round(m.x), round(m.y)) for m in (a, engine.mover("b"))} >= set(goals if pooled else goals[:1])
+
+
 def test_a_mover_is_sent_elsewhere_on_its_way() -> None:
     engine = engine_of({"a": (0, 0), "b": (0, 3)}, square(3))
     watch = Watch(engine)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/core/maths.h"
+#include "takt/mover/follow.h"
 #include "takt/mover/formation.h"
 #include "takt/mover/on_parts.h"
 
@@ -48,14 +49,16 @@ void AddOff(const Context& c, const State& s, const SetPoint& at, const SetPoint
   if (r.off == 0 && s.external.mode == SetpointMode::kNone) return;
   const planar::Place on = c.streets.At(r.route.first(), r.at.position).place;
   const planar::Place off = planar::Place{at[kX].position, at[kY].position} - on;
-  planar::Place rest = {s.plane.motion.end_x, s.plane.motion.end_y};
-  PlaneMotion stop;
-  if (s.external.mode == SetpointMode::kRelative &&
-      PlanRest(c.planner, {more[kX], more[kY]}, c.params.xy.maximum.limits(), stop)) {
-    rest = off + planar::Place{stop.end_x - more[kX].position, stop.end_y - more[kY].position};
+  PlaneMotion rest = s.plane.motion;
+  if (s.external.mode == SetpointMode::kRelative) {
+    PlaneState from = OffTrack(s, more, Elapsed(c, s.plane.begin));
+    from.x.position = off.x;
+    from.y.position = off.y;
+    if (!PlanRest(c.planner, from, c.params.xy.maximum.limits(), rest)) rest = StandingAt(off.x, off.y);
   }
-  kind.places = {planar::Place{}, off, rest};
+  kind.places = {planar::Place{}, off, planar::Place{rest.end_x, rest.end_y}};
   kind.count = 3;
+  kind.margin += BesideLine(rest);
 }
 
 Course CourseOf(const Cover& cover) {
@@ -85,10 +88,12 @@ void Put(const Context& c, const Course& course) {
   EachPlanet(c, [&](std::uint32_t i) { GuardOf(c).Put(i, OfPlanet(c, i, course)); });
 }
 
-// It brakes from this set point, where it is when this cycle begins; in the plane. What leads to rest already goes on.
+// It brakes from this set point, where it is when this cycle begins; in the plane. What leads to rest as hard as it can
+// goes on.
 Escape EscapeFrom(const Context& c, const State& s, const SetPoint& at) {
   const bool brakes = s.external.mode == SetpointMode::kNone && (s.plane.waits || !s.plane.goes);
-  if (brakes) return {s.plane.motion, s.plane.begin, c.cycle.count};
+  const bool rests = Elapsed(c, s.plane.begin) >= DurationOf(s.plane.motion);
+  if (brakes && (s.plane.hard || rests)) return {s.plane.motion, s.plane.begin, c.cycle.count};
   Escape escape{StandingAt(at[kX].position, at[kY].position), c.cycle.count, c.cycle.count};
   PlanStop(c, s, at, c.params.xy.maximum.limits(), escape.motion);
   return escape;
@@ -181,6 +186,12 @@ ObjectInfo InTheTurn(const Context& c, const State& s, const CoordinateMove& tur
   return OneInTheWay(Find(c, CourseNow(c, s, turn)));
 }
 
+ObjectInfo InTheCourse(const Context& c, const planar::Spot& at, double turned) noexcept {
+  Course stands;
+  planar::Add(AreaAt(c.params, at.origin, turned), stands);
+  return OneInTheWay(GuardOf(c).Find(c.index, at.system, stands, [](std::uint32_t, bool) { return false; }));
+}
+
 ObjectInfo TakeCourseOff(const Context& now, const State& s, const SetPoint& at) noexcept {
   Context c = now;
   ++c.cycle.count;
@@ -214,6 +225,7 @@ void Hold(const Context& c, std::uint32_t other, State& s) noexcept {
   }
   plane.motion = rest.motion;
   plane.begin = rest.begin;
+  plane.hard = true;
   // The rest of it is part of the course that the guard knows, though it may come out larger as seen from the next
   // cycle: areas of what turns are bounds. So it stays the way to rest until a course is clear again.
   s.escape = {rest.motion, rest.begin, c.cycle.count + 1};

@@ -56,7 +56,15 @@ bool AddsNoMore(const Context& c, const External& external, const SetPoint& to) 
   const trajectory::Limits limits = c.params.xy.maximum.limits();
   const SetPoint &was = external.taken, &is = external.given;
   const double most = Length(std::max(limits.acceleration, limits.deceleration), c.params.lateral());
-  return Keeps(was[kX], was[kY], is[kX], is[kY], limits, c.cycle.period_s) &&
+  // Both may have to be brought to rest: the speed that they get to even if the accelerations are taken away at once.
+  const KinematicState& way = c.rider().at;
+  const double still = Length(is[kX].acceleration, is[kY].acceleration) / (2 * limits.jerk);
+  const double more = std::max(0.0, way.acceleration * way.velocity) * std::abs(way.acceleration) / (2 * limits.jerk);
+  const double x = to[kX].velocity - is[kX].velocity, y = to[kY].velocity - is[kY].velocity, along = x * x + y * y;
+  const double longer = along > 0 ? more / along : 0;
+  const double speed = Length(to[kX].velocity + still * is[kX].acceleration + longer * x,
+                              to[kY].velocity + still * is[kY].acceleration + longer * y);
+  return speed <= kMore * limits.velocity && Keeps(was[kX], was[kY], is[kX], is[kY], limits, c.cycle.period_s) &&
          Length(to[kX].velocity, to[kY].velocity) <= kMore * limits.velocity &&
          Length(to[kX].acceleration, to[kY].acceleration) <= kMore * most;
 }
@@ -69,23 +77,19 @@ trajectory::Profile::Range WayToRest(const Context& c, const KinematicState& fro
 }
 
 // How far off its place on a track it may get with such a set point, be it that it has to stop: no more than this.
-double ReachOf(const Context& c, const SetPoint& given) {
+double ReachOf(const Context& c, const PlaneState& off) {
   const planar::Brakes brakes{c.params.xy.maximum.limits().deceleration, c.params.xy.maximum.jerk};
-  const double a = Length(given[kX].acceleration, given[kY].acceleration), t = a / brakes.jerk;
-  const double v = Length(given[kX].velocity, given[kY].velocity);
-  return Length(given[kX].position, given[kY].position) + t * (v + a * t / 3) +
-         planar::WayToRest(v + 0.5 * a * t, brakes);
+  const double a = Length(off.x.acceleration, off.y.acceleration), t = a / brakes.jerk;
+  const double v = Length(off.x.velocity, off.y.velocity);
+  return Length(off.x.position, off.y.position) + t * (v + a * t / 3) + planar::WayToRest(v + 0.5 * a * t, brakes);
 }
 
 // The others on tracks keep as much more away from it; there has to be room for that.
-ErrorId GetOff(const Context& c, const State& s, const SetPoint& given, ObjectInfo& object) {
+ErrorId GetOff(const Context& c, const PlaneState& off, ObjectInfo& object) {
   planar::Rider& rider = c.rider();
-  const double before = rider.off, reach = ReachOf(c, given);
-  if (reach <= before) {
-    if (IsOver(c, s.plane)) rider.off = reach;  // what is still on its way back counts on
-    return ErrorId::kNone;
-  }
-  rider.off = reach;
+  const double before = rider.off;
+  rider.off = ReachOf(c, off);
+  if (rider.off <= before) return ErrorId::kNone;
   Streets& streets = c.streets;
   const std::uint32_t near = streets.traffic.TooNear(c.cycle, streets.network, streets.riders, c.index);
   if (near == planar::kNobody) return ErrorId::kNone;
@@ -121,8 +125,19 @@ bool CanFollow(const Context& c, const State& s, const SetPoint& from, const Set
   return !locked || way <= kStill;
 }
 
+PlaneState OffTrack(const State& s, const SetPoint& more, double t) noexcept {
+  PlaneState off = At(s.plane.motion, t);
+  for (const auto& [own, its] : {std::pair(&off.x, &more[kX]), std::pair(&off.y, &more[kY])}) {
+    own->position += its->position;
+    own->velocity += its->velocity;
+    own->acceleration += its->acceleration;
+  }
+  return off;
+}
+
 double ReachOf(const Context& c, const State& s) noexcept {
-  return s.external.mode == SetpointMode::kRelative ? ReachOf(c, s.external.taken) : 0;
+  const SetPoint& taken = s.external.taken;
+  return s.external.mode == SetpointMode::kRelative ? ReachOf(c, PlaneState{taken[kX], taken[kY]}) : 0;
 }
 
 namespace {
@@ -176,8 +191,9 @@ ErrorId Follow(const Context& c, SetPoint& at, State& s, ObjectInfo& object) noe
   }
   const bool follows = IsStar(c) ? CanFollowAsBody(c, to, s) : CanFollow(c, s, s.set_point, to);
   if (!follows) return ErrorId::kWildSetPoint;
+  const PlaneState off = OffTrack(s, external.given, Elapsed(c, s.plane.begin) + c.cycle.period_s);
   if (IsOnTrack(s)) {
-    const PlacesOff places = PlacesOffTrack(c, external.given);
+    const PlacesOff places = PlacesOffTrack(c, off);
     if (const ErrorId why = WhyNotOn(c, s, CoverOf(c, s, places)); why != ErrorId::kNone) return why;
     object = TakeStopOff(c, places, to);
     if (!object) object = TakeCourseOff(c, s, to);
@@ -187,7 +203,8 @@ ErrorId Follow(const Context& c, SetPoint& at, State& s, ObjectInfo& object) noe
     if (!object) object = TakeCourse(c, to, s);
   }
   ErrorId why = object ? ErrorId::kCollision : ErrorId::kNone;
-  if (!object && c.rider().on) why = GetOff(c, s, external.given, object);
+  if (!object && c.rider().on)
+    why = GetOff(c, IsOnTrack(s) ? off : PlaneState{external.given[kX], external.given[kY]}, object);
   if (why != ErrorId::kNone) return why;
   external.taken = external.given;
   at = to;

@@ -9,6 +9,10 @@ namespace takt::mover {
 // kWildSetPoint, kOffStators, kPartDisabled, kCollision: `at` means nothing.
 ErrorId Follow(const Context& c, SetPoint& at, State& s, ObjectInfo& object) noexcept;
 
+// On a track: how X and Y are off the place there, `t` seconds after what moves them back began, with this from
+// outside.
+PlaneState OffTrack(const State& s, const SetPoint& more, double t) noexcept;
+
 // mm, no more than that a mover may get off its place on a track by set points from outside, as those are now.
 double ReachOf(const Context& c, const State& s) noexcept;
 

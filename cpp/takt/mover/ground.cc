@@ -135,7 +135,7 @@ ObjectInfo TakeStop(const Context& now, const State& s, const SetPoint& at) noex
 ObjectInfo TakeStopOff(const Context& c, const PlacesOff& places, const SetPoint& at) noexcept {
   if (!IsWatched(c, c.index)) return {};
   planar::Move move{.on_track = true, .kept_by_gaps = true};
-  for (const planar::Place& place : places) move.corners[move.corner_count++] = place;
+  for (const planar::Place& place : places.places) move.corners[move.corner_count++] = place;
   move.target.c = trajectory::StopPosition(at[kC], c.params.c.maximum.limits());
   const ObjectInfo object = planar::AskMove(c.index, move, c.grounds);
   if (!object) planar::TakeMove(c.index, move, c.grounds);

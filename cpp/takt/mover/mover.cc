@@ -38,7 +38,7 @@ void GoOn(const Context& c, State& s) {
   if (!PlanMove(c.planner, from, next.x, next.y, limits, motion)) return Fail(c, ErrorId::kPlanning, s);
   s.plane.motion = motion;
   s.plane.begin = c.cycle.count;
-  s.plane.waits = false;
+  s.plane.waits = s.plane.hard = false;
 }
 
 // Where X and Y are at the end of this cycle as planned. On a track they are where that says, with what they are still

@@ -133,7 +133,7 @@ Cover CoverOfStop(const Context& c, const SetPoint& at) noexcept {
   return cover;
 }
 
-PlacesOff PlacesOffTrack(const Context& c, const SetPoint& off) noexcept {
+PlacesOff PlacesOffTrack(const Context& c, const PlaneState& off) noexcept {
   const planar::Rider& r = c.rider();
   const planar::Network& network = c.streets.network;
   const auto place = [&](std::uint32_t track, double s) {
@@ -145,12 +145,12 @@ PlacesOff PlacesOffTrack(const Context& c, const SetPoint& off) noexcept {
   std::uint32_t k = 0;
   while (k + 1 < r.route.count && rest > network[r.route.tracks[k]].length) rest -= network[r.route.tracks[k++]].length;
   PlaneMotion stop;
-  if (!PlanRest(c.planner, {off[kX], off[kY]}, c.params.xy.maximum.limits(), stop)) {
-    stop = StandingAt(off[kX].position, off[kY].position);
+  if (!PlanRest(c.planner, off, c.params.xy.maximum.limits(), stop)) {
+    stop = StandingAt(off.x.position, off.y.position);
   }
   const planar::Place by{stop.end_x, stop.end_y};
   const planar::Place here = place(r.route.first(), r.at.position), there = place(r.route.tracks[k], rest);
-  return {here, there, here + by, there + by};
+  return {{here, there, here + by, there + by}, BesideLine(stop)};
 }
 
 Cover CoverOf(const Context& c, const State& s, const PlacesOff& places) noexcept {
@@ -159,7 +159,8 @@ Cover CoverOf(const Context& c, const State& s, const PlacesOff& places) noexcep
   const Angles angles = AnglesOf(c, s.others.back());
   const double turned = s.set_point[kC].position;
   area = AreaOf(c, {std::min(angles.least, turned), std::max(angles.most, turned)});
-  for (const planar::Place& place : places) area.places[area.count++] = place;
+  for (const planar::Place& place : places.places) area.places[area.count++] = place;
+  area.margin += places.margin;
   return cover;
 }
 

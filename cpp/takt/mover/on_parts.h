@@ -30,8 +30,11 @@ Cover CoverOf(const Context& c, const State& s) noexcept;
 Cover CoverOfStop(const Context& c, const SetPoint& at) noexcept;
 // On a track, and by so much off its place there at the end of this cycle: between these places its middle stays until
 // it rests, and on its way back to the track.
-using PlacesOff = std::array<planar::Place, 4>;
-PlacesOff PlacesOffTrack(const Context& c, const SetPoint& off) noexcept;
+struct PlacesOff {
+  std::array<planar::Place, 4> places;
+  double margin = 0;  // mm, round these
+};
+PlacesOff PlacesOffTrack(const Context& c, const PlaneState& off) noexcept;
 Cover CoverOf(const Context& c, const State& s, const PlacesOff& places) noexcept;
 // If X and Y went so, and C so.
 Cover CoverOf(const Context& c, const PlaneMove& move, const CoordinateMove& turn) noexcept;

@@ -272,12 +272,14 @@ Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
   State& s = g.s;
   if (const ErrorId why = WhyNot(s, Ask::kMoveOnTrack); why != ErrorId::kNone) return Refused(why);
   planar::Rider next = g.c.rider();
+  LimitedBy limited_by;
+  next.pace = PaceOf(g.c.params, LimitsOf(command, g.c.params.xy, limited_by));
   if (const planar::Verdict way = FindWay(g.c, command, s, next); way.error != ErrorId::kNone) {
     return Refused(way);
   }
   const double least = LeastGap(g.c, s, next, command.gap.value_or(g.c.params.gap));
   if (command.gap && *command.gap < least - planar::kSame) return RefusedGap(least);
-  next.pace = PaceOf(g.c.params, LimitsOf(command, g.c.params.xy, s.limited_by));
+  s.limited_by = limited_by;
   next.gap = command.gap.value_or(std::max(g.c.params.gap, least));
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kPlane);

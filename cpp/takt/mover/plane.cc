@@ -129,6 +129,14 @@ PlaneState At(const PlaneMotion& m, double t) noexcept {
            dy * u.acceleration + dx * w.acceleration}};
 }
 
+double BesideLine(const PlaneMotion& m) noexcept {
+  if (m.across.duration() == 0) return 0;
+  const Profile::Range along = m.along.PositionRange(), across = m.across.PositionRange();
+  const double end = m.along.end().position;
+  return across.max - across.min + std::max(0.0, along.max - std::max(0.0, end)) +
+         std::max(0.0, std::min(0.0, end) - along.min);
+}
+
 double SpeedBound(const PlaneMotion& m) noexcept {
   const auto largest = [](const Profile& p) {
     const Profile::Range range = p.VelocityRange();
@@ -263,6 +271,8 @@ bool PlanCorner(Planner& planner, double x, double y, double most, const Limits&
 
 bool PlanRest(Planner& planner, const PlaneMotion& motion, double t, const Limits& limits, PlaneMotion& out) noexcept {
   const PlaneState from = At(motion, t);
+  // Neither on a line nor on its way onto one.
+  if (motion.share == 0 && t < motion.across.duration()) return PlanRest(planner, from, limits, out);
   PlaneMotion rest = Begin(from, {motion.direction_x, motion.direction_y});
   rest.share = t < motion.across.duration() ? motion.share : 0;
   if (t < DurationOf(motion)) {

@@ -1,5 +1,6 @@
 // Enabled or not, and where; and coming to rest.
 #include "takt/mover/admission.h"
+#include "takt/mover/course.h"
 #include "takt/mover/formation.h"
 #include "takt/mover/on_parts.h"
 
@@ -67,6 +68,7 @@ Answer CarryOut(const Given& g, const SetPosition& command) noexcept {
   if (why != ErrorId::kNone) return Refused(why);
   const planar::Verdict room = planar::SetDown(g.c.index, {at.origin, command.c}, at.system, g.c.grounds);
   if (room.error != ErrorId::kNone) return Refused(room.error, room.object);
+  if (const ObjectInfo object = InTheCourse(g.c, at, command.c)) return Refused(ErrorId::kCollision, object);
   if (IsOnTrack(g.s)) g.s.mode = CommandMode::kFreeMovement;
   LeaveStreets(g.c, g.s);
   g.s.set_point[kC].position = command.c;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/mover/coordinate.h"
+#include "takt/mover/follow.h"
 #include "takt/mover/formation.h"
 #include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
@@ -103,15 +104,8 @@ bool Stays(const Context& c, const State& s, const PlaneMotion& motion) {
 PlaneMove PlanBack(const Context& c, const State& s) {
   PlaneMove back;
   back.begin = c.cycle.count;
-  PlaneState off = At(s.plane.motion, Elapsed(c, s.plane.begin));
-  if (s.external.mode == SetpointMode::kRelative) {
-    for (const auto& [own, more] :
-         {std::pair(&off.x, &s.external.taken[kX]), std::pair(&off.y, &s.external.taken[kY])}) {
-      own->position += more->position;
-      own->velocity += more->velocity;
-      own->acceleration += more->acceleration;
-    }
-  }
+  const bool more = s.external.mode == SetpointMode::kRelative;
+  const PlaneState off = OffTrack(s, more ? s.external.taken : SetPoint{}, Elapsed(c, s.plane.begin));
   const trajectory::Limits maximum = c.params.xy.maximum.limits();
   if (off.x.position == 0 && off.y.position == 0 && planar::Rests(off.x) && planar::Rests(off.y)) return back;
   PlanRest(c.planner, off, maximum, back.motion);
@@ -173,6 +167,26 @@ Rest PlanRest(const Context& c, const trajectory::Limits* plane, const State& s)
 
 }  // namespace
 
+namespace {
+
+void RestOnTrack(const trajectory::Limits* softly, planar::Rider& rider) {
+  rider.aim = planar::Aim::kRest;
+  rider.softly = softly != nullptr;
+  if (!softly) return;
+  rider.pace.limits.deceleration = softly->deceleration;
+  rider.pace.limits.jerk = softly->jerk;
+}
+
+// On a track: so softly it would come to rest where it must not be.
+bool LeadsAway(const Context& c, const trajectory::Limits& softly, const Rest& rest, const State& s) {
+  if (!IsOnTrack(s)) return false;
+  planar::Rider then = c.rider();
+  RestOnTrack(&softly, then);
+  return WhyNotAlong(c, s, then, rest.others.back()) != ErrorId::kNone;
+}
+
+}  // namespace
+
 void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) noexcept {
   if (s.mode == CommandMode::kJoiningTrack || s.mode == CommandMode::kLeavingTrack) {
     LeaveStreets(c, s);
@@ -184,7 +198,8 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
     return;
   }
   // As hard as it can it stays within what it has reserved.
-  const bool hard = !plane || InTheWay(c, rest.plane, rest.others.back(), IsOnTrack(s));
+  const bool hard =
+      !plane || InTheWay(c, rest.plane, rest.others.back(), IsOnTrack(s)) || LeadsAway(c, *plane, rest, s);
   if (plane && hard) rest = PlanRest(c, nullptr, s);
   // As the guard knows it.
   if (hard && !IsOnTrack(s) && s.escape.cycle == c.cycle.count) {
@@ -192,16 +207,9 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
     rest.plane.begin = s.escape.begin;
   }
   s.plane = rest.plane;
+  s.plane.hard = hard;
   s.others = rest.others;
-  if (IsOnTrack(s)) {
-    planar::Rider& rider = c.rider();
-    rider.aim = planar::Aim::kRest;
-    rider.softly = plane != nullptr;
-    if (plane) {
-      rider.pace.limits.deceleration = plane->deceleration;
-      rider.pace.limits.jerk = plane->jerk;
-    }
-  }
+  if (IsOnTrack(s)) RestOnTrack(hard ? nullptr : plane, c.rider());
   s.external = {};
   if (IsStar(c)) s.formation.whole = &c.params == &c.fleet.bodies[c.index].alone;
   Reserve(c, s, IsOnTrack(s));

@@ -51,6 +51,7 @@ void describe(Description<PlaneMove>& d) {
   d.internal<&P::share>("Of the limits then, across the second line.");
   d.internal<&P::corner_x>(unit::mm, "The corner it goes round then.");
   d.internal<&P::corner_y>(unit::mm, "Of it.");
+  d.internal<&P::hard>("It comes to rest with the greatest dynamics.");
   d.internal<&P::goes>("A command leads it to a target.");
   d.internal<&P::held_by>("The mover in its way.");
   d.internal<&P::held_since>("Cycle since when.");

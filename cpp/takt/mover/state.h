@@ -40,6 +40,7 @@ struct PlaneMove {
   bool passes = false;  // it goes round a corner at its end: what is buffered next takes over where it ends
   double share = 0;     // of the limits then, across the second line
   double corner_x = 0, corner_y = 0;        // mm
+  bool hard = false;                        // it comes to rest with the greatest dynamics
   bool goes = false;                        // a command leads it to a target; else it comes to rest
   std::uint32_t held_by = planar::kNobody;  // the mover in its way: it comes to rest, and goes on once that is clear
   std::uint64_t held_since = 0;             // cycle

@@ -123,7 +123,10 @@ Interval WayOf(const Network& network, const Rider& r) noexcept {
   const double at = r.at.position;
   if (r.aim == Aim::kTarget && !r.there) {
     const double end = EndOfWay(network, r);
-    return {std::min(at, end), std::max(at, end)};
+    if (Rests(r.at)) return {std::min(at, end), std::max(at, end)};
+    // It may be past its target before it has turned round.
+    const Braking braking = Brake(r.at, r.pace.brakes());
+    return {std::min({at, end, braking.lowest}), std::max({at, end, braking.highest})};
   }
   if (r.aim == Aim::kFollow) {
     double length = 0;
@@ -131,7 +134,7 @@ Interval WayOf(const Network& network, const Rider& r) noexcept {
     return {0, length};
   }
   if (Rests(r.at)) return {at, at};
-  const Braking braking = Brake(r.at, BrakesOf(r));
+  const Braking braking = Brake(r.at, r.softly ? r.pace.brakes() : BrakesOf(r));
   return {braking.lowest, braking.highest};
 }
 

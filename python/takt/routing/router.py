@@ -164,9 +164,11 @@ class SurfaceRouter:
         made.may_move = tuple(aside)
         sizes = dict.fromkeys([*names, *self._on_way, *aside])
         raster = self._make_raster([self.session.mover(name) for name in sizes])
+        planned = False  # else later on, once all are where a plan can begin
         if not self._back:
             astray = self._astray(names, raster)
             if not astray:
+                planned = True
                 self._install(*self._plan(goals, raster))
             else:
                 self._check_targets(goals, raster)
@@ -175,7 +177,8 @@ class SurfaceRouter:
             if name in self._goals:
                 self._fail(name, f"mover {name}: another order came")
         self._goals = goals
-        self._take_targets()
+        if planned:
+            self._take_targets()
         self._look_whether_there()
         return made
 
