@@ -50,8 +50,9 @@ class TrackLayout:
 
     def __init__(self, file: str | os.PathLike[str], name: str | None = None) -> None:
         text, found = read_machine(file)
+        whole = text.lstrip().startswith(b"{")  # a machine as a dict
         for key, line in LACKING.items():
-            if not re.search(rf"^{key}\s*:".encode(), text, re.MULTILINE):
+            if not whole and not re.search(rf"^{key}\s*:".encode(), text, re.MULTILINE):
                 text += f"\n{line}".encode()
         self._core = _core.TrackLayout(text + b"\n", name or found)
 

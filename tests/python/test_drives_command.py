@@ -6,11 +6,13 @@ import itertools
 import os
 from pathlib import Path
 
+import can
 import pytest
 import takt
 from buses import described, drives, emulated, machine, new_bus
 from machines import new_url
 from takt.cli import main
+from takt.drives.can_link import parse
 
 _ports = itertools.count(20_000 + os.getpid() % 400 * 10)
 
@@ -39,6 +41,12 @@ def test_processes_of_their_own(tmp_path: Path) -> None:
                 engine.run(0.2)
                 assert x.error == 3002
                 served.wait_for("x1: node 1: fault 0x4210 (drive too hot)")
+            assert not [line for line in served.lines if "another master" in line], "it does not take itself for one"
+            with can.Bus(interface="udp_multicast", channel=parse(bus).channel, **parse(bus).options) as stranger:
+                stranger.send(can.Message(arbitration_id=0x080, is_extended_id=False))
+            with takt.Engine(text) as engine:
+                engine.run(0.1)
+            served.wait_for("another master is at work: somebody sends SYNC, too")
             assert served.end() == 0
             assert "cycles, " in served.lines[-1]
         emulation.tell("frighten 1")

@@ -314,6 +314,15 @@ def test_tracks_that_were_changed() -> None:
         engine.move_on_tracks({"a": ("line", 300.0)})
 
 
+def test_a_machine_as_a_dict() -> None:
+    """PL-02, PY-01: as good as its text."""
+    line = {"name": "line", "elements": [{"from": {"x": 0, "y": 0}, "to": {"x": 500, "y": 0}}]}
+    engine = Engine({"name": "n", "axes": [], "movers": [{"name": "a"}], "tracks": [line]})
+    put_on_tracks(engine, [(0, 0.0)], ["line"])
+    engine.move_on_tracks({"a": ("line", 300.0)})
+    assert engine.mover("a").x == pytest.approx(300.0)
+
+
 def test_bad_requests() -> None:
     """PL-02."""
     engine = on_tracks(RING, {"a": ("main", 300.0), "b": ("main", 1300.0)})

@@ -66,6 +66,7 @@ void Step(const Encoder& p, const EncoderInputs& in, Cycle cycle, EncoderState& 
   out.error = fresh ? in.error || !Take(p, in, s, distance) : s.missed > 0;
   if (out.error) {
     s.missed += in.cycles;
+    s.velocity = 0;  // nobody knows
   } else if (fresh) {
     const double time = cycle.period_s * static_cast<double>(s.missed + in.cycles);
     const double share = p.velocity_filter_s > 0 ? -maths::Expm1(-time / p.velocity_filter_s) : 1;

@@ -26,6 +26,7 @@ CODE_WITHIN_S = 0.2  # after the fault itself the error code is expected to have
 MANY_RESETS = 3
 RESTING_CYCLES = 3
 BRAKES_WITHIN_S = 2.0  # a drive whose homing is broken off
+LOST = 4  # times that step, as in the engine: an encoder that shows another place than before
 JUMP = 1.5  # times the largest step of the axis: a drive that counts from its reference now
 
 
@@ -96,6 +97,7 @@ class DriveAxis:
         self._resting = 0  # cycles
         self._absorbed = 0  # increments by which the drive's position has jumped when it was homed
         self._reference: int | None = None  # increments without those jumps: where the drive counts 0
+        self._off_first = False  # it has lost its reference: it is to be switched off before it homes anew
         self._index_pulses = 0
         self._cycles = 0  # since something was heard
         self.mode = 0  # as last heard
@@ -135,7 +137,8 @@ class DriveAxis:
         self._cycles += 1
         enable = told.enable and self._has(mode)
         failed = self._homing is not None and self._homing.failed != ""
-        enable = enable and not failed
+        self._off_first = self._off_first and told.enable
+        enable = enable and not failed and not self._off_first
         stop = self._breaks_off(enable, now_s) or stop
         if self._homing is not None and failed and not told.enable:
             self._homing.forget()
@@ -224,6 +227,8 @@ class DriveAxis:
         step = 0 if before is None else total - before
         if self._homes and abs(step) > JUMP * self._largest_step:
             self._absorbed += step
+        elif self._reference is not None and abs(step) > LOST * self._largest_step * max(1, self._cycles):
+            self._lose_reference(step)
         self.status, self.position, self.mode = heard.status, heard.position, heard.mode
         self._watch_fault(now_s)
         at = total - self._absorbed
@@ -242,6 +247,16 @@ class DriveAxis:
         found.drive_ready = self.state is State.OPERATION_ENABLED and not self._homes
         self._cycles = 0
         return found
+
+    def _lose_reference(self, step: int) -> None:
+        """Its position has jumped, so what it counts from is somewhere else."""
+        self._reference, self._off_first = None, True
+        if self._homing is not None:
+            self._homing.forget()
+        self._say(
+            f"{self.axis}: {self.called}: its position has jumped by {step} increments, so it has no reference any more; "
+            f"it homes again when it is switched on"
+        )
 
     def _watch_homing(self, at: int, found: drive.Measured) -> None:
         homing = self._homing

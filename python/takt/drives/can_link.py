@@ -6,6 +6,7 @@ import contextlib
 import logging
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -15,6 +16,8 @@ from takt.errors import TaktError
 
 KIND: Final = "canopen"
 DEFAULT_INTERFACE: Final = "socketcan"
+ECHOES: Final = ("udp_multicast",)  # bring back what was sent on them
+ECHO_WITHIN_S: Final = 1.0
 WITHOUT_BIT_RATE: Final = ("virtual", "udp_multicast")  # no wire, so no bit rate either
 MISSING: Final = "CANopen needs the packages canopen and python-can: pip install 'takt-motion[canopen]'"
 
@@ -90,6 +93,33 @@ def _hint(name: BusName) -> str:
     return f" (interfaces of this host: ip -br link show type can; switch on: ip link set {name.channel} up)"
 
 
+class _Echoes:
+    """What was sent, and comes back on an interface that brings own messages, too: else this end hears another master."""
+
+    def __init__(self, bus: Any) -> None:
+        self._send = bus.send
+        self._sent: deque[tuple[float, int, bytes]] = deque()
+        self._lock = threading.Lock()
+        bus.send = self._note
+
+    def _note(self, message: Any, timeout: float | None = None) -> None:
+        with self._lock:
+            self._sent.append((time.monotonic(), message.arbitration_id, bytes(message.data)))
+        self._send(message, timeout)
+
+    def take(self, message: Any) -> bool:
+        """Whether it is one of those, each once."""
+        data, since_s = bytes(message.data), time.monotonic() - ECHO_WITHIN_S
+        with self._lock:
+            while self._sent and self._sent[0][0] < since_s:
+                self._sent.popleft()
+            for entry in self._sent:
+                if entry[1:] == (message.arbitration_id, data):
+                    self._sent.remove(entry)
+                    return True
+        return False
+
+
 class CanLink:
     """A bus and canopen's network on it. Messages are taken in by `pump`, or by a thread of `background`."""
 
@@ -97,6 +127,7 @@ class CanLink:
         _, canopen = packages()
         self.name = name
         self.bus = open_bus(name, bitrate)
+        self._echoes = _Echoes(self.bus) if name.interface in ECHOES else None
         self.network = canopen.Network() if network is None else network  # an empty one is false
         self.network.bus = self.bus
         self.malformed = 0  # frames that could not be read
@@ -110,6 +141,8 @@ class CanLink:
         if message is None:
             return False
         if message.is_error_frame or message.is_remote_frame:
+            return True
+        if self._echoes is not None and self._echoes.take(message):
             return True
         try:
             self.network.notify(message.arbitration_id, message.data, message.timestamp)

@@ -262,7 +262,8 @@ def emulate(machine: Path | None, bus: str | None, nodes: int) -> int:
     """Be the drives themselves, without metal: those of a machine file, or as many as one likes.
 
     Commands are read from standard input: fault NODE CODE [lasting], clear NODE, cut NODE|all, join NODE|all,
-    power NODE off|on, stall NODE, show, quit; on EtherCAT lose PERCENT, too, and a NODE is a position."""
+    power NODE off|on, stall NODE, jump NODE INCREMENTS, show, quit; on EtherCAT lose PERCENT, too, and a NODE is a
+    position."""
     if machine is None:
         if bus is None:
             raise click.UsageError("give a machine file, or --bus with --nodes")

@@ -59,7 +59,8 @@ class EmulatedDrive:
         self.held_fault = 0  # this fault lasts: it cannot be reset
         self.never_ready = False  # the power stage never comes up
         self._counts = Unwrapped()  # of the encoder
-        self._increments = 0  # unwrapped: where the motor is
+        self._increments = 0  # unwrapped: where the motor is, as the encoder shows it
+        self._slipped = 0  # increments by which the encoder shows another place than it did at the start
         self._measured: dict[str, Any] = {}
         self.homing_velocities = [200_000, 20_000]  # 0x6099: to a switch, to its edge or an index pulse
         self._homed = self._homing_failed = False
@@ -102,6 +103,10 @@ class EmulatedDrive:
         """Something is wrong with the drive."""
         self.held_fault = code if lasting else 0
         self.machine.fault(code)
+
+    def slip(self, increments: int) -> None:
+        """The encoder shows another place from now on, and the motor stands where it was."""
+        self._slipped += increments
 
     # --- motion ---
 
@@ -175,7 +180,7 @@ class EmulatedDrive:
             told["mode"] = drive.CYCLIC_POSITION
             # Near the present position, so that the exact ratio of a gear survives the wrap of 32 bits.
             now = self._increments
-            told["position_counts"] = (now + signed(target + self._home - now)) / ratio
+            told["position_counts"] = (now + signed(target + self._home - now) - self._slipped) / ratio
             told["velocity_counts_s"] = signed(target - last) / self.period_s / ratio
         elif mode is Mode.CYCLIC_TORQUE:
             torque = self.scaling.torque_nm(self.values[od.TARGET_TORQUE.index])
@@ -255,7 +260,7 @@ class EmulatedDrive:
         before = self._counts.total
         counts = self._counts.take(measured["counts"])
         self._speed = 0.0 if before is None else (counts - before) / self.period_s
-        self._increments = round(counts * self.scaling.increments_per_count)
+        self._increments = round(counts * self.scaling.increments_per_count) + self._slipped
         self._measured = measured
         self._latch(measured)
 

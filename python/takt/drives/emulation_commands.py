@@ -18,8 +18,8 @@ VENDOR: Final = 0x0000_0000
 PRODUCT: Final = 0x5441_4B54  # "TAKT"
 NAME: Final = "Takt emulated drive"
 HELP: Final = (
-    "fault NODE CODE [lasting] | clear NODE | cut NODE|all | join NODE|all | power NODE off|on | stall NODE | show | "
-    "quit"
+    "fault NODE CODE [lasting] | clear NODE | cut NODE|all | join NODE|all | power NODE off|on | stall NODE | "
+    "jump NODE INCREMENTS | show | quit"
 )
 
 
@@ -93,6 +93,8 @@ class Commanded(ABC):
                 self.cut(node, verb == "cut")
             elif verb == "stall":
                 node.drive.never_ready = True
+            elif verb == "jump":
+                node.drive.slip(int(rest[1], 0))
             elif verb == "power":
                 self.power(node, {"off": False, "on": True}[rest[1]])
             else:

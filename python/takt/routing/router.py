@@ -120,6 +120,7 @@ class SurfaceRouter:
             self.given["seed"] = seed
         self.options = given if effort is None else Options(environment, pitch, origin, effort, seed, dynamics)
         self.plans = 0  # that were made
+        self._planned: SurfacePlan | None = None  # the last one
         self.waited_s: dict[str, dict[str, float]] = defaultdict(lambda: defaultdict(float))  # mover, for whom
         self._on_way: dict[str, Traveller] = {}
         self._goals: dict[str, _Goal] = {}
@@ -164,11 +165,9 @@ class SurfaceRouter:
         made.may_move = tuple(aside)
         sizes = dict.fromkeys([*names, *self._on_way, *aside])
         raster = self._make_raster([self.session.mover(name) for name in sizes])
-        planned = False  # else later on, once all are where a plan can begin
         if not self._back:
             astray = self._astray(names, raster)
             if not astray:
-                planned = True
                 self._install(*self._plan(goals, raster))
             else:
                 self._check_targets(goals, raster)
@@ -177,8 +176,7 @@ class SurfaceRouter:
             if name in self._goals:
                 self._fail(name, f"mover {name}: another order came")
         self._goals = goals
-        if planned:
-            self._take_targets()
+        self._take_targets()
         self._look_whether_there()
         return made
 
@@ -375,7 +373,7 @@ class SurfaceRouter:
 
     def _take_targets(self) -> None:
         """Who goes where, where movers may exchange their targets."""
-        taken = self._planned.targets
+        taken: Mapping[str, Point] = {} if self._planned is None else self._planned.targets
         for name in list(self._goals):
             goal = self._goals[name]
             alone = sum(other.pool is goal.pool for other in self._goals.values()) == 1
@@ -578,6 +576,8 @@ def router_for(
     names = list(movers or ())
     if isinstance(targets, Mapping):
         names = [name for key in targets for name in ([key] if isinstance(key, str) else key)]
+    else:
+        names = names or [name for name, mover in session.movers.items() if can_move(mover)]
     number = session.mover(names[0]).coordinate_system if names and session.parts else 0
     known = session._routers.get(number)
     if known is not None and (not options or known.given == options):
