@@ -1,6 +1,7 @@
 // The tracks of a machine file, made without an engine: what takt track looks at.
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "bindings.h"
 #include "takt/core/maths.h"
 #include "takt/mover/streets.h"
+#include "takt/planar/clearance.h"
 #include "takt/planar/nearest.h"
 #include "takt/track/ranges.h"
 #include "takt/track/works.h"
@@ -79,6 +81,20 @@ class Layout {
   }
 
   // The ranges at both ends that movers keep to: as they are given, or as the engine finds them in passing.
+  // The gap at which two such movers, turned so (deg), clear each other wherever they are on the track.
+  double ClearGap(std::size_t i, double width, double height, double turned, double least) const {
+    CheckTrack(i);
+    const planar::Track* way = tracks_.ways[i];
+    if (!way) return least;
+    constexpr double kDegree = std::numbers::pi / 180;
+    const planar::Footprint mover{width, height};
+    const double length = tracks_.states[i].length, angle = turned * kDegree;
+    for (const double at : {0.0, length}) {
+      least = std::max(least, planar::ClearGap(mover, angle - planar::At(*way, at).direction));
+    }
+    return planar::ClearGapAlong(*way, mover, angle, 0, length, least);
+  }
+
   RangePair TrafficRanges(std::size_t i) {
     CheckTrack(i);
     const track::TrackParams& params = tracks_.params[i];
@@ -164,6 +180,8 @@ void BindTrack(py::module_& m) {
       .def("behind", &L::Behind, py::arg("track"))
       .def("collision_ranges", &L::Ranges, py::arg("track"))
       .def("traffic_ranges", &L::TrafficRanges, py::arg("track"))
+      .def("clear_gap", &L::ClearGap, py::arg("track"), py::arg("width"), py::arg("height"), py::arg("turned"),
+           py::arg("least"))
       .def("points", &L::Points, py::arg("track"), py::arg("step"));
 }
 

@@ -56,6 +56,12 @@ class TrackLayout:
                 text += f"\n{line}".encode()
         self._core = _core.TrackLayout(text + b"\n", name or found)
 
+    def clear_gap(self, width: float, height: float, turned: float, least: float) -> float:
+        """mm between the centres of two such movers, turned so (deg), at which they touch nowhere on one track."""
+        for i in range(len(self._core.names)):
+            least = self._core.clear_gap(i, width, height, turned, least)
+        return least
+
     @cached_property
     def tracks(self) -> tuple[LaidTrack, ...]:
         """In the order of the file."""

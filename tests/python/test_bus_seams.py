@@ -111,6 +111,37 @@ def test_the_reference_of_a_drive_is_not_believed_after_a_jump(bus: str, tmp_pat
         assert x.actual_position == pytest.approx(0, abs=0.1), "where it was homed just now"
 
 
+@pytest.mark.parametrize("how", ["stop", "halt", "stop_all", "power off", "emergency stop"])
+def test_what_stops_a_drive_that_homes(bus: str, how: str, tmp_path: Path) -> None:
+    """It comes to rest along its quick stop ramp, the axis is off, and nothing goes on by itself."""
+    url = new_url()
+    keys = "homing: {method: 17, velocity_switch: 60, velocity_pulse: 10, acceleration: 1000, within_s: 9}"
+    text = machine(url, bus, axis_keys="drive: {ready_timeout_s: 20}", drive_keys=keys)
+    text += "simulation: {servos: [{axis: x1, switches: {limit_negative: {to: -400}}}]}\n"
+    with driven(text, url, tmp_path), takt.Engine(text) as engine:
+        x = engine.axis("x1")
+        power = x.power()
+        engine.wait(lambda: x.actual_velocity < -50, timeout=20)
+        stops = {
+            "stop": x.stop,
+            "halt": x.halt,
+            "stop_all": engine.stop_all,
+            "power off": lambda: x.power(enable=False),
+            "emergency stop": engine.emergency_stop,
+        }
+        said, where = stops[how](), x.actual_position
+        engine.run(0.5)
+        assert said.done
+        assert power.aborted
+        assert (x.actual_velocity, x.drive_ready, x.loop_closed) == (0, False, False)
+        assert 0 <= where - x.actual_position < 10
+        engine.run(1.0)
+        assert x.actual_velocity == 0
+        power = x.power()
+        engine.wait(lambda: x.actual_velocity < -50, timeout=20)
+        assert power.active
+
+
 # --- torque limits ---
 
 

@@ -111,7 +111,7 @@ def test_cables_supply_and_lost_frames_in_motion(tmp_path: Path) -> None:
         heard(f"x2: slave 2 is not heard any more on {BUS}: cable, supply, or the slave itself", 0)
         tell(emulation, "join 2")
         heard("x3: slave 3 is heard again", 0)  # within its watchdog: it is not set up anew
-        assert axes[0].actual_velocity > 15
+        assert axes[0].set_velocity > 15
         back()
 
         count = len(said)

@@ -89,7 +89,9 @@ def test_the_drive_keeps_the_torque_limit(mode: str) -> None:
             assert x.set_position == pytest.approx(150 * (1 if limit == 2.5 else 2))
         refused = x.torque_control(torque=1.3).wait_final()
         assert refused.error
-        assert x.write_parameter(number=1008, value=-1).wait_final().error_id == 5
+        for beyond in (-1, 0, 2.6):
+            assert x.write_parameter(number=1008, value=beyond).wait_final().error_id == 5
+        x.write_parameter(number=1008, value=2.5).wait()  # that of the file again
 
 
 @pytest.mark.parametrize("torque", [0.2, 0.9])

@@ -170,7 +170,14 @@ Status Admit(const Context& c, const Request& r, State& s) {
   if (ComesTooLate(r, s)) return Report(c, r.ticket, FeedbackState::kAborted), Status::Ok();
   if (SwitchingOn(s)) {  // the drive gets ready or the brake opens
     if (buffered) return Enqueue(c, r, s);
-    return stops ? StopAtOnce(c, r, s), Status::Ok() : Status::Failed(ErrorId::kPowerOff);
+    if (!stops) return Status::Failed(ErrorId::kPowerOff);
+    // The motion of a drive that homes is none that could be braked: it ends with its power.
+    if (s.drive_homes && !s.drive_ready) {
+      Request off;
+      off.kind = RequestKind::kPower;
+      SwitchOff(c, off, s);
+    }
+    return StopAtOnce(c, r, s), Status::Ok();
   }
   if (stops && s.direct_voltage_v != 0) {  // put out with the loop open
     s.direct_voltage_v = 0;

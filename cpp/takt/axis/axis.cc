@@ -384,6 +384,7 @@ void BrakeInFault(const Context& c, ErrorId error, State& s) noexcept {
 State MakeState(const AxisParams& params) noexcept {
   State s;
   s.system = params.planner_limits();
+  if (params.limits.torque) s.most_torque = *params.limits.torque;
   s.homing.homed = params.position_encoder().type == EncoderType::kAbsoluteSsi;
   s.motion.arrived = true;
   return s;

@@ -240,7 +240,7 @@ Status CarryOut(const Context& c, Ticket ticket, const WriteParameter& w, State&
       c.params.supervision.deviation_standstill = w.value;
       return Done(c, ticket);
     case Parameter::kTorqueLimit:
-      if (!(w.value > 0)) return Status::Failed(ErrorId::kParameter);
+      if (!(w.value > 0 && w.value <= s.most_torque)) return Status::Failed(ErrorId::kParameter);
       c.params.limits.torque = w.value;
       return Done(c, ticket);
     case Parameter::kMaxVelocity:

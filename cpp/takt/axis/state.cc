@@ -106,6 +106,7 @@ void describe(Description<State>& d) {
   d.internal<&S::encoder_line_error>("Because the encoder says so.");
   d.internal<&S::torque_nm>(unit::nm, "As the drive says.");
   d.internal<&S::constants_set>("GT_SetConstant was given.");
+  d.internal<&S::drive_homes>("The drive homes by itself while it gets ready.");
   d.internal<&S::dormant>("Supervision switched off.");
   d.internal<&S::direct_voltage_v>(unit::volt, "Put out while Disabled.");
   d.internal<&S::pulsing>("A voltage is put out for a time.");
@@ -114,6 +115,7 @@ void describe(Description<State>& d) {
   d.internal<&S::coupled>("Follows its master.");
   d.internal<&S::follow_offset>(unit::u, "Distance to the master's position times the ratio, without a skew.");
   d.internal<&S::leads>("Others follow it from load on.");
+  d.internal<&S::most_torque>(unit::nm, "Largest torque of the machine file; infinite: all that the drive has.");
   d.internal<&S::system>("Largest values of the machine file.");
   d.internal<&S::skew>("How far it is from where its master has it.");
   d.internal<&S::emergency>("What an emergency stop has left behind.");

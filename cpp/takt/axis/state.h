@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "takt/axis/cam_switch.h"
@@ -99,6 +100,7 @@ struct State {
   bool reset_pending = false;
   bool constants_set = false;  // by GT_SetConstant
   bool coupled = false;        // follows a master from load on: its set point is the master's
+  bool drive_homes = false;    // the drive, by itself, while it gets ready
   bool leads = false;          // others follow it from load on
   Emergency emergency = Emergency::kNone;
   bool end_of_profile = false;  // the end of a cam was passed in this cycle
@@ -169,6 +171,7 @@ struct State {
   Ticket reset_ticket = 0;
   std::array<Request, kBufferSize> buffer;  // [0] is next
   std::uint64_t illegal_transitions = 0;    // always 0: the state table holds
+  double most_torque = std::numeric_limits<double>::infinity();  // Nm, of the machine file
   trajectory::Limits system;  // of the machine file; those of the application, in the parameters, keep within them
   OverlayState overlay;
   StopOrders stops;

@@ -60,6 +60,15 @@ const ExternalDrive* ExternalOf(const Machine& machine, std::size_t axis) {
   return nullptr;
 }
 
+bool DriveHomes(const Machine& machine, std::size_t axis) {
+  for (const Bus& bus : machine.external.buses) {
+    for (const BusDrive& drive : bus.drives) {
+      if (drive.axis == machine.axes[axis].name) return drive.homing.has_value();
+    }
+  }
+  return false;
+}
+
 void describe(Description<CycleParams>& d) {
   d.about("The engine's cycle.");
   d.defaulted<&CycleParams::period_s>(unit::s, between(0.00025, 0.02), "How long a cycle lasts.");

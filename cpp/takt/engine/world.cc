@@ -107,6 +107,7 @@ World::World(const Machine& machine)
   TouchTypes(static_cast<const MachineCommand*>(nullptr));
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     axis_states.push_back(axis::MakeState(axis_params[i]));
+    axis_states.back().drive_homes = DriveHomes(machine, i);
     servo_params.push_back(ServoOf(machine, i));
     true_positions.push_back(std::numeric_limits<double>::quiet_NaN());
     servo_states.push_back(plant::MakeServoState(servo_params[i]));

@@ -12,7 +12,7 @@ from __future__ import annotations
 import heapq
 import itertools
 import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -21,6 +21,7 @@ from takt.errors import TaktError
 from takt.track_layout import LaidTrack, TrackLayout
 
 if TYPE_CHECKING:
+    from takt.mover import Mover
     from takt.session import Session
 
 MARGIN = 2e-3  # mm that rows stay away from zones; the engine lets movers wait half as far away
@@ -224,14 +225,20 @@ class Streets:
                 yield from self._behind(previous, low + previous.length, high + previous.length, depth + 1)
 
 
-def read_streets(session: Session, gap: float) -> Streets:
-    """Those of a session's machine file, with the links and lengths its engine has now."""
+def read_streets(session: Session, gap: float, movers: Iterable[Mover] = ()) -> Streets:
+    """Those of a session's machine file, with the links and lengths its engine has now.
+
+    movers: where these could touch each other with the gap, it is a larger one, as on their moves."""
     layout = TrackLayout(session.machine_text) if session.tracks else None
     if layout is None:
         raise RoutingError("the machine has no tracks")
     for laid in layout.tracks:
         if abs(laid.length - session.track(laid.name).length) > 1e-3:
             raise RoutingError(f"track {laid.name} is not as the machine file has it: ways are planned on its tracks")
+    sizes = [(float(m.parameters["width"]), float(m.parameters["height"]), m.c) for m in movers]
+    width, height = (max((size[k] for size in sizes), default=0.0) for k in (0, 1))
+    for turned in {round(size[2], 6) for size in sizes}:
+        gap = layout.clear_gap(width, height, turned, gap)
     return Streets(layout.tracks, gap)
 
 
