@@ -314,6 +314,47 @@ def test_tracks_that_were_changed() -> None:
         engine.move_on_tracks({"a": ("line", 300.0)})
 
 
+THREE = """
+  - {name: main, elements: [{from: {x: 0, y: 0}, to: {x: 1500, y: 0}}]}
+  - name: up
+    starts_from: [main]
+    elements: [{from: {x: 1500, y: 900}, to: {x: 0, y: 900}}]
+    ends_at: [main]
+  - name: short
+    starts_from: [main]
+    elements: [{from: {x: 1500, y: 500}, to: {x: 0, y: 500}}]
+    ends_at: [main]
+"""
+
+
+@pytest.mark.parametrize("first", [50, 150, 250, 350])
+@pytest.mark.parametrize("count", [3, 4])
+def test_movers_turn_their_order_round_from_within_a_zone(first: int, count: int) -> None:
+    """PL-88: the last one stands in the zone of a switch; it does not get past those before it, so it is no detour to go
+    into the row behind them."""
+    places = [first + 220.0 * i for i in range(count)]
+    names = "abcd"[:count]
+    check(
+        on_tracks(THREE, {n: ("main", s) for n, s in zip(names, places, strict=True)}),
+        {n: ("main", s) for n, s in zip(names, reversed(places), strict=True)},
+        timeout=30,
+    )
+
+
+@pytest.mark.parametrize("size", [60, 100])
+def test_routes_keep_the_gap_that_bends_take(size: float) -> None:
+    """PL-88: a gap that movers could touch with in a bend is a larger one, for the plan as well."""
+    movers = {"a": 300.0, "b": 520.0, "d": 800.0}
+    lines = [
+        f"  - {{name: {n}, gap: {1.2 * size}, width: {size}, height: {size}, initial: {{x: {s}, y: 0}}}}"
+        for n, s in movers.items()
+    ]
+    engine = Engine("name: r\naxes: []\nmovers:\n" + "\n".join(lines) + f"\ntracks:\n{THREE}")
+    put_on_tracks(engine, [(0, s) for s in movers.values()], ["main", "up", "short"])
+    engine.move_on_tracks({"a": ("main", 800.0), "b": ("main", 300.0)}, may_move=True, timeout=30)
+    assert [engine.mover(n).track_position for n in "ab"] == pytest.approx([800.0, 300.0])
+
+
 def test_a_machine_as_a_dict() -> None:
     """PL-02, PY-01: as good as its text."""
     line = {"name": "line", "elements": [{"from": {"x": 0, "y": 0}, "to": {"x": 500, "y": 0}}]}

@@ -137,6 +137,8 @@ class Task:
             if not row or row[0 if front else -1] != i:
                 return None
             rows[come_from] = row[1:] if front else row[:-1]
+        elif self._passes_a_row(hop, a):
+            return None
         if hop.to_row:
             front = hop.backward
             rows[street.index] = (i, *rows[street.index]) if front else (*rows[street.index], i)
@@ -145,6 +147,16 @@ class Task:
             apart.sort()
         after = Arrangement(tuple(rows), tuple(apart))
         return after if self.fits(street, rows[street.index], after) else None
+
+    def _passes_a_row(self, hop: Hop, a: Arrangement) -> bool:
+        """From a zone at one end of its street it would get to the other end, with movers in the row between."""
+        here = next(place for i, place in a.apart if i == hop.mover)
+        street = self.streets[here.street]
+        if not street.has_room or not a.rows[here.street]:
+            return False
+        if len(hop.sweep.streets) > 1:
+            return here.s < street.first
+        return not hop.to_row and (here.s < street.first) != (hop.place < street.first)
 
     def hops(self, a: Arrangement) -> Iterator[Hop]:
         """All that may be worth a try."""
