@@ -200,6 +200,23 @@ def test_the_limit_is_at_the_drive_again(tmp_path: Path) -> None:
             assert drive.read(od.MAX_TORQUE) == limit
 
 
+def test_a_fault_without_a_code_is_said(bus: str, tmp_path: Path) -> None:
+    url = new_url()
+    text = machine(url, bus)
+    with driven(text, url, tmp_path) as (said, tell), takt.Engine(text) as engine:
+        x = engine.axis("x1")
+        x.power().wait()
+        tell("fault 1 0x10000")  # no code: it is not understood, and nothing happens
+        engine.run(0.2)
+        assert x.error == 0
+        tell("fault 1 0")
+        engine.wait(lambda: x.error == 3002, timeout=20)
+        engine.run(1.0)
+        (fault,) = [n for n, line in enumerate(said) if "fault without an error code" in line]
+        assert any("the fault has been reset" in line for line in said[fault:])
+        x.reset().wait()
+
+
 # --- tools ---
 
 

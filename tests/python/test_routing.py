@@ -344,13 +344,16 @@ def test_movers_turn_their_order_round_from_within_a_zone(first: int, count: int
 @pytest.mark.parametrize("size", [60, 100])
 def test_routes_keep_the_gap_that_bends_take(size: float) -> None:
     """PL-88: a gap that movers could touch with in a bend is a larger one, for the plan as well."""
-    movers = {"a": 300.0, "b": 520.0, "d": 800.0}
-    lines = [
-        f"  - {{name: {n}, gap: {1.2 * size}, width: {size}, height: {size}, initial: {{x: {s}, y: 0}}}}"
-        for n, s in movers.items()
-    ]
+    movers = {"a": ("main", 300.0), "b": ("main", 800.0), "c": ("up", 1500.0), "d": ("short", 1200.0)}
+    layout = {track.name: track for track in TrackLayout(f"tracks:\n{THREE}").tracks}
+    lines = []
+    for name, (track, s) in movers.items():
+        x, y = point(layout[track], s)
+        own = f"name: {name}, gap: {1.2 * size}, width: {size}, height: {size}"
+        lines.append(f"  - {{{own}, initial: {{x: {x:.9f}, y: {y:.9f}}}}}")
     engine = Engine("name: r\naxes: []\nmovers:\n" + "\n".join(lines) + f"\ntracks:\n{THREE}")
-    put_on_tracks(engine, [(0, s) for s in movers.values()], ["main", "up", "short"])
+    names = list(layout)
+    put_on_tracks(engine, [(names.index(track), s) for track, s in movers.values()], names)
     engine.move_on_tracks({"a": ("main", 800.0), "b": ("main", 300.0)}, may_move=True, timeout=30)
     assert [engine.mover(n).track_position for n in "ab"] == pytest.approx([800.0, 300.0])
 

@@ -299,8 +299,9 @@ class DriveAxis:
     def _watch_fault(self, now_s: float) -> None:
         if not self.faulty:
             if self._fault_since_s is not None:
-                if self._told_of_fault:
-                    self._say(f"{self.axis}: {self.called}: the fault has been reset")
+                if not self._told_of_fault:
+                    self._say(f"{self.axis}: {self.called}: fault {self._code()}")
+                self._say(f"{self.axis}: {self.called}: the fault has been reset")
                 self._fault_since_s, self.error_code = None, 0
                 self._told_of_fault = self._told_of_resets = False
                 self._reset.forget()

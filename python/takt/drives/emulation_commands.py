@@ -86,7 +86,10 @@ class Commanded(ABC):
             )
         for node in self._which(rest[0]):
             if verb == "fault":
-                node.drive.fault(int(rest[1], 0), lasting=rest[2:] == ["lasting"])
+                code = int(rest[1], 0)
+                if not 0 <= code <= 0xFFFF:
+                    raise ValueError(code)
+                node.drive.fault(code, lasting=rest[2:] == ["lasting"])
             elif verb == "clear":
                 node.drive.held_fault = 0
             elif verb in ("cut", "join"):
