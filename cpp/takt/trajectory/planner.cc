@@ -13,7 +13,9 @@ namespace takt::trajectory {
 
 namespace {
 
-constexpr double kOnCurve = 1e-6;  // of the way to standstill
+constexpr double kOnCurve = 1e-6;   // of the way to standstill
+constexpr double kSteepest = 1e9;   // 1/s: of the acceleration, as jerk; what is quicker is below all roundings
+constexpr double kFarApart = 1e-5;  // of a limit: within, where limits lie far apart
 
 bool IsFinite(const KinematicState& s) noexcept {
   return std::isfinite(s.position) && std::isfinite(s.velocity) && std::isfinite(s.acceleration);
@@ -178,7 +180,9 @@ Status Follow(const KinematicState& from, const Ramp& ramp, double velocity, Pro
 }  // namespace
 
 bool Planner::Solve(const KinematicState& from, double position, double end_velocity, double velocity_limit,
-                    const Bounds& bounds, Profile& out) noexcept {
+                    const Bounds& given, Profile& out) noexcept {
+  Bounds bounds = given;
+  bounds.jerk = std::min(bounds.jerk, kSteepest * std::max(bounds.up, bounds.down));
   PositionProblem problem{
       position - from.position, from.velocity, bounds.jerk > 0 ? from.acceleration : 0, end_velocity,
       velocity_limit,           bounds};
@@ -187,17 +191,27 @@ bool Planner::Solve(const KinematicState& from, double position, double end_velo
   if (!IsUsable(first)) return false;
   if (BuildOfRamps(from, target, problem, first, out)) return true;
   const Scale second = ScaleOf(RampTime(problem), problem);
-  // No room to reach the velocity limit: without it the solver cannot mistake a rounding for an excess.
-  if (StartsWithin(problem)) problem.velocity_limit *= 2;
   const auto solve = [&](const Scale& scale) {
     Solution solution;
     return SolveWithRuckig(InScale(problem, scale), solution) &&
            Build(from, target, problem, scale.time, first, solution, out);
   };
-  if (solve(first)) return true;
-  if (!IsUsable(second) || !solve(second)) return false;
-  ++counters_.second_scale;
-  return true;
+  const auto solve_somehow = [&] {
+    if (solve(first)) return true;
+    if (!IsUsable(second) || !solve(second)) return false;
+    ++counters_.second_scale;
+    return true;
+  };
+  // Most likely there is no room to reach the velocity limit: without it the solver cannot mistake a rounding for an
+  // excess. But the ramps may have failed by roundings alone, where limits lie far apart.
+  if (StartsWithin(problem)) {
+    problem.velocity_limit *= 2;
+    const bool found = solve_somehow();
+    const Profile::Range range = found ? out.VelocityRange() : Profile::Range{};
+    if (found && std::max(-range.min, range.max) <= velocity_limit * (1 + kFarApart)) return true;
+    problem.velocity_limit = velocity_limit;
+  }
+  return solve_somehow();
 }
 
 Status Planner::ToPosition(const KinematicState& from, double position, double end_velocity, const Limits& limits,

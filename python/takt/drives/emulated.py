@@ -223,7 +223,7 @@ class EmulatedDrive:
             wanted = self._homing_sense * (
                 -to_edge if self._leaving else to_edge if method in HOME_PULSE else to_switch
             )
-        most = self.values[od.HOMING_ACCELERATION.index] * self.period_s
+        most = self.values[od.HOMING_ACCELERATION.index] / self.scaling.velocity_factor * self.period_s
         self._homing_speed += max(-most, min(most, wanted - self._homing_speed))
 
     def _look(self, method: int) -> None:

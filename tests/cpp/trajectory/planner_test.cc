@@ -107,6 +107,20 @@ TEST(Planner, EndVelocityThatNeedsRoomRunsBackFirst) {
   EXPECT_LE(plan.VelocityRange().max, 500);
 }
 
+TEST(Planner, LimitsFarApartHoldOnLongWays) {
+  for (const double jerk : {1e8, 1e9, 1e10, 1e12, 1e15}) {
+    for (const double velocity : {10.0, 100.0, 500.0, 1000.0, 2000.0}) {
+      for (const double share : {1.0, 2.0, 0.5, 3.0, 1.0001, 0.999}) {
+        for (const double distance : {300.0, 1e3, 1e4, 1e5, 1e6, 1e7, 1e9}) {
+          const double acceleration = velocity * 1000 / share;
+          const Limits limits{velocity, acceleration, acceleration, jerk};
+          const Profile plan = PlanTo({0, 0, 0}, distance, limits);
+          EXPECT_LE(plan.VelocityRange().max, velocity * (1 + 1e-5)) << jerk << " " << acceleration << " " << distance;
+        }
+      }
+    }
+  }
+}
 TEST(Planner, EndVelocityAtTheLimitIsReached) {
   EXPECT_NEAR(PlanTo({0, 0, 0}, 1000, kSCurve, 500).duration(), 2 + 0.5 * 0.35, 1e-12);
   EXPECT_NEAR(PlanTo({0, 500, 0}, 1000, kSCurve, 500).duration(), 2, 1e-12);
