@@ -195,7 +195,9 @@ def test_the_limit_is_at_the_drive_again(tmp_path: Path) -> None:
                 assert buses.eventually(lambda: "x1: node 1 is set up again" in said, 20)
             else:
                 assert buses.eventually(lambda: "x1: node 1: the fault has been reset" in said, 20)
-            assert buses.eventually(lambda: x.reset().wait_final(timeout=20).done, 20), "once the engine has heard of it"
+            assert buses.eventually(lambda: x.reset().wait_final(timeout=20).done, 20), (
+                "once the engine has heard of it"
+            )
             x.power().wait(timeout=20)
             assert drive.read(od.MAX_TORQUE) == limit
 

@@ -176,9 +176,7 @@ def in_a_hall() -> Engine:
         a={"reference": "hall", "initial": {"x": 80, "y": 120}},
         coordinate_systems=[{"name": "cs"}],
         parts=[HALL],
-        tracks=[
-            {"name": "t", "part": "hall", "elements": [{"from": {"x": 80, "y": 120}, "to": {"x": 950, "y": 120}}]}
-        ],
+        tracks=[{"name": "t", "part": "hall", "elements": [{"from": {"x": 80, "y": 120}, "to": {"x": 950, "y": 120}}]}],
     )
 
 

@@ -109,7 +109,9 @@ def plan_routes(
         if name not in movers:
             raise RoutingError(f"mover {name} is on no track: let it join one first")
     gaps = [max(float(m.parameters["gap"]), m.gap) for m in movers.values()]
-    streets = read_streets(session, max(gaps, default=0.0) if gap is None else gap, movers.values() if gap is None else ())
+    streets = read_streets(
+        session, max(gaps, default=0.0) if gap is None else gap, movers.values() if gap is None else ()
+    )
     numbers = {street.name: street.index for street in streets.all}
     aims = {}
     for name, (track, s) in targets.items():
