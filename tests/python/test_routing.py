@@ -330,8 +330,8 @@ THREE = """
 @pytest.mark.parametrize("first", [50, 150, 250, 350])
 @pytest.mark.parametrize("count", [3, 4])
 def test_movers_turn_their_order_round_from_within_a_zone(first: int, count: int) -> None:
-    """PL-88: the last one stands in the zone of a switch; it does not get past those before it, so it is no detour to go
-    into the row behind them."""
+    """PL-88: the last one stands in the zone of a switch; it does not get past those before it, so it is no detour to
+    go into the row behind them."""
     places = [first + 220.0 * i for i in range(count)]
     names = "abcd"[:count]
     check(

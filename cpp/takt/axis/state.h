@@ -169,8 +169,8 @@ struct State {
   Dormant dormant;
   Pulse pulse;
   Ticket reset_ticket = 0;
-  std::array<Request, kBufferSize> buffer;  // [0] is next
-  std::uint64_t illegal_transitions = 0;    // always 0: the state table holds
+  std::array<Request, kBufferSize> buffer;                       // [0] is next
+  std::uint64_t illegal_transitions = 0;                         // always 0: the state table holds
   double most_torque = std::numeric_limits<double>::infinity();  // Nm, of the machine file
   trajectory::Limits system;  // of the machine file; those of the application, in the parameters, keep within them
   OverlayState overlay;

@@ -254,8 +254,8 @@ class DriveAxis:
         if self._homing is not None:
             self._homing.forget()
         self._say(
-            f"{self.axis}: {self.called}: its position has jumped by {step} increments, so it has no reference any more; "
-            f"it homes again when it is switched on"
+            f"{self.axis}: {self.called}: its position has jumped by {step} increments, so it has no reference any "
+            f"more; it homes again when it is switched on"
         )
 
     def _watch_homing(self, at: int, found: drive.Measured) -> None:

@@ -94,7 +94,7 @@ def _hint(name: BusName) -> str:
 
 
 class _Echoes:
-    """What was sent, and comes back on an interface that brings own messages, too: else this end hears another master."""
+    """What was sent, on an interface that brings it back: else this end would hear another master."""
 
     def __init__(self, bus: Any) -> None:
         self._send = bus.send
