@@ -101,20 +101,16 @@ class Layout {
     if (params.collision_range_mode == track::CollisionRangeMode::kManual) {
       return py::make_tuple(params.collision_range_at_start, params.collision_range_at_end);
     }
-    if (!streets_) {
-      streets_ = std::make_unique<mover::Streets>(0, names());
-      std::vector<mover::TrackNow> now(tracks_.ways.size());
-      for (std::size_t k = 0; k < now.size(); ++k) {
-        const track::TrackParams& its = tracks_.params[k];
-        now[k].way = tracks_.ways[k];
-        now[k].length = tracks_.states[k].length;
-        now[k].start_node = tracks_.start_nodes[k];
-        now[k].end_node = tracks_.end_nodes[k];
-        now[k].reach = maths::Hypot(its.mover_width, its.mover_height);
-      }
-      mover::Refresh(now, *streets_);
-    }
+    MakeStreets();
     return py::make_tuple(streets_->network.roads[i].range_at_start, streets_->network.roads[i].range_at_end);
+  }
+
+  // mm, at start and end: how much further on than one on another track that meets it there a mover may have to be.
+  RangePair Leads(std::size_t i) {
+    CheckTrack(i);
+    MakeStreets();
+    const planar::Road& road = streets_->network.roads[i];
+    return py::make_tuple(*std::ranges::max_element(road.leads_at_start), *std::ranges::max_element(road.leads_at_end));
   }
 
   // Rows of s, x, y, direction in deg, curvature in 1/mm, and 1 where a piece was given; `step` mm apart or nearer.
@@ -140,6 +136,20 @@ class Layout {
   }
 
  private:
+  void MakeStreets() {
+    if (streets_) return;
+    streets_ = std::make_unique<mover::Streets>(0, names());
+    std::vector<mover::TrackNow> now(tracks_.ways.size());
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      const track::TrackParams& its = tracks_.params[k];
+      now[k].way = tracks_.ways[k];
+      now[k].length = tracks_.states[k].length;
+      now[k].start_node = tracks_.start_nodes[k];
+      now[k].end_node = tracks_.end_nodes[k];
+      now[k].reach = maths::Hypot(its.mover_width, its.mover_height);
+    }
+    mover::Refresh(now, *streets_);
+  }
   void CheckTrack(std::size_t i) const {
     if (i >= tracks_.ways.size()) throw std::out_of_range("no such track");
   }
@@ -180,6 +190,7 @@ void BindTrack(py::module_& m) {
       .def("behind", &L::Behind, py::arg("track"))
       .def("collision_ranges", &L::Ranges, py::arg("track"))
       .def("traffic_ranges", &L::TrafficRanges, py::arg("track"))
+      .def("leads", &L::Leads, py::arg("track"))
       .def("clear_gap", &L::ClearGap, py::arg("track"), py::arg("width"), py::arg("height"), py::arg("turned"),
            py::arg("least"))
       .def("points", &L::Points, py::arg("track"), py::arg("step"));

@@ -42,6 +42,7 @@ class LaidTrack:
     range_at_start: float  # mm, collision ranges
     range_at_end: float
     traffic_ranges: tuple[float, float]  # mm, at start and end: what movers keep to
+    leads: tuple[float, float]  # mm, there: so much further on than a mover on another track one may have to be
     points: Points
 
 
@@ -81,5 +82,6 @@ class TrackLayout:
             at_start,
             at_end,
             self._core.traffic_ranges(i),
+            self._core.leads(i),
             Points(s, x, y, direction, curvature, given > 0),
         )

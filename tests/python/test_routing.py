@@ -341,6 +341,41 @@ def test_movers_turn_their_order_round_from_within_a_zone(first: int, count: int
     )
 
 
+def test_targets_side_by_side_behind_a_switch() -> None:
+    """PL-81, PL-88: on two tracks that leave it movers may be a gap apart along the way, and touch all the same."""
+    engine = on_tracks(THREE, {"a": ("main", 280.0), "b": ("up", 183.0)})
+    with pytest.raises(takt.RoutingError, match="the target of mover a is too near to that of b"):
+        takt.plan_routes(engine, {"a": ("short", 0.0), "b": ("up", 219.0)})
+    check(engine, {"a": ("short", 100.0), "b": ("up", 600.0)}, timeout=30)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_what_is_planned_is_carried_out_within_zones(seed: int) -> None:
+    """PL-88: starts and targets anywhere, also near switches."""
+    rng = random.Random(seed)
+    layout = TrackLayout(f"tracks:\n{THREE}").tracks
+
+    def draw() -> dict[str, tuple[str, float]]:
+        places: list[tuple[str, float]] = []
+        while len(places) < 3:
+            track = rng.choice(layout)
+            s = rng.choice([rng.uniform(0, 300), rng.uniform(0, track.length), track.length - rng.uniform(0, 300)])
+            if all(track.name != other or abs(s - at) > 225 for other, at in places):
+                places.append((track.name, s))
+        return dict(zip("abc", places, strict=True))
+
+    try:
+        engine = on_tracks(THREE, draw())
+    except takt.TaktError:
+        return  # two of them stand too near to one another behind a switch
+    targets = draw()
+    try:
+        plan = takt.plan_routes(engine, targets)
+    except takt.RoutingError:
+        return
+    takt.Journey(engine, plan).wait(60)
+
+
 @pytest.mark.parametrize("size", [60, 100])
 def test_routes_keep_the_gap_that_bends_take(size: float) -> None:
     """PL-88: a gap that movers could touch with in a bend is a larger one, for the plan as well."""

@@ -12,10 +12,11 @@ from __future__ import annotations
 import heapq
 import itertools
 import math
+from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from takt.errors import TaktError
 from takt.track_layout import LaidTrack, TrackLayout
@@ -75,6 +76,16 @@ class Sweep:
     end: float
 
 
+class Presence(NamedTuple):
+    """At a node, along the way: from where to where within its zones; the streets before and behind it, -1: none."""
+
+    node: int
+    low: float  # mm, from the node
+    high: float
+    come_from: int
+    to: int
+
+
 class Streets:
     """All tracks by number, from 0, with a gap that all movers keep."""
 
@@ -97,10 +108,15 @@ class Streets:
             )
             for i, t in enumerate(tracks)
         )
+        # By node: so much further on than a mover on another street one has to be behind it, and before it.
+        self._leads: tuple[dict[int, float], dict[int, float]] = (defaultdict(float), defaultdict(float))
+        for i, t in enumerate(tracks):
+            for leads, node, lead in zip(self._leads, (starts[i], ends[i]), t.leads, strict=True):
+                leads[node] = max(leads[node], lead)
         self.before: tuple[tuple[int, ...], ...] = tuple(
             tuple(k for k, behind in enumerate(links) if i in behind) for i in range(len(tracks))
         )
-        self._presences: dict[Sweep, tuple[tuple[int, float, float], ...]] = {}
+        self._presences: dict[Sweep, tuple[Presence, ...]] = {}
         self._meetings: dict[tuple[Sweep, Sweep], bool] = {}
 
     def __getitem__(self, index: int) -> Street:
@@ -183,11 +199,19 @@ class Streets:
             for other, its_low, its_high in self._stretches(b):
                 if street == other and max(low, its_low) - min(high, its_high) < near:
                     return True
-        for node, low, high in self._at_nodes(a):
-            for other, its_low, its_high in self._at_nodes(b):
-                if node == other and max(low, its_low) - min(high, its_high) < near:
-                    return True
-        return False
+        return any(
+            one.node == two.node and self._near(one, two) for one in self._at_nodes(a) for two in self._at_nodes(b)
+        )
+
+    def _near(self, a: Presence, b: Presence) -> bool:
+        if max(a.low, b.low) - min(a.high, b.high) < self.gap - SAME:
+            return True
+        behind, before = (leads[a.node] - SAME for leads in self._leads)
+        both_behind = min(a.high, b.high) >= 0 and min(a.to, b.to) >= 0 and a.to != b.to
+        both_before = max(a.low, b.low) <= 0 and min(a.come_from, b.come_from) >= 0 and a.come_from != b.come_from
+        return (both_behind and max(a.low, b.low, 0.0) - min(a.high, b.high) < behind) or (
+            both_before and max(a.low, b.low) - min(a.high, b.high, 0.0) < before
+        )
 
     def _stretches(self, sweep: Sweep) -> Iterator[tuple[int, float, float]]:
         for i, k in enumerate(sweep.streets):
@@ -195,33 +219,35 @@ class Streets:
             high = sweep.end if i == len(sweep.streets) - 1 else self[k].length
             yield k, min(low, high), max(low, high)
 
-    def _at_nodes(self, sweep: Sweep) -> tuple[tuple[int, float, float], ...]:
+    def _at_nodes(self, sweep: Sweep) -> tuple[Presence, ...]:
         """Nodes, and from where to where it is within their zones; mm from the node along the way."""
         if sweep not in self._presences:
             self._presences[sweep] = tuple(self._find_nodes(sweep))
         return self._presences[sweep]
 
-    def _find_nodes(self, sweep: Sweep) -> Iterator[tuple[int, float, float]]:
+    def _find_nodes(self, sweep: Sweep) -> Iterator[Presence]:
         streets = [self[k] for k in sweep.streets]
         end = sum(street.length for street in streets[:-1]) + sweep.end
         low, high = min(sweep.start, end), max(sweep.start, end)
         if streets[0].start_node >= 0 and low < streets[0].zone_ends:
-            yield streets[0].start_node, low, min(high, streets[0].zone_ends)
+            yield Presence(streets[0].start_node, low, min(high, streets[0].zone_ends), -1, streets[0].index)
         at = 0.0
         for i, street in enumerate(streets):
             at += street.length
             behind = streets[i + 1].zone_ends if i + 1 < len(streets) else math.inf
             before = street.zone_begins - street.length
             if street.end_node >= 0 and high - at > before and low - at < behind:
-                yield street.end_node, max(low - at, before), min(high - at, behind)
+                to = streets[i + 1].index if i + 1 < len(streets) else -1
+                yield Presence(street.end_node, max(low - at, before), min(high - at, behind), street.index, to)
         # Nodes that whoever is here may have come over shortly before count on.
         yield from self._behind(streets[0], low, high, 0)
 
-    def _behind(self, street: Street, low: float, high: float, depth: int) -> Iterator[tuple[int, float, float]]:
+    def _behind(self, street: Street, low: float, high: float, depth: int) -> Iterator[Presence]:
         for k in self.before[street.index]:
             previous = self[k]
             if previous.start_node >= 0 and low + previous.length < previous.zone_ends and depth < 4:
-                yield previous.start_node, low + previous.length, min(high + previous.length, previous.zone_ends)
+                to = min(high + previous.length, previous.zone_ends)
+                yield Presence(previous.start_node, low + previous.length, to, -1, -1)
                 yield from self._behind(previous, low + previous.length, high + previous.length, depth + 1)
 
 
