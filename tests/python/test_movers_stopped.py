@@ -164,6 +164,16 @@ def test_set_position_into_the_way_of_a_mover_is_refused(go: Callable[[Engine], 
     assert overlap(recording, "a", "b") <= 1e-6
 
 
+def test_set_position_in_the_very_first_cycle() -> None:
+    """PL-81: others are where the machine file has them, not at the origin."""
+    movers = [{"name": "a"}, {"name": "b", "initial": {"x": 900, "y": 840}}]
+    engine = Engine({"name": "first", "axes": [], "movers": movers})
+    a = engine.mover("a")
+    onto = a.set_position(x=850, y=840)
+    assert a.set_position(x=60, y=60).wait_final().done
+    assert onto.error_id == 3024
+
+
 # --- on tracks ---
 
 

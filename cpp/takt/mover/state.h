@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
@@ -50,7 +51,8 @@ struct PlaneMove {
 struct Escape {
   PlaneMotion motion;
   std::uint64_t begin = 0;  // cycle
-  std::uint64_t cycle = 0;  // it is good from the beginning of this cycle on
+  // It is good from the beginning of this cycle on; none yet.
+  std::uint64_t cycle = std::numeric_limits<std::uint64_t>::max();
 };
 
 // One of another coordinate.
