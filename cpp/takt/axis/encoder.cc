@@ -9,6 +9,8 @@ namespace takt::axis {
 
 namespace {
 
+constexpr std::uint64_t kHeld = 4;  // cycles without a good sample in which the velocity stays
+
 int Bits(const Encoder& p) noexcept {
   return p.type == EncoderType::kIncremental ? 32 : p.ssi_bits;
 }
@@ -66,7 +68,7 @@ void Step(const Encoder& p, const EncoderInputs& in, Cycle cycle, EncoderState& 
   out.error = fresh ? in.error || !Take(p, in, s, distance) : s.missed > 0;
   if (out.error) {
     s.missed += in.cycles;
-    s.velocity = 0;  // nobody knows
+    if (s.missed > kHeld) s.velocity = 0;  // nobody knows any more
   } else if (fresh) {
     const double time = cycle.period_s * static_cast<double>(s.missed + in.cycles);
     const double share = p.velocity_filter_s > 0 ? -maths::Expm1(-time / p.velocity_filter_s) : 1;

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kOnCurve = 1e-6;   // of the way to standstill
 constexpr double kSteepest = 1e9;   // 1/s: of the acceleration, as jerk; what is quicker is below all roundings
+constexpr double kNoJerk = 1e30;    // 1/s: what is meant by that cannot be known
 constexpr double kFarApart = 1e-5;  // of a limit: within, where limits lie far apart
 
 bool IsFinite(const KinematicState& s) noexcept {
@@ -180,12 +181,12 @@ Status Follow(const KinematicState& from, const Ramp& ramp, double velocity, Pro
 }  // namespace
 
 bool Planner::Solve(const KinematicState& from, double position, double end_velocity, double velocity_limit,
-                    const Bounds& given, Profile& out) noexcept {
-  Bounds bounds = given;
-  bounds.jerk = std::min(bounds.jerk, kSteepest * std::max(bounds.up, bounds.down));
+                    const Bounds& bounds, Profile& out) noexcept {
   PositionProblem problem{
       position - from.position, from.velocity, bounds.jerk > 0 ? from.acceleration : 0, end_velocity,
       velocity_limit,           bounds};
+  const double acceleration = std::max(bounds.up, bounds.down);
+  if (bounds.jerk < kNoJerk * acceleration) problem.bounds.jerk = std::min(bounds.jerk, kSteepest * acceleration);
   const KinematicState target{position, end_velocity, 0};
   const Scale first = ScaleOf(MotionTime(problem), problem);
   if (!IsUsable(first)) return false;
