@@ -45,14 +45,14 @@ void Check(const routing::SurfaceProblem& problem) {
   check(problem.targets, true);
 }
 
-routing::SurfacePlan Plan(int width, int height, double pitch, double size, double velocity, double acceleration,
+routing::SurfacePlan Plan(int width, int height, double pitch, double mover_size, double velocity, double acceleration,
                           double jerk, std::vector<bool> blocked, std::vector<PlaceIndex> starts,
                           std::vector<PlaceIndex> targets, std::vector<routing::PoolIndex> pools, std::int64_t effort,
                           std::uint64_t seed) {
   const routing::SurfaceProblem problem{.width = width,
                                         .height = height,
                                         .pitch = pitch,
-                                        .size = size,
+                                        .mover_size = mover_size,
                                         .dynamics = {.velocity = velocity, .acceleration = acceleration, .jerk = jerk},
                                         .blocked = std::move(blocked),
                                         .starts = std::move(starts),
@@ -114,9 +114,10 @@ void BindRouting(py::module_& m) {
       .def_readonly("lower_bound", &P::lower_bound)
       .def_property_readonly("legs", &LegsOf, "by mover: departure, place, place")
       .def_property_readonly("visits", &VisitsOf, "by mover: place, entry, left, who before, which of its visits");
-  m.def("plan_surface", &Plan, py::kw_only(), py::arg("width"), py::arg("height"), py::arg("pitch"), py::arg("size"),
-        py::arg("velocity"), py::arg("acceleration"), py::arg("jerk"), py::arg("blocked"), py::arg("starts"),
-        py::arg("targets"), py::arg("pools"), py::arg("effort"), py::arg("seed"));
+  m.def("plan_surface", &Plan, py::kw_only(), py::arg("width"), py::arg("height"), py::arg("pitch"),
+        py::arg("mover_size"), py::arg("velocity"), py::arg("acceleration"), py::arg("jerk"), py::arg("blocked"),
+        py::arg("starts"), py::arg("targets"), py::arg("pools"), py::arg("effort"), py::arg("seed"));
+  m.attr("surface_early_s") = routing::kEarly;
   m.def(
       "run_duration",
       [](double length, double velocity, double acceleration, double jerk) {

@@ -80,8 +80,8 @@ class Layout {
     return py::make_tuple(ranges.at_start, ranges.at_end);
   }
 
-  // The ranges at both ends that movers keep to: as they are given, or as the engine finds them in passing.
-  // The gap at which two such movers, turned so (deg), clear each other wherever they are on the track.
+  // Returns the least gap [mm] from `least` on at which two movers of this size, both at the angle `turned` [deg],
+  // clear each other everywhere on the track.
   double ClearGap(std::size_t i, double width, double height, double turned, double least) const {
     CheckTrack(i);
     const planar::Track* way = tracks_.ways[i];
@@ -95,6 +95,7 @@ class Layout {
     return planar::ClearGapAlong(*way, mover, angle, 0, length, least);
   }
 
+  // The ranges at both ends that movers keep to: as they are given, or as the engine finds them in passing.
   RangePair TrafficRanges(std::size_t i) {
     CheckTrack(i);
     const track::TrackParams& params = tracks_.params[i];
@@ -105,7 +106,7 @@ class Layout {
     return py::make_tuple(streets_->network.roads[i].range_at_start, streets_->network.roads[i].range_at_end);
   }
 
-  // mm, at start and end: how much further on than one on another track that meets it there a mover may have to be.
+  // Returns for the start and the end the largest lead [mm] (planar::LeadAtStart) over the tracks that meet it there.
   RangePair Leads(std::size_t i) {
     CheckTrack(i);
     MakeStreets();
@@ -136,6 +137,7 @@ class Layout {
   }
 
  private:
+  // Computes the ranges and leads of all tracks, once.
   void MakeStreets() {
     if (streets_) return;
     streets_ = std::make_unique<mover::Streets>(0, names());
@@ -150,6 +152,7 @@ class Layout {
     }
     mover::Refresh(now, *streets_);
   }
+
   void CheckTrack(std::size_t i) const {
     if (i >= tracks_.ways.size()) throw std::out_of_range("no such track");
   }

@@ -379,7 +379,8 @@ class Session(SessionWithCams):
         from where they are; a mover that is on its way already goes to its new target instead.
 
         targets, movers, may_move: as those of move_on_surface.
-        options: as those of takt.plan_surface, the same for all movers that are on their way at one time.
+        options: as those of takt.plan_surface, the same for all movers that are on their way at one time; `effort` is
+            3,000 unless given.
 
         Raises RoutingError if there is no plan; then all goes on as before.
         """

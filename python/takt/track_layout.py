@@ -42,7 +42,7 @@ class LaidTrack:
     range_at_start: float  # mm, collision ranges
     range_at_end: float
     traffic_ranges: tuple[float, float]  # mm, at start and end: what movers keep to
-    leads: tuple[float, float]  # mm, there: so much further on than a mover on another track one may have to be
+    leads: tuple[float, float]  # mm, there: the largest lead against movers on tracks that meet it
     points: Points
 
 
@@ -51,14 +51,15 @@ class TrackLayout:
 
     def __init__(self, file: str | os.PathLike[str], name: str | None = None) -> None:
         text, found = read_machine(file)
-        whole = text.lstrip().startswith(b"{")  # a machine as a dict
+        whole = text.lstrip().startswith(b"{")  # JSON, as of a machine given as a dict
         for key, line in LACKING.items():
             if not whole and not re.search(rf"^{key}\s*:".encode(), text, re.MULTILINE):
                 text += f"\n{line}".encode()
         self._core = _core.TrackLayout(text + b"\n", name or found)
 
     def clear_gap(self, width: float, height: float, turned: float, least: float) -> float:
-        """mm between the centres of two such movers, turned so (deg), at which they touch nowhere on one track."""
+        """Returns the least gap [mm] from `least` on at which two movers of this size, both at the angle `turned`
+        [deg], clear each other everywhere on each track."""
         for i in range(len(self._core.names)):
             least = self._core.clear_gap(i, width, height, turned, least)
         return least

@@ -21,3 +21,18 @@ def browser() -> Iterator[Browser]:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         yield browser
         browser.close()
+
+
+@pytest.fixture(params=["canopen", "ethercat"])
+def bus(request: pytest.FixtureRequest) -> Iterator[str]:
+    """A bus of this test alone: each test runs on CANopen and on EtherCAT."""
+    import buses
+
+    if request.param == "canopen":
+        yield buses.new_bus()
+        return
+    pytest.importorskip("pysoem")
+    import wires
+
+    with wires.own_network():
+        yield wires.BUS

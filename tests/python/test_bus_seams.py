@@ -2,45 +2,18 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import buses
 import pytest
 import takt
+from both_buses import driven
 from machines import new_url, running
 from takt import expect
 from takt.cli import main
 from takt.drives import objects as od
 
 SSI = "encoder: {increments_per_unit: 1000, type: absolute_ssi, ssi_bits: 32, coding: binary}"
-
-
-@pytest.fixture(params=["canopen", "ethercat"])
-def bus(request: pytest.FixtureRequest) -> Iterator[str]:
-    if request.param == "canopen":
-        yield buses.new_bus()
-        return
-    pytest.importorskip("pysoem")
-    import wires
-
-    with wires.own_network():
-        yield wires.BUS
-
-
-@contextlib.contextmanager
-def driven(text: str, url: str, folder: Path) -> Iterator[tuple[list[str], Any]]:
-    """What the process of the drives says, and the emulation: it takes commands."""
-    if "canopen:" in text:
-        with buses.emulated(text) as emulation, buses.run(text, url) as (_, said):
-            yield said, emulation.command
-        return
-    import wires
-
-    with wires.emulated(text, folder) as emulated, wires.run(text, url) as (_, said):
-        yield said, lambda line: wires.tell(emulated, line)
 
 
 def machine(url: str, bus: str, axes: int = 1, **more: str) -> str:
@@ -110,7 +83,7 @@ def test_the_reference_of_a_drive_is_not_believed_after_a_jump(bus: str, tmp_pat
         assert x.actual_position == pytest.approx(0, abs=0.1), "where it was homed just now"
 
 
-@pytest.mark.parametrize("how", ["stop", "halt", "stop_all", "power off", "emergency stop"])
+@pytest.mark.parametrize("how", ["stop", "held stop", "halt", "stop_all", "power off", "emergency stop"])
 def test_what_stops_a_drive_that_homes(bus: str, how: str, tmp_path: Path) -> None:
     """It comes to rest along its quick stop ramp, the axis is off, and nothing goes on by itself."""
     url = new_url()
@@ -123,6 +96,7 @@ def test_what_stops_a_drive_that_homes(bus: str, how: str, tmp_path: Path) -> No
         engine.wait(lambda: x.actual_velocity < -50, timeout=20)
         stops = {
             "stop": x.stop,
+            "held stop": lambda: x.stop(hold=True),
             "halt": x.halt,
             "stop_all": engine.stop_all,
             "power off": lambda: x.power(enable=False),
@@ -136,9 +110,45 @@ def test_what_stops_a_drive_that_homes(bus: str, how: str, tmp_path: Path) -> No
         assert 0 <= where - x.actual_position < 10
         engine.run(1.0)
         assert x.actual_velocity == 0
+        if how == "held stop":
+            x.power()
+            engine.run(1.0)
+            assert x.state is takt.PlcState.DISABLED or x.move_absolute(position=5).wait_final().error
+            said.release()
+            x.power(enable=False).wait()
+            engine.run(0.5)
         power = x.power()
         engine.wait(lambda: x.actual_velocity < -50, timeout=20)
         assert power.active
+
+
+@pytest.mark.parametrize("how", ["stop", "held stop", "stop_all", "power off"])
+@pytest.mark.parametrize("powered", ["by the group", "by the axis"])
+def test_what_stops_drives_of_a_group_that_home(how: str, powered: str) -> None:
+    """As that of an axis alone."""
+    url = new_url()
+    keys = "homing: {method: 17, velocity_switch: 60, velocity_pulse: 10, acceleration: 1000, within_s: 9}"
+    text = machine(url, buses.new_bus(), 2, axis_keys="drive: {ready_timeout_s: 20}", drive_keys=keys)
+    path = "path: {velocity: 300, acceleration: 2000, jerk: 50000}"
+    text += f"groups: [{{name: g, axes: [x1, x2], kinematics: {{gantry: {{axes: [x, y]}}}}, {path}}}]\n"
+    text += "simulation: {servos: [{axis: x1, switches: {limit_negative: {to: -400}}}]}\n"
+    with buses.emulated(text), buses.run(text, url), takt.Engine(text) as engine:
+        group, x = engine.group("g"), engine.axis("x1")
+        group.enable().wait()
+        power = group.power() if powered == "by the group" else x.power()
+        engine.wait(lambda: x.actual_velocity < -50, timeout=20)
+        stops = {
+            "stop": group.stop,
+            "held stop": lambda: group.stop(hold=True),
+            "stop_all": engine.stop_all,
+            "power off": lambda: group.power(enable=False),
+        }
+        said, where = stops[how](), x.actual_position
+        engine.run(1.0)
+        assert said.done
+        assert power.aborted
+        assert (x.actual_velocity, x.drive_ready, x.loop_closed) == (0, False, False)
+        assert 0 <= where - x.actual_position < 10
 
 
 # --- torque limits ---

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
 import re
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import buses
 import pytest
 import takt
+from both_buses import driven
 from machines import new_url, running
 from takt.drives.canopen_bus import CanopenBus
 from takt.drives.cia402 import FOLLOWING_ERROR_BIT, FOLLOWS_BIT, HOMING_START_BIT, TARGET_REACHED_BIT, Mode, State
@@ -27,36 +25,11 @@ SERVO = """simulation:
 """
 
 
-@pytest.fixture(params=["canopen", "ethercat"])
-def bus(request: pytest.FixtureRequest) -> Iterator[str]:
-    if request.param == "canopen":
-        yield buses.new_bus()
-        return
-    pytest.importorskip("pysoem")
-    import wires
-
-    with wires.own_network():
-        yield wires.BUS
-
-
 def machine(url: str, bus: str, keys: str, axes: int = 1, servo: str = SERVO) -> str:
     place = "position" if bus.startswith("ethercat") else "node"
     axis = "drive: {ready_timeout_s: 10}\n    homing: {method: pulse, velocity: 20}"
     text = buses.machine(url, bus, axes, place=place, drive_keys=keys, axis_keys=axis)
     return text.replace("increments_per_unit: 1000}", "increments_per_unit: 5000}") + servo
-
-
-@contextlib.contextmanager
-def driven(text: str, url: str, folder: Path) -> Iterator[tuple[list[str], Any]]:
-    """What the process of the drives says, and the emulation: it takes commands."""
-    if "canopen:" in text:
-        with buses.emulated(text) as emulation, buses.run(text, url) as (_, said):
-            yield said, emulation.command
-        return
-    import wires
-
-    with wires.emulated(text, folder) as emulated, wires.run(text, url) as (_, said):
-        yield said, lambda line: wires.tell(emulated, line)
 
 
 def test_a_drive_homes_itself_when_it_is_switched_on(bus: str, tmp_path: Path) -> None:

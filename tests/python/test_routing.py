@@ -349,31 +349,30 @@ def test_targets_side_by_side_behind_a_switch() -> None:
     check(engine, {"a": ("short", 100.0), "b": ("up", 600.0)}, timeout=30)
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_what_is_planned_is_carried_out_within_zones(seed: int) -> None:
-    """PL-88: starts and targets anywhere, also near switches."""
-    rng = random.Random(seed)
+def test_what_is_planned_is_carried_out_within_zones() -> None:
+    """PL-88: starts and targets anywhere, also near switches; those that are too near to one another are refused."""
     layout = TrackLayout(f"tracks:\n{THREE}").tracks
+    carried_out = 0
+    for seed in range(40):
+        rng = random.Random(seed)
 
-    def draw() -> dict[str, tuple[str, float]]:
-        places: list[tuple[str, float]] = []
-        while len(places) < 3:
-            track = rng.choice(layout)
-            s = rng.choice([rng.uniform(0, 300), rng.uniform(0, track.length), track.length - rng.uniform(0, 300)])
-            if all(track.name != other or abs(s - at) > 225 for other, at in places):
-                places.append((track.name, s))
-        return dict(zip("abc", places, strict=True))
+        def draw(rng: random.Random = rng) -> dict[str, tuple[str, float]]:
+            places: list[tuple[str, float]] = []
+            while len(places) < 3:
+                track = rng.choice(layout)
+                s = rng.choice([rng.uniform(0, 300), rng.uniform(0, track.length), track.length - rng.uniform(0, 300)])
+                if all(track.name != other or abs(s - at) > 225 for other, at in places):
+                    places.append((track.name, s))
+            return dict(zip("abc", places, strict=True))
 
-    try:
-        engine = on_tracks(THREE, draw())
-    except takt.TaktError:
-        return  # two of them stand too near to one another behind a switch
-    targets = draw()
-    try:
-        plan = takt.plan_routes(engine, targets)
-    except takt.RoutingError:
-        return
-    takt.Journey(engine, plan).wait(60)
+        try:
+            engine = on_tracks(THREE, draw())
+            plan = takt.plan_routes(engine, draw())
+        except takt.TaktError:
+            continue
+        takt.Journey(engine, plan).wait(60)
+        carried_out += 1
+    assert carried_out >= 12
 
 
 @pytest.mark.parametrize("size", [60, 100])

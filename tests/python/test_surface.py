@@ -130,6 +130,45 @@ def test_random_targets_are_reached_without_a_collision(count: int) -> None:
     assert sum(journey.arrived_s.values()) < 1.01 * plan.sum_s
 
 
+@pytest.mark.parametrize("how", ["emergency stop", "held", "stop_all", "disable"])
+def test_stops_in_the_middle_of_a_journey(how: str) -> None:
+    """All come to rest apart, nothing goes on by itself, and once they can move again `wait` ends the journey."""
+    starts, targets = random_world(3, 20, 4)
+    engine = engine_of(starts, square(3))
+    plan = takt.plan_surface(engine, targets)
+    for share in (0.1, 0.35, 0.6):
+        engine = engine_of(starts, square(3))
+        watch, journey = Watch(engine), takt.SurfaceJourney(engine, plan)
+        due = engine.now + share * plan.duration_s
+        engine.wait(lambda due=due, engine=engine, journey=journey: journey.scan() or engine.now > due)
+        held = None
+        if how == "stop_all":
+            engine.stop_all()
+        elif how == "disable":
+            for mover in engine.movers.values():
+                mover.disable()
+        else:
+            held = engine.emergency_stop(hold=how == "held")
+        with pytest.raises(takt.RoutingError):
+            journey.wait()
+        engine.run(0.5)
+        stand = [(m.x, m.y) for m in engine.movers.values()]
+        if how == "held":
+            assert all(m.enable().wait_final().error for m in engine.movers.values())
+            assert held is not None
+            held.release()
+        engine.run(0.5)
+        assert [(m.x, m.y) for m in engine.movers.values()] == stand
+        for mover in engine.movers.values():
+            mover.reset().wait()
+            mover.enable().wait()
+        journey.wait()
+        assert not watch.overlaps
+        assert {n: (engine.mover(n).x, engine.mover(n).y) for n in targets} == {
+            n: pytest.approx(at_, abs=1e-6) for n, at_ in targets.items()
+        }
+
+
 @pytest.mark.parametrize("seed", range(20 if LONG else 3))
 def test_a_program_that_looks_now_and_then(seed: int) -> None:
     """Commands come late, each by another time: all get there, behind one another, without a collision."""

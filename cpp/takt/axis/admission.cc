@@ -171,7 +171,7 @@ Status Admit(const Context& c, const Request& r, State& s) {
   if (SwitchingOn(s)) {  // the drive gets ready or the brake opens
     if (buffered) return Enqueue(c, r, s);
     if (!stops) return Status::Failed(ErrorId::kPowerOff);
-    // The motion of a drive that homes is none that could be braked: it ends with its power.
+    // A drive that homes moves without set points: only switching it off ends that motion.
     if (s.drive_homes && !s.drive_ready) {
       Request off;
       off.kind = RequestKind::kPower;

@@ -9,7 +9,7 @@ namespace takt::axis {
 
 namespace {
 
-constexpr std::uint64_t kHeld = 4;  // cycles without a good sample in which the velocity stays
+constexpr std::uint32_t kHeld = 4;  // cycles without a valid sample for which the last velocity is kept
 
 int Bits(const Encoder& p) noexcept {
   return p.type == EncoderType::kIncremental ? 32 : p.ssi_bits;
@@ -68,7 +68,7 @@ void Step(const Encoder& p, const EncoderInputs& in, Cycle cycle, EncoderState& 
   out.error = fresh ? in.error || !Take(p, in, s, distance) : s.missed > 0;
   if (out.error) {
     s.missed += in.cycles;
-    if (s.missed > kHeld) s.velocity = 0;  // nobody knows any more
+    if (s.missed > kHeld) s.velocity = 0;
   } else if (fresh) {
     const double time = cycle.period_s * static_cast<double>(s.missed + in.cycles);
     const double share = p.velocity_filter_s > 0 ? -maths::Expm1(-time / p.velocity_filter_s) : 1;

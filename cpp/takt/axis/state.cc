@@ -106,7 +106,7 @@ void describe(Description<State>& d) {
   d.internal<&S::encoder_line_error>("Because the encoder says so.");
   d.internal<&S::torque_nm>(unit::nm, "As the drive says.");
   d.internal<&S::constants_set>("GT_SetConstant was given.");
-  d.internal<&S::drive_homes>("The drive homes by itself while it gets ready.");
+  d.internal<&S::drive_homes>("The drive homes before it is ready; the engine does not move it.");
   d.internal<&S::dormant>("Supervision switched off.");
   d.internal<&S::direct_voltage_v>(unit::volt, "Put out while Disabled.");
   d.internal<&S::pulsing>("A voltage is put out for a time.");

@@ -100,7 +100,7 @@ struct State {
   bool reset_pending = false;
   bool constants_set = false;  // by GT_SetConstant
   bool coupled = false;        // follows a master from load on: its set point is the master's
-  bool drive_homes = false;    // the drive, by itself, while it gets ready
+  bool drive_homes = false;    // the drive homes before it is ready; the engine does not move it
   bool leads = false;          // others follow it from load on
   Emergency emergency = Emergency::kNone;
   bool end_of_profile = false;  // the end of a cam was passed in this cycle

@@ -107,7 +107,7 @@ struct Machine {
 
 // The drive of this axis that lives in another process; null: it does not.
 const ExternalDrive* ExternalOf(const Machine& machine, std::size_t axis);
-// Whether its drive homes by itself before it is ready for the first time.
+// Returns whether the drive of the axis homes before it is ready for the first time.
 bool DriveHomes(const Machine& machine, std::size_t axis);
 
 // The servo behind `axis` in this machine.

@@ -122,6 +122,11 @@ struct Applier {
     EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
     AbortAll({m.deceleration.value_or(0), m.jerk.value_or(0)});
     if (Is(GroupState::kHoming)) TellAll(c, s, axis::Stop{});
+    // A drive may home before it is ready: its member is not on the path and stops by itself.
+    for (std::size_t k = 0; k < kMaxAxes; ++k) {
+      const bool gets_ready = s.members[k] != 0 && MemberOf(c, s, k).enable && !MemberOf(c, s, k).loop_closed;
+      if (gets_ready) Tell(c, s, k, axis::Stop{});
+    }
     s.ends = true;
     s.task = Task::kStop;
     const bool room = !m.hold || s.holds.Add({ticket, lease_s, CycleIn(c.cycle, lease_s), true, true});

@@ -88,8 +88,8 @@ void Put(const Context& c, const Course& course) {
   EachPlanet(c, [&](std::uint32_t i) { GuardOf(c).Put(i, OfPlanet(c, i, course)); });
 }
 
-// It brakes from this set point, where it is when this cycle begins; in the plane. What leads to rest as hard as it can
-// goes on.
+// Returns how the mover brakes from this set point, its state at the beginning of this cycle; in the plane. A motion
+// that already stops with the greatest dynamics stays as it is.
 Escape EscapeFrom(const Context& c, const State& s, const SetPoint& at) {
   const bool brakes = s.external.mode == SetpointMode::kNone && (s.plane.waits || !s.plane.goes);
   const bool rests = Elapsed(c, s.plane.begin) >= DurationOf(s.plane.motion);

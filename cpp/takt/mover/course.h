@@ -20,7 +20,7 @@ Escape EscapeOf(const Context& c, const State& s) noexcept;
 ObjectInfo InTheTurn(const Context& c, const State& s, const CoordinateMove& turn) noexcept;
 // The same of one on a track whose set point from outside is off its place there.
 ObjectInfo TakeCourseOff(const Context& c, const State& s, const SetPoint& at) noexcept;
-// Whose course it would be in, set there and turned so (deg).
+// Returns the mover whose course a mover would overlap that is set to this spot at the angle `turned` [deg].
 ObjectInfo InTheCourse(const Context& c, const planar::Spot& at, double turned) noexcept;
 
 // X and Y brake on their line for another mover, and go on once the way is clear as far as it takes to get fast.

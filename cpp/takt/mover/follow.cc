@@ -56,7 +56,7 @@ bool AddsNoMore(const Context& c, const External& external, const SetPoint& to) 
   const trajectory::Limits limits = c.params.xy.maximum.limits();
   const SetPoint &was = external.taken, &is = external.given;
   const double most = Length(std::max(limits.acceleration, limits.deceleration), c.params.lateral());
-  // Both may have to be brought to rest: the speed that they get to even if the accelerations are taken away at once.
+  // The speed as a vector that both motions reach before either can slow down: each acceleration ends at full jerk.
   const KinematicState& way = c.rider().at;
   const double still = Length(is[kX].acceleration, is[kY].acceleration) / (2 * limits.jerk);
   const double more = std::max(0.0, way.acceleration * way.velocity) * std::abs(way.acceleration) / (2 * limits.jerk);

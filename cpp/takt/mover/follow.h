@@ -9,8 +9,8 @@ namespace takt::mover {
 // kWildSetPoint, kOffStators, kPartDisabled, kCollision: `at` means nothing.
 ErrorId Follow(const Context& c, SetPoint& at, State& s, ObjectInfo& object) noexcept;
 
-// On a track: how X and Y are off the place there, `t` seconds after what moves them back began, with this from
-// outside.
+// Returns the offset of X and Y from the pose on the track, with its derivatives: the motion back to the track, `t` [s]
+// after its start, and the relative set point `more`. Requires: the mover is on a track.
 PlaneState OffTrack(const State& s, const SetPoint& more, double t) noexcept;
 
 // mm, no more than that a mover may get off its place on a track by set points from outside, as those are now.

@@ -271,7 +271,7 @@ bool PlanCorner(Planner& planner, double x, double y, double most, const Limits&
 
 bool PlanRest(Planner& planner, const PlaneMotion& motion, double t, const Limits& limits, PlaneMotion& out) noexcept {
   const PlaneState from = At(motion, t);
-  // Neither on a line nor on its way onto one.
+  // A stop from a curved motion, not a change from one line to another.
   if (motion.share == 0 && t < motion.across.duration()) return PlanRest(planner, from, limits, out);
   PlaneMotion rest = Begin(from, {motion.direction_x, motion.direction_y});
   rest.share = t < motion.across.duration() ? motion.share : 0;

@@ -30,7 +30,7 @@ PlaneMotion StandingAt(double x, double y) noexcept;
 // At `t` seconds from its beginning; behind its end it rests there, bit for bit.
 PlaneState At(const PlaneMotion& motion, double t) noexcept;
 double DurationOf(const PlaneMotion& motion) noexcept;  // s
-// How far it gets beside the straight line from its beginning to its end, mm, at the most.
+// Returns an upper bound of the distance [mm] between the motion and the straight line from its start to its end.
 double BesideLine(const PlaneMotion& motion) noexcept;
 // What the speed does not exceed, mm/s.
 double SpeedBound(const PlaneMotion& motion) noexcept;

@@ -177,7 +177,7 @@ void RestOnTrack(const trajectory::Limits* softly, planar::Rider& rider) {
   rider.pace.limits.jerk = softly->jerk;
 }
 
-// On a track: so softly it would come to rest where it must not be.
+// Returns whether a stop on a track with these dynamics would leave the stators.
 bool LeadsAway(const Context& c, const trajectory::Limits& softly, const Rest& rest, const State& s) {
   if (!IsOnTrack(s)) return false;
   planar::Rider then = c.rider();

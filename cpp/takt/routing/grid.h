@@ -2,12 +2,11 @@
 // straight along rows and columns, in runs over one or more places.
 //
 // What a plan keeps, and why it is safe even if movers brake at any moment (PL-72): between the middles of two places a
-// mover has both, until it has left the first one with all of its size. It takes the next place at the last moment at
-// which it could still rest in the middle of the one before (less kEarly). A mover is smaller than a place, so two of
-// them that brake at once come to rest apart. One that follows another in the same lane need not wait for that: it
-// leaves so much later that where it would come to rest is always a mover's size behind where the leader is by then
-// (Lag). That is what the guard of movers (planar/guard.h) lets it do: it takes no account of how far a leader would
-// still go.
+// mover has both, until no part of it covers the first one. It takes the next place at the last moment at which it
+// could still rest in the middle of the one before (less kEarly). A mover is smaller than a place, so two movers that
+// brake at the same time come to rest apart. A follower in the same lane need not wait for that: it departs so much
+// later (Lag) that its stop position is always a mover's size behind the present position of its leader. The guard of
+// movers (planar/guard.h) requires the same: the distance in which the leader would stop does not count.
 #pragma once
 
 #include <array>
@@ -78,7 +77,7 @@ class Grid {
   double Middle(int count, int k) const noexcept { return lane(count).middle[static_cast<std::size_t>(k)]; }
   const StraightRun& run(int count) const noexcept { return lane(count).run; }
   // Returns how much later [s] than a leader on a run over `leader` places a follower on one over `follower` places may
-  // depart at the earliest, `ahead` places behind it in the same lane, so that it stays behind while both move.
+  // depart at the earliest, `ahead` places behind it in the same lane, so that its stop position stays behind.
   // Below 0: before it.
   double Lag(int leader, int follower, int ahead) const;
 

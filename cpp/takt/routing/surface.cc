@@ -83,7 +83,7 @@ void MakeVisits(const Grid& grid, const SurfaceProblem& problem, SurfacePlan& pl
 }  // namespace
 
 SurfacePlan PlanSurface(const SurfaceProblem& problem) {
-  const Grid grid(problem.width, problem.height, problem.pitch, problem.size, problem.dynamics, problem.blocked);
+  const Grid grid(problem.width, problem.height, problem.pitch, problem.mover_size, problem.dynamics, problem.blocked);
   Alone alone(grid);
   SurfacePlan result;
   Task task{.starts = problem.starts, .targets = problem.targets};

@@ -22,8 +22,9 @@ namespace takt::routing {
 using PoolIndex = std::int32_t;
 
 struct SurfaceProblem {
-  int width = 0, height = 0;   // places
-  double pitch = 0, size = 0;  // mm; of the largest mover, no more than the pitch
+  int width = 0, height = 0;  // places
+  double pitch = 0;           // mm
+  double mover_size = 0;      // mm, of the largest mover; no more than the pitch
   Dynamics dynamics{};
   std::vector<bool> blocked{};        // by place, row by row: no mover can be there
   std::vector<PlaceIndex> starts{};   // by mover, all different, none of them blocked
@@ -38,7 +39,7 @@ struct SurfaceProblem {
 struct Visit {
   PlaceIndex place = 0;
   double entry = 0;                   // s: from here on it cannot rest before the place any more
-  double left = 0;                    // s, when it gives the place back; where it stays: when it has come
+  double left = 0;                    // s, end of the visit; of the last one: time of arrival
   MoverIndex before = kNone;          // who is at the place before it, kNone: nobody
   std::int32_t before_index = kNone;  // the number of that visit
 };

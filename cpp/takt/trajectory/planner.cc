@@ -14,9 +14,9 @@ namespace takt::trajectory {
 namespace {
 
 constexpr double kOnCurve = 1e-6;   // of the way to standstill
-constexpr double kSteepest = 1e9;   // 1/s: of the acceleration, as jerk; what is quicker is below all roundings
-constexpr double kNoJerk = 1e30;    // 1/s: what is meant by that cannot be known
-constexpr double kFarApart = 1e-5;  // of a limit: within, where limits lie far apart
+constexpr double kSteepest = 1e9;   // 1/s, jerk over acceleration: jerk times below 1 ns are lost in rounding
+constexpr double kAbsurd = 1e30;    // 1/s, the same: problems beyond it are left to fail
+constexpr double kFarApart = 1e-5;  // tolerance of the velocity limit where limits lie far apart
 
 bool IsFinite(const KinematicState& s) noexcept {
   return std::isfinite(s.position) && std::isfinite(s.velocity) && std::isfinite(s.acceleration);
@@ -186,7 +186,7 @@ bool Planner::Solve(const KinematicState& from, double position, double end_velo
       position - from.position, from.velocity, bounds.jerk > 0 ? from.acceleration : 0, end_velocity,
       velocity_limit,           bounds};
   const double acceleration = std::max(bounds.up, bounds.down);
-  if (bounds.jerk < kNoJerk * acceleration) problem.bounds.jerk = std::min(bounds.jerk, kSteepest * acceleration);
+  if (bounds.jerk < kAbsurd * acceleration) problem.bounds.jerk = std::min(bounds.jerk, kSteepest * acceleration);
   const KinematicState target{position, end_velocity, 0};
   const Scale first = ScaleOf(MotionTime(problem), problem);
   if (!IsUsable(first)) return false;
@@ -197,22 +197,22 @@ bool Planner::Solve(const KinematicState& from, double position, double end_velo
     return SolveWithRuckig(InScale(problem, scale), solution) &&
            Build(from, target, problem, scale.time, first, solution, out);
   };
-  const auto solve_somehow = [&] {
+  const auto solve_at_a_scale = [&] {
     if (solve(first)) return true;
     if (!IsUsable(second) || !solve(second)) return false;
     ++counters_.second_scale;
     return true;
   };
-  // Most likely there is no room to reach the velocity limit: without it the solver cannot mistake a rounding for an
-  // excess. But the ramps may have failed by roundings alone, where limits lie far apart.
+  // Usually the ramps failed because the distance is too short to reach the velocity limit: with a larger limit the
+  // solver cannot mistake a rounding error for an excess. If they failed by rounding, the result exceeds the limit.
   if (StartsWithin(problem)) {
     problem.velocity_limit *= 2;
-    const bool found = solve_somehow();
+    const bool found = solve_at_a_scale();
     const Profile::Range range = found ? out.VelocityRange() : Profile::Range{};
     if (found && std::max(-range.min, range.max) <= velocity_limit * (1 + kFarApart)) return true;
     problem.velocity_limit = velocity_limit;
   }
-  return solve_somehow();
+  return solve_at_a_scale();
 }
 
 Status Planner::ToPosition(const KinematicState& from, double position, double end_velocity, const Limits& limits,

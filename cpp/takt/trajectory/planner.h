@@ -30,8 +30,8 @@ struct PlannerCounters {
 // the acceleration may step, also at the start.
 //
 // "Within" is to 1e-9 of the limit; to 1e-5 where limits lie further apart than those of drives (ramps of minutes and
-// jerk times of microseconds). A jerk of more than 1e9 times the acceleration a second is that. Speeds below 1e-9 of
-// limits.velocity count as standstill.
+// jerk times of microseconds). Jerk times below 1 ns count as 1 ns; below 1e-30 s planning may fail. Speeds below 1e-9
+// of limits.velocity count as standstill.
 //
 // Every call answers kParameter, `out` untouched, where a number is not finite, a limit is not positive (jerk:
 // negative), the end velocity lies beyond limits.velocity, or the result does not fit into a double. No call allocates

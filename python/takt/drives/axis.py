@@ -26,7 +26,7 @@ CODE_WITHIN_S = 0.2  # after the fault itself the error code is expected to have
 MANY_RESETS = 3
 RESTING_CYCLES = 3
 BRAKES_WITHIN_S = 2.0  # a drive whose homing is broken off
-LOST = 4  # times that step, as in the engine: an encoder that shows another place than before
+LOST = 4  # times the largest step: a jump of the position, as the engine judges it
 JUMP = 1.5  # times the largest step of the axis: a drive that counts from its reference now
 
 
@@ -97,7 +97,7 @@ class DriveAxis:
         self._resting = 0  # cycles
         self._absorbed = 0  # increments by which the drive's position has jumped when it was homed
         self._reference: int | None = None  # increments without those jumps: where the drive counts 0
-        self._off_first = False  # it has lost its reference: it is to be switched off before it homes anew
+        self._off_first = False  # the reference is lost: no homing before the axis has been switched off
         self._index_pulses = 0
         self._cycles = 0  # since something was heard
         self.mode = 0  # as last heard
@@ -249,7 +249,7 @@ class DriveAxis:
         return found
 
     def _lose_reference(self, step: int) -> None:
-        """Its position has jumped, so what it counts from is somewhere else."""
+        """Discards the reference of the drive after a jump of its position."""
         self._reference, self._off_first = None, True
         if self._homing is not None:
             self._homing.forget()

@@ -16,7 +16,7 @@ from takt.errors import TaktError
 
 KIND: Final = "canopen"
 DEFAULT_INTERFACE: Final = "socketcan"
-ECHOES: Final = ("udp_multicast",)  # bring back what was sent on them
+ECHOES: Final = ("udp_multicast",)  # return own messages, too
 ECHO_WITHIN_S: Final = 1.0
 WITHOUT_BIT_RATE: Final = ("virtual", "udp_multicast")  # no wire, so no bit rate either
 MISSING: Final = "CANopen needs the packages canopen and python-can: pip install 'takt-motion[canopen]'"
@@ -94,7 +94,7 @@ def _hint(name: BusName) -> str:
 
 
 class _Echoes:
-    """What was sent, on an interface that brings it back: else this end would hear another master."""
+    """Removes own messages that an interface returns; without it they look like those of another master."""
 
     def __init__(self, bus: Any) -> None:
         self._send = bus.send
@@ -108,7 +108,7 @@ class _Echoes:
         self._send(message, timeout)
 
     def take(self, message: Any) -> bool:
-        """Whether it is one of those, each once."""
+        """Returns whether the message is an own one; each is removed once."""
         data, since_s = bytes(message.data), time.monotonic() - ECHO_WITHIN_S
         with self._lock:
             while self._sent and self._sent[0][0] < since_s:

@@ -59,8 +59,8 @@ class EmulatedDrive:
         self.held_fault = 0  # this fault lasts: it cannot be reset
         self.never_ready = False  # the power stage never comes up
         self._counts = Unwrapped()  # of the encoder
-        self._increments = 0  # unwrapped: where the motor is, as the encoder shows it
-        self._slipped = 0  # increments by which the encoder shows another place than it did at the start
+        self._increments = 0  # unwrapped: position of the encoder
+        self._slipped = 0  # increments: offset of the encoder from the motor
         self._measured: dict[str, Any] = {}
         self.homing_velocities = [200_000, 20_000]  # 0x6099: to a switch, to its edge or an index pulse
         self._homed = self._homing_failed = False
@@ -105,7 +105,7 @@ class EmulatedDrive:
         self.machine.fault(code)
 
     def slip(self, increments: int) -> None:
-        """The encoder shows another place from now on, and the motor stands where it was."""
+        """Makes the position of the encoder jump; the motor does not move."""
         self._slipped += increments
 
     # --- motion ---

@@ -149,7 +149,7 @@ class Task:
         return after if self.fits(street, rows[street.index], after) else None
 
     def _passes_a_row(self, hop: Hop, a: Arrangement) -> bool:
-        """From a zone at one end of its street it would get to the other end, with movers in the row between."""
+        """Whether the hop leads from the zone at one end of a street past the movers in its row."""
         here = next(place for i, place in a.apart if i == hop.mover)
         street = self.streets[here.street]
         if not street.has_room or not a.rows[here.street]:

@@ -34,7 +34,7 @@ from takt.routing.surface import (
     orders_of,
 )
 from takt.routing.surface_journey import dynamics_of
-from takt.routing.traveller import ANSWER_S, Before, Traveller
+from takt.routing.traveller import Before, Traveller, answers_within
 
 if TYPE_CHECKING:
     from takt.mover import Mover
@@ -130,7 +130,7 @@ class SurfaceRouter:
         self._dynamics: dict[str, Any] = {}
         self._surface: tuple[object, ...] = ()
         self._seen_s = session.now
-        self._later_s = _answers_within(session)
+        self._later_s = answers_within(session, CYCLES * session.period)
         session.program(self.scan)
 
     # --- orders ---
@@ -611,9 +611,3 @@ def _place(raster: Raster, point: Point) -> int:
 
 def _are(names: Iterable[str]) -> str:
     return "is" if len(list(names)) == 1 else "are"
-
-
-def _answers_within(session: Session) -> float:
-    from takt.remote import RemoteSession
-
-    return ANSWER_S if isinstance(session, RemoteSession) else CYCLES * session.period

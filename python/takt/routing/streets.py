@@ -77,7 +77,7 @@ class Sweep:
 
 
 class Presence(NamedTuple):
-    """At a node, along the way: from where to where within its zones; the streets before and behind it, -1: none."""
+    """An interval within the zones of a node, along the route; the streets before and behind the node, -1: none."""
 
     node: int
     low: float  # mm, from the node
@@ -108,7 +108,7 @@ class Streets:
             )
             for i, t in enumerate(tracks)
         )
-        # By node: so much further on than a mover on another street one has to be behind it, and before it.
+        # By node, for streets that start and that end there: the largest lead between movers on two of them.
         self._leads: tuple[dict[int, float], dict[int, float]] = (defaultdict(float), defaultdict(float))
         for i, t in enumerate(tracks):
             for leads, node, lead in zip(self._leads, (starts[i], ends[i]), t.leads, strict=True):
@@ -254,7 +254,7 @@ class Streets:
 def read_streets(session: Session, gap: float, movers: Iterable[Mover] = ()) -> Streets:
     """Those of a session's machine file, with the links and lengths its engine has now.
 
-    movers: where these could touch each other with the gap, it is a larger one, as on their moves."""
+    movers: the gap is raised to the least one at which these clear each other on all tracks."""
     layout = TrackLayout(session.machine_text) if session.tracks else None
     if layout is None:
         raise RoutingError("the machine has no tracks")

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from takt.mover import Mover
     from takt.session import Session
 
-EFFORT = 3_000  # states that improvements look at, at least
-EFFORT_BY_MOVERS = 50  # times the square of their number: it is planned about as long as they gain on their way
-MOST_EFFORT = 500_000  # 2 to 5 s
+EFFORT = 3_000  # search states of the improvement, at least
+EFFORT_BY_MOVERS = 50  # times the square of the number of movers
+MOST_EFFORT = 500_000  # 2 to 5 s of planning
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Visit:
 
     place: int
     entry_s: float  # from here on it cannot rest before the place any more
-    left_s: float  # when it covers nothing of the place any more
+    left_s: float  # end of the visit: no part of the mover covers the place; of the last one: arrival
     before: tuple[int, int] | None  # mover and number of its visit that has to be over before
 
 
@@ -266,7 +266,7 @@ def make_plan(
         width=raster.width,
         height=raster.height,
         pitch=raster.pitch,
-        size=min(raster.pitch, max((max(extent_of(m)) for m in routed), default=0.0) + APART),
+        mover_size=min(raster.pitch, max((max(extent_of(m)) for m in routed), default=0.0) + APART),
         **limits,
         blocked=[not on or place in standing for place, on in enumerate(raster.free)],
         starts=start_places,

@@ -8,17 +8,16 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from takt import _core
 from takt.errors import TimeoutError
 from takt.feedback import DEFAULT_TIMEOUT_S
 from takt.routing.streets import RoutingError
 from takt.routing.surface import SurfacePlan, Targets, Visit, plan_surface
 from takt.routing.timetable import Leg, Timetable
-from takt.routing.traveller import ANSWER_S, Traveller
+from takt.routing.traveller import Traveller, answers_within
 
 if TYPE_CHECKING:
     from takt.session import Session
-
-EARLY_S = 0.002  # by which a mover takes a place before it has to: kEarly of routing/grid.h
 
 
 def dynamics_of(plan: SurfacePlan) -> dict[str, Any]:
@@ -35,12 +34,6 @@ def travellers_of(session: Session, plan: SurfacePlan) -> list[Traveller]:
         one.before = [None if visit.before is None else (made[visit.before[0]], visit.before[1]) for visit in visits]
         one.timetable = _timetable(plan, one.mover.name, visits)
     return made
-
-
-def _later(session: Session) -> float:
-    from takt.remote import RemoteSession
-
-    return ANSWER_S if isinstance(session, RemoteSession) else session.period - EARLY_S
 
 
 def _timetable(plan: SurfacePlan, name: str, visits: Sequence[Visit]) -> Timetable:
@@ -67,7 +60,8 @@ class SurfaceJourney:
         self._left = [one for one in self._all if one.directions]
         self._interrupted = False
         self._dynamics = dynamics_of(plan)
-        self._later_s = _later(session)
+        # The entries of a plan are early by surface_early_s already.
+        self._later_s = answers_within(session, session.period - _core.surface_early_s)
         for one in self._left:
             one.check_on_way()
 

@@ -4,9 +4,9 @@ moves.
 A place is its turn when the mover that visits it before has left it, or is ahead on its way straight through it, in the
 same lane: then it cannot be overtaken, and the guard beneath keeps both apart.
 
-With a timetable it sets out on a whole leg of its plan when all its places are expected to be free by the time it gets
-there, as late as everyone is by then: the plan's motion, without braking on the way. Where a place is not its turn when
-it could last stop before it, it brakes, and goes on by turns.
+With a timetable the mover starts a whole leg of its plan as soon as all places of the leg are expected to be free on
+arrival, given the present delays of the other movers: the motion of the plan, without braking. If a place is not
+granted at the last moment at which the mover can stop before it, it stops, and places are granted one by one then.
 
 A mover in an enabled group is sent only where others have left, so what it reserves there is free: else its command
 would be refused. From rest its commands are buffered ones, which wait; one further on that is refused while it moves
@@ -27,13 +27,14 @@ from takt.routing.timetable import Leg, Timetable
 
 if TYPE_CHECKING:
     from takt.mover import Mover
+    from takt.session import Session
 
 STANDS = 1e-3  # mm/s
 DYNAMICS = ("velocity", "acceleration", "jerk")
 COLLISION = 3024  # error number of a command that something is in the way of
 AGAIN = 8  # looks, until a command that was refused so is given again
-ANSWER_S = 0.1  # over LCM: until a mover does what it is told by what it was seen to do
-PATIENCE_S = 10.0  # for which a leg is put off as others are late; then it goes by turns
+ANSWER_S = 0.1  # over LCM: from an observed state to the effect of the command that answers it
+PATIENCE_S = 10.0  # a leg is put off by delays of others for no longer; then places are granted one by one
 Before = tuple["Traveller", int]  # a visit of another mover
 
 
@@ -89,7 +90,7 @@ class Traveller:
         return (self.mover.x - x) * dx + (self.mover.y - y) * dy
 
     def has_left(self, visit: int) -> bool:
-        """It covers nothing of that place any more, and goes on from it."""
+        """No part of the mover covers the place of this visit any more."""
         if self.passed != visit or visit == len(self.directions):
             return self.passed > visit
         pitch = math.dist(self.points[visit], self.points[visit + 1])
@@ -124,7 +125,7 @@ class Traveller:
     def go_on(self, dynamics: Mapping[str, Any], now_s: float = 0.0, later_s: float = 0.0) -> None:
         """Sends it straight on as far as it may go.
 
-        now_s: by the clock of the plan. later_s: so much later a command may be carried out."""
+        now_s: time since the start of the plan. later_s: most time until a command takes effect."""
         if self._pause > 0:
             self._pause -= 1
             return
@@ -163,7 +164,7 @@ class Traveller:
     def _goes_by_time(
         self, timetable: Timetable, leg: Leg, dynamics: Mapping[str, Any], now_s: float, later_s: float
     ) -> bool:
-        """On this leg, or waits for it. False: it goes by turns."""
+        """Starts and supervises the leg. False: places are granted one by one."""
         if timetable.late_s is None:
             begins_s = self._begins(timetable, leg, now_s)
             if not self.rests or self.passed != leg.first or begins_s == math.inf:
@@ -185,8 +186,8 @@ class Traveller:
         return True
 
     def _begins(self, timetable: Timetable, leg: Leg, now_s: float) -> float:
-        """When it can set out on its leg, s by the clock of the plan: everything on it is left by the time it gets
-        there. Infinite: nobody knows."""
+        """Returns the earliest start of the leg, in s since the start of the plan, at which each place is free on
+        arrival; inf if a mover that has to pass first has an unknown delay."""
         begins_s = -math.inf
         for visit in range(leg.first + 1, leg.last + 1):
             before = self.before[visit]
@@ -271,6 +272,13 @@ class Traveller:
         while visit < self.sent and math.dist(self.points[self.passed], self.points[visit]) < needed:
             visit += 1
         return visit
+
+
+def answers_within(session: Session, in_process_s: float) -> float:
+    """s until a command takes effect that answers an observed state."""
+    from takt.remote import RemoteSession
+
+    return ANSWER_S if isinstance(session, RemoteSession) else in_process_s
 
 
 def is_grouped(mover: Mover) -> bool:

@@ -22,7 +22,7 @@ SurfaceProblem Empty(int width, int height) {
   return {.width = width,
           .height = height,
           .pitch = kPitch,
-          .size = kPitch,
+          .mover_size = kPitch,
           .dynamics = kDynamics,
           .blocked = std::vector<bool>(static_cast<std::size_t>(width * height), false),
           .effort = 2'000};
@@ -219,7 +219,7 @@ class Checker {
     return point(at);
   }
   Box Swept(const Point& a, const Point& b) const {
-    const double half = (problem_.size - kRoom) / 2;
+    const double half = (problem_.mover_size - kRoom) / 2;
     return {std::min(a[0], b[0]) - half, std::min(a[1], b[1]) - half, std::max(a[0], b[0]) + half,
             std::max(a[1], b[1]) + half};
   }
@@ -306,7 +306,7 @@ TEST(Surface, RandomWorldsAreSafeAndCanBeCarriedOut) {
     const int width = 4 + static_cast<int>(random.Below(5)), height = 4 + static_cast<int>(random.Below(5));
     SurfaceProblem problem = Empty(width, height);
     problem.seed = random.Next();
-    if (trial % 2 == 1) problem.size = 40 + static_cast<double>(random.Below(80));
+    if (trial % 2 == 1) problem.mover_size = 40 + static_cast<double>(random.Below(80));
     if (trial % 3 == 0) {  // holes, with free borders so that all hangs together
       for (int y = 1; y + 1 < height; y += 2) {
         for (int x = 1; x + 1 < width; ++x)
@@ -377,7 +377,7 @@ TEST(Surface, SmallMoversGetIntoEachOthersPlacesEarlier) {
   problem.starts = RandomPlaces(problem, 16, random);
   problem.targets = RandomPlaces(problem, 16, random);
   const double large = PlanAndCheck(problem).sum;
-  problem.size = kPitch / 2;
+  problem.mover_size = kPitch / 2;
   EXPECT_LT(PlanAndCheck(problem).sum, 0.95 * large);
 }
 
