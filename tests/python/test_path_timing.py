@@ -34,15 +34,18 @@ class Case(NamedTuple):
     deviation: float
 
 
-def machine(points: Points, limits: Limits) -> str:
-    values = f"{{velocity: {limits.velocity!r}, acceleration: {limits.acceleration!r}, jerk: {limits.jerk!r}}}"
-    planned = values.replace("}", ", planned_ahead: true}")
-    axes = "".join(f"  - {{name: {name}, unit: mm, limits: {values}}}\n" for name in "xyz")
+def values(limits: Limits, choice: str = "") -> str:
+    return f"{{velocity: {limits.velocity!r}, acceleration: {limits.acceleration!r}, jerk: {limits.jerk!r}{choice}}}"
+
+
+def machine(points: Points, limits: Limits, choice: str = "", others: str = "") -> str:
+    path = values(limits, choice)
+    axes = "".join(f"  - {{name: {name}, unit: mm, limits: {values(limits)}}}\n" for name in "xyz")
     elements = "".join(f"      - {{shape: line, to: {{x: {x!r}, y: {y!r}, z: {z!r}}}}}\n" for x, y, z in points)
     return (
         f"name: gantry\naxes:\n{axes}groups:\n"
-        f"  - {{name: g, axes: [x, y, z], kinematics: {{gantry: {{axes: [x, y, z]}}}}, path: {planned}}}\n"
-        f"paths:\n  - name: p\n    elements:\n{elements}"
+        f"  - {{name: g, axes: [x, y, z], kinematics: {{gantry: {{axes: [x, y, z]}}}}, path: {path}}}\n"
+        f"paths:\n  - name: p\n    elements:\n{elements}{others}"
     )
 
 
@@ -177,6 +180,27 @@ def test_rounding_is_no_slower_than_stopping_however_small(leg: float, deviation
     assert took <= stopping + 3 * PERIOD
 
 
+BELT = "belts:\n  - {name: belt, axis: z}\n"
+
+
+@pytest.mark.parametrize(
+    ("choice", "others", "planned"), [("", "", True), (", planned_ahead: false", "", False), ("", BELT, True)]
+)
+def test_paths_that_stand_are_planned_ahead(choice: str, others: str, planned: bool) -> None:
+    """GR-41: unless chosen otherwise; a staircase then takes no longer than with stops."""
+    case = stairs(25.4, 0.05, 15)
+    with takt.Engine(machine(case.points, case.limits, choice, others)) as session:
+        group = session.group("g")
+        group.power().wait()
+        group.enable().wait()
+        began = session.now
+        group.move_path(path="p", transition_mode="max_corner_deviation", transition_parameter=case.deviation).wait(
+            timeout=20
+        )
+        took = session.now - began
+    assert (took < 3.1) == planned, took
+
+
 def test_an_interrupt_is_answered_soon_and_goes_on_to_the_end() -> None:
     """GR-40: on a staircase, at every instant of one step."""
     case = stairs(25.4, 0.05, count=3)
@@ -195,6 +219,67 @@ def test_an_interrupt_is_answered_soon_and_goes_on_to_the_end() -> None:
         check_limits(case, recording)
     # From full speed the ramp takes 0.1 s.
     assert longest <= 0.15
+
+
+def less_machine(rng: np.random.Generator, limits: Limits) -> tuple[str, dict[str, Limits]]:
+    """A gantry whose axes have from a third to three times what the path has, of jerk down to a tenth."""
+    of = {
+        name: Limits(
+            float(limits.velocity * 10 ** rng.uniform(-0.5, 0.5)),
+            float(limits.acceleration * 10 ** rng.uniform(-0.5, 0.5)),
+            float(limits.jerk * 10 ** rng.uniform(-1, 0.5)),
+        )
+        for name in "xyz"
+    }
+    axes = "".join(f"  - {{name: {name}, unit: mm, limits: {values(one)}}}\n" for name, one in of.items())
+    group = f"name: g, axes: [x, y, z], kinematics: {{gantry: {{axes: [x, y, z]}}}}, path: {values(limits)}"
+    return f"name: gantry\naxes:\n{axes}groups:\n  - {{{group}}}\n", of
+
+
+@pytest.mark.parametrize("seed", [303, *range(1000 if LONG else 20)])
+def test_axes_with_less_than_the_path_keep_their_limits(seed: int) -> None:
+    """GR-40: moves that differ in speed, acceleration and jerk, with and without stops, disturbed at random instants."""
+    rng = np.random.default_rng(seed)
+    case = random_case(rng, least_leg=1)
+    text, of = less_machine(rng, case.limits)
+    stops = rng.integers(0, 3) == 0
+    with takt.Engine(text) as session:
+        group = session.group("g")
+        group.power().wait()
+        group.enable().wait()
+        with session.record("g", "x", "y", "z") as recorder:
+            for i, (x, y, z) in enumerate(case.points):
+                given: dict[str, object] = {"velocity": float(case.limits.velocity * rng.uniform(0.05, 1))}
+                if rng.random() < 0.3:
+                    given["acceleration"] = float(case.limits.acceleration * rng.uniform(0.2, 1))
+                if rng.random() < 0.3:
+                    given["jerk"] = float(case.limits.jerk * rng.uniform(0.2, 1))
+                if i > 0 and (stops or rng.random() < 0.1):
+                    given["buffer_mode"] = "buffered"
+                elif i > 0:
+                    given["buffer_mode"] = "blending_" + str(rng.choice(["low", "previous", "next", "high"]))
+                    given |= {"transition_mode": "max_corner_deviation", "transition_parameter": case.deviation}
+                done = group.move_linear_absolute(x=x, y=y, z=z, **given)  # type: ignore[arg-type]
+            for _ in range(6 if seed % 2 else 0):
+                session.run(float(rng.integers(1, 200)) * PERIOD)
+                if group.state != "GroupMoving":
+                    break
+                if rng.integers(0, 2):
+                    group.interrupt().wait(timeout=60)
+                    session.run(float(rng.integers(1, 100)) * PERIOD)
+                    group.continue_path()
+                else:
+                    group.set_override(velocity_factor=float(rng.choice([0, rng.uniform(0.05, 1)])))
+            group.set_override(velocity_factor=1.0)
+            done.wait(timeout=200)
+        recording = recorder.recording
+    for name, limits in of.items():
+        axis = recording[name]
+        assert np.abs(axis["set_velocity"]).max() <= WITHIN * limits.velocity
+        assert np.abs(axis["set_acceleration"]).max() <= WITHIN * limits.acceleration
+        assert np.abs(np.diff(axis["set_position"], 3)).max() <= (1 + 1e-4) * limits.jerk * PERIOD**3
+    assert np.abs(recording["g"]["path_acceleration"]).max() <= WITHIN * case.limits.acceleration
+    assert off_path(case.points, recording) <= (0 if stops else case.deviation) + 1e-3
 
 
 # --- with everything else ---

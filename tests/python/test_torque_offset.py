@@ -116,7 +116,8 @@ def test_a_delta_in_mujoco_follows_better_with_it() -> None:
             return max(found), float(engine.plant.built.inertia[0])  # type: ignore[union-attr]
 
     groups = [{name: value for name, value in group.items() if name != "paths"} for group in DELTA["groups"]]
-    bare = {name: value for name, value in DELTA.items() if name != "paths"} | {"groups": groups}
+    axes = [{**axis, "supervision": {**axis["supervision"], "deviation_moving": 1.0}} for axis in DELTA["axes"]]
+    bare = {name: value for name, value in DELTA.items() if name != "paths"} | {"axes": axes, "groups": groups}
     before, inertia = errors(bare)
     offset = {
         "inertia": inertia * math.radians(1),

@@ -68,7 +68,7 @@ double CarrierTravelAt(void* owner, std::uint32_t number, double position) noexc
 }  // namespace
 
 group::Carriers CarriersFor(Rider& rider) noexcept {
-  return {FindCarrier, CarrierAt, CarrierTravelAt, &rider};
+  return {FindCarrier, CarrierAt, CarrierTravelAt, &rider, !rider.world->pick_places.empty()};
 }
 
 }  // namespace takt::engine

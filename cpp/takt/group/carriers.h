@@ -18,6 +18,7 @@ struct Carriers {
   // without an axis: where the travel is now.
   double (*travel_at)(void* owner, std::uint32_t carrier, double position) noexcept = nullptr;
   void* owner = nullptr;
+  bool modules = false;  // pick and place modules are there, which want to know how long their orders take
 
   std::uint32_t Find(std::string_view name) const noexcept { return find ? find(owner, name) : 0; }
   kinematics::Carrier At(std::uint32_t carrier) const noexcept {

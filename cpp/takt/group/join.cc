@@ -236,6 +236,10 @@ bool GoOnFromLastCorner(const Context& c, const State& s, const CornerBlend& d, 
   Stretch blend = d.stretch;
   const double middle = line.length / 2;
   if (d.first < middle && d.second < ahead.next.segment.length / 2) return false;  // it is the deviation that counts
+  // A corner that two ramps pass, overlapped, sooner than one speed: no curvature to keep up.
+  const double overlap_s =
+      path::Overlap(line, ahead.next.segment, std::min(middle, d.second), RampOf(c, ahead[last_one], ahead.next));
+  if (std::isfinite(overlap_s)) return false;
   const auto bend = path::BendBetween(ahead.corner.first, line, ahead.next.segment);
   if (!bend) return false;
   Stretch last = ahead[last_one];

@@ -22,8 +22,8 @@ void describe(Description<PathLimits>& d) {
   d.defaulted<&L::deceleration>(unit::mm_s2, kAccelerations, "Largest deceleration; unset: as the acceleration.");
   d.required<&L::jerk>(unit::mm_s3, kJerks, "Largest jerk.");
   d.defaulted<&L::planned_ahead>(
-      "Whether paths that stand are planned ahead, as fast as their exact limits allow; false: as the mean of a motion "
-      "whose acceleration may step.");
+      "Whether paths that stand are planned ahead, as fast as their exact limits allow; false: they are timed as the "
+      "mean of a motion whose acceleration may step.");
 }
 
 void describe(Description<ToolLimits>& d) {

@@ -19,7 +19,7 @@ struct PathLimits {
   double acceleration = 0;               // mm/s²
   std::optional<double> deceleration{};  // mm/s²; unset: as acceleration
   double jerk = 0;                       // mm/s³
-  bool planned_ahead = false;            // by laws that are known to rest (trajectory/path_timing.h)
+  bool planned_ahead = true;             // by laws that are known to rest (trajectory/path_timing.h)
 };
 
 // Of the tool along X, Y and Z and about them, seen from the world; unset: none but those of the axes.

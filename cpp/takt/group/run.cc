@@ -191,14 +191,19 @@ bool IsTimed(const Context& c, const Request& move, const Stretch& stretch) noex
 void BeginTiming(const Context& c, State& s) noexcept {
   c.ahead.timing.Clear();
   if (!c.params.path.planned_ahead || Jogs(s) || s.master.axis != 0 || s.track.ticket != 0) return;
-  // A move onto what moves may follow.
-  if (std::ranges::any_of(s.cargoes, [](const Cargo& cargo) { return cargo.carrier != 0; })) return;
-  for (std::uint64_t i = c.ahead.first; i < c.ahead.end(); ++i) {
-    if (IsCarried(c.ahead, c.ahead[i]) || (c.ahead[i].stops && i + 1 < c.ahead.end())) return;
-  }
-  for (std::uint64_t i = s.done; i < s.done + s.queue.count; ++i) {
+  // All that is gone before the next stop.
+  std::uint64_t behind = s.done + 1;
+  while (behind < s.done + s.queue.count && MoveAt(s, behind).blends()) ++behind;
+  // How long it takes is known to the next stop only, and a module wants to know it to the end of its order.
+  const bool to_the_end = c.carriers.modules;
+  if (to_the_end && behind == s.done + 1 && behind < s.done + s.queue.count) return;
+  for (std::uint64_t i = s.done; i < behind; ++i) {
     const Request& move = MoveAt(s, i);
-    if (move.cargo.carrier != 0 || move.master != 0 || (!move.blends() && i > s.done)) return;
+    if (move.cargo.carrier != 0 || move.master != 0) return;
+  }
+  for (std::uint64_t i = c.ahead.first; i < c.ahead.end() && c.ahead[i].move < behind; ++i) {
+    if (IsCarried(c.ahead, c.ahead[i])) return;
+    if (to_the_end && c.ahead[i].stops && i + 1 < c.ahead.end() && c.ahead[i + 1].move < behind) return;
   }
   c.ahead.timing.Begin(s.pace);
 }

@@ -11,7 +11,7 @@ void LetGoOfMembers(const Context& c, State& s) noexcept;
 
 // Returns whether PathTiming can time a move: it is not carried and follows no master.
 bool IsTimed(const Context& c, const Request& move, const Stretch& stretch) noexcept;
-// At rest, before a motion: starts PathTiming if the group plans ahead and all that is known of the path is such.
+// At rest, before a motion: starts PathTiming if the group plans ahead and all before the next stop is such.
 void BeginTiming(const Context& c, State& s) noexcept;
 
 // The next set points of the members; ends moves that are over. False: the axes cannot be there, nothing was set.

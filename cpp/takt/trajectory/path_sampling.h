@@ -22,6 +22,8 @@ inline constexpr double kBend = 0.02;
 // How far the mean of the acceleration between two nodes may be from that of the parabola through both and their
 // middle.
 inline constexpr double kHidden = 0.002;
+// The same for the rate of this change, as a share of the limit of jerk.
+inline constexpr double kHiddenRate = 0.02;
 inline constexpr int kHalvings = 12;
 inline constexpr int kHalvingsForHidden = 5;
 }  // namespace sampling
@@ -125,7 +127,12 @@ bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limi
           (before_it + 4 * in_it + behind) / 6 - (next.slopes.first[k] - before.slopes.first[k]) / step;
       const double half =
           (5 * before_it + 8 * in_it - behind) / 24 - (middle.slopes.first[k] - before.slopes.first[k]) / step;
-      linear = std::max(std::abs(whole), std::abs(half)) * square <= c::kHidden * limits.of[k].acceleration;
+      // A cubic that is 0 at all three places is 16 times as steep at the ends as its mean over a half is far from 0.
+      // What is passed within a cycle is no finer than the set points.
+      double most = c::kHidden * limits.of[k].acceleration;
+      const double passing_s = step / std::sqrt(square);
+      if (passing_s > period_s) most = std::min(most, c::kHiddenRate / 16 * limits.of[k].jerk * passing_s);
+      linear = std::max(std::abs(whole), std::abs(half)) * square <= most;
     }
     if (linear || i == c::kHalvings) {
       next.middle = middle.slopes.second;

@@ -7,7 +7,8 @@ namespace takt::trajectory {
 
 namespace {
 
-constexpr double kLead_s = 0.012;         // from the order of a plan to its start
+constexpr double kLead_s = 0.004;         // from the order of a plan to its start, at least ...
+constexpr std::uint64_t kOfLastPlan = 2;  // ... and so many times as long as the last one took
 constexpr std::uint64_t kMostLead = 400;  // cycles
 constexpr std::uint64_t kOrderAgain = 8;  // cycles after one that failed
 constexpr double kRenew_s = 0.4;          // before a law ends, if the path does not ...
@@ -73,7 +74,7 @@ void PathTiming::KeepPlanTo(double place) noexcept {
 void PathTiming::Begin(const PathPace& pace) noexcept {
   Clear();
   active_ = true;
-  late_ = tick_ = wait_until_ = ordered_ = 0;
+  late_ = took_ = tick_ = wait_until_ = ordered_ = 0;
   Take(Profile(pace.now), 1);
 }
 
@@ -251,7 +252,8 @@ double PathTiming::BrakesTo(const PathWindow& window, const PathPace& pace) cons
 }
 
 bool PathTiming::Order(const PathWindow& window, double factor, const PathPace& pace) noexcept {
-  const std::uint64_t lead = std::max(late_, static_cast<std::uint64_t>(std::ceil(kLead_s / period_s_)));
+  const auto least = static_cast<std::uint64_t>(std::ceil(kLead_s / period_s_));
+  const std::uint64_t lead = std::clamp(kOfLastPlan * took_, std::max(late_, least), std::max(kMostLead, least));
   const KinematicState begin = StateAt(tick_ + lead);
   const std::uint64_t node = NodeAt(window, pace.node, begin.position);
   if (!next_.course.Take(window, node, begin, StopBehind(window, pace.node), factor)) return false;
@@ -326,6 +328,7 @@ void PathTiming::TakePlan(std::uint64_t number) noexcept {
   MakePlan();
   maker_->order.store(OrderState::kNone, std::memory_order_relaxed);
   planning_ = false;
+  took_ = tick_ - ordered_;
   if (dropped_) return;
   const PathPlanStatus status = maker_->status;
   const bool found = status == PathPlanStatus::kPlanned || status == PathPlanStatus::kScaled;

@@ -116,6 +116,7 @@ class PathTiming {
   double known_to_ = 0;           // arc length up to which the path is as it was when the plan was ordered [mm]
   std::uint64_t ordered_ = 0;     // tick
   std::uint64_t late_ = 0;        // lead of the next order [ticks], as the last plan came too late; 0: the usual one
+  std::uint64_t took_ = 0;        // ticks from the last order to its plan
   std::uint64_t wait_until_ = 0;  // tick of the next order
 };
 

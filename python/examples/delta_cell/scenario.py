@@ -80,9 +80,10 @@ def verify(recording: takt.Recording) -> None:
     expect.follows_path(recording, "robot", path, CORNERS + 0.001, window=window)
     expect.follows_path(recording, "robot", path, 0.4, actual=True, window=window)
     expect.stays(recording, "robot.path_error < 0.5", window=window)
-    # It stops at no corner. All of the path is tried before it begins.
+    # It stops at no corner: jerk and bound leave 9 mm/s at the sharpest, of 150 deg. All of the path is tried before it
+    # begins.
     for begin, end in ((at[BEGINS] + 0.5, at[INTERRUPTED]), (at[GOES_ON] + 0.05, at[ENDS])):
-        expect.stays(recording, "robot.velocity > 10", window=(begin, end - 0.05))
+        expect.stays(recording, "robot.velocity > 5", window=(begin, end - 0.05))
     for axis in ("arm_1", "arm_2", "arm_3"):
         expect.within_limits(recording, axis)
         expect.continuous(recording, axis)

@@ -83,14 +83,15 @@ KDL::Vector OnPath(const Rig& rig) {
   return path::PointAt(stretch.segment, stretch.from + rig.state.pace.now.position - stretch.begin).frame.p;
 }
 
-// Once the speed is reached it is kept to where the motion brakes for the end; both no further than this.
-void ExpectNoDip(const Rig& rig, double speed, double length, double ramp) {
+// Once the speed is reached it is kept, but for a share of it, to where the motion brakes for the end; both no further
+// than this.
+void ExpectNoDip(const Rig& rig, double speed, double length, double ramp, double share = 1e-6) {
   double gone = 0, slowest = 1e99;
   for (const Sample& sample : rig.trace) {
     gone += sample.out.velocity * rig.cycle.period_s;
     if (gone > ramp && gone < length - ramp) slowest = std::min(slowest, sample.out.velocity);
   }
-  EXPECT_GE(slowest, speed * (1 - 1e-6));
+  EXPECT_GE(slowest, speed * (1 - share));
 }
 
 // Of all that is planned: tangent and curvature go on from one stretch to the next.
@@ -169,7 +170,8 @@ TEST(ChordPaths, OnCircles) {
                                           .transition_parameter = 0.1});
     ASSERT_TRUE(rig.RunToEnd(move, 20));
     ExpectSmooth(rig);
-    ExpectNoDip(rig, one.speed, LengthOf(points), 30);
+    // On the largest the axes are at their limits, of which plans keep 1 % for what is between their knots.
+    ExpectNoDip(rig, one.speed, LengthOf(points), 30, 0.015);
   }
 }
 
