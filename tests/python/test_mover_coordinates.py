@@ -453,7 +453,9 @@ def test_whatever_movers_are_told_they_keep_apart_on_the_stators_and_within_thei
     surface: dict[str, Any] = {"tracks": [LINE]}
     if where == "parts":
         surface |= ON_PARTS
-        surface["tracks"] = [{**LINE, "part": "floor", "elements": [{"from": {"x": 60, "y": 200}, "to": {"x": 900, "y": 200}}]}]
+        surface["tracks"] = [
+            {**LINE, "part": "floor", "elements": [{"from": {"x": 60, "y": 200}, "to": {"x": 900, "y": 200}}]}
+        ]
     elif where != "plane":
         wait = {"moves_wait": True} if where.startswith("patient") else {}
         surface |= {
@@ -634,7 +636,11 @@ def test_halt_on_track_leaves_what_does_not_move_along_it() -> None:
     a = engine.mover("a")
     a.join_track(track="t").wait()
     with engine.record() as recorder:
-        move, lift, turn = a.move_on_track(position=850, velocity=800), a.move_z(position=5, velocity=4), a.move_c(position=9, velocity=9)
+        move, lift, turn = (
+            a.move_on_track(position=850, velocity=800),
+            a.move_z(position=5, velocity=4),
+            a.move_c(position=9, velocity=9),
+        )
         then = a.move_on_track(position=100, buffer_mode="buffered")
         engine.run(0.25)
         speed, at = a.track_velocity, a.track_position

@@ -15,8 +15,7 @@ namespace {
 bool TookOver(Ticket ticket, const State& s) {
   const bool alone = s.external.mode == SetpointMode::kAbsolute;
   const auto has = [&](Slot slot) { return s.tickets[slot] == ticket; };
-  return ticket != 0 &&
-         (has(kPlane) || has(kMoveX) || has(kMoveY) || has(kHaltOnTrack) || (alone && has(kExternal)));
+  return ticket != 0 && (has(kPlane) || has(kMoveX) || has(kMoveY) || has(kHaltOnTrack) || (alone && has(kExternal)));
 }
 
 bool HasGoodNumbers(const Command& command) {
@@ -53,15 +52,16 @@ bool MayWait(const Context& c, const Command& command) {
   if (group == 0 || !c.grounds.grounds[group - 1].waits) return false;
   return std::visit(
       []<typename T>(const T&) {
-        return kIsOneOf<T, MoveToPosition, MoveX, MoveY, MoveRelativeX, MoveRelativeY, MoveOnTrack, JoinTrack, LeaveTrack>;
+        return kIsOneOf<T, MoveToPosition, MoveX, MoveY, MoveRelativeX, MoveRelativeY, MoveOnTrack, JoinTrack,
+                        LeaveTrack>;
       },
       command);
 }
 
 // What a mover is told whatever its part does; the rest would move it.
 template <typename T>
-constexpr bool kAlways = kIsOneOf<T, Enable, Disable, Reset, Halt, HaltX, HaltY, HaltZ, HaltA, HaltB, HaltC, HaltOnTrack,
-                                  StopExternalSetpointGeneration, Wait, Release>;
+constexpr bool kAlways = kIsOneOf<T, Enable, Disable, Reset, Halt, HaltX, HaltY, HaltZ, HaltA, HaltB, HaltC,
+                                  HaltOnTrack, StopExternalSetpointGeneration, Wait, Release>;
 
 }  // namespace
 

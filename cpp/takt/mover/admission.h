@@ -69,9 +69,8 @@ trajectory::Limits LimitsOf(const Move& m, const Params& params, LimitedBy& limi
 }
 
 // Along tracks with these limits; as vectors in the plane acceleration and jerk keep the mover's maxima.
-inline planar::Pace PaceOf(
-    const MoverParams& params, const trajectory::Limits& limits,
-    DynamicsReduction reduction = DynamicsReduction::kAccelerationLimitedVelocity) noexcept {
+inline planar::Pace PaceOf(const MoverParams& params, const trajectory::Limits& limits,
+                           DynamicsReduction reduction = DynamicsReduction::kAccelerationLimitedVelocity) noexcept {
   const trajectory::Limits most = params.xy.maximum.limits();
   const double acceleration = std::max(most.acceleration, most.deceleration);
   const double lateral = reduction == DynamicsReduction::kNone ? acceleration : params.lateral();

@@ -18,17 +18,16 @@ using trajectory::Profile;
 
 namespace {
 
-constexpr double kRoom = 0.1;    // mm: to within so much it uses the room there is
-constexpr double kLittle = 1;    // mm: less room than that is none
-constexpr int kDoublings = 31;   // of kLittle, up to kFar
+constexpr double kRoom = 0.1;   // mm: to within so much it uses the room there is
+constexpr double kLittle = 1;   // mm: less room than that is none
+constexpr int kDoublings = 31;  // of kLittle, up to kFar
 
 // What X or Y may have by itself.
 PlaneParams ParamsOfEach(const PlaneParams& p) {
   const auto as = [](const Limits& l) { return Dynamics{l.velocity, l.acceleration, l.deceleration, l.jerk}; };
   const Limits most = LimitsOfEach(p.maximum.limits()), standard = StandardOf(p);
-  return {as(most),
-          as({std::min(standard.velocity, most.velocity), std::min(standard.acceleration, most.acceleration),
-              std::min(standard.deceleration, most.deceleration), std::min(standard.jerk, most.jerk)})};
+  return {as(most), as({std::min(standard.velocity, most.velocity), std::min(standard.acceleration, most.acceleration),
+                        std::min(standard.deceleration, most.deceleration), std::min(standard.jerk, most.jerk)})};
 }
 
 KinematicState& Of(PlaneState& at, Coordinate which) {
@@ -277,7 +276,8 @@ constexpr Slot kSlotOfEndless[] = {kMoveX, kMoveY, kMoveC};
 
 bool PlanToGoals(const Context& c, const PlaneState& from, PlaneMove& move) noexcept {
   Profile x, y;
-  if (!PlanToGoal(c.planner, from.x, move.goals[0], x) || !PlanToGoal(c.planner, from.y, move.goals[1], y)) return false;
+  if (!PlanToGoal(c.planner, from.x, move.goals[0], x) || !PlanToGoal(c.planner, from.y, move.goals[1], y))
+    return false;
   move.motion = MotionOfEach(x, y);
   return true;
 }

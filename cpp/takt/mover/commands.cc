@@ -212,11 +212,13 @@ void describe(Description<MoveVelocityC>& d) {
   DescribeVelocity(d, unit::deg_s, unit::deg_s2, unit::deg_s3);
 }
 void describe(Description<HaltX>& d) {
-  d.about("Brings X to rest; Y and all others go on. A move of both, or of C with them, ends: all of it comes to rest.");
+  d.about(
+      "Brings X to rest; Y and all others go on. A move of both, or of C with them, ends: all of it comes to rest.");
   DescribeHalt(d, unit::mm_s2, unit::mm_s3);
 }
 void describe(Description<HaltY>& d) {
-  d.about("Brings Y to rest; X and all others go on. A move of both, or of C with them, ends: all of it comes to rest.");
+  d.about(
+      "Brings Y to rest; X and all others go on. A move of both, or of C with them, ends: all of it comes to rest.");
   DescribeHalt(d, unit::mm_s2, unit::mm_s3);
 }
 void describe(Description<HaltZ>& d) {

@@ -223,8 +223,8 @@ struct MoveOnTrack {
   Name track{};                 // empty: that where the mover is
   std::optional<double> gap{};  // mm to the mover ahead, from centre to centre
   TurnDirection direction = TurnDirection::kNonModulo;
-  std::uint32_t additional_turns = 0;    // of a closed loop; positive, negative
-  double modulo_tolerance = 0;           // mm, of a closed loop
+  std::uint32_t additional_turns = 0;  // of a closed loop; positive, negative
+  double modulo_tolerance = 0;         // mm, of a closed loop
   DynamicsReduction dynamics_reduction = DynamicsReduction::kAccelerationLimitedVelocity;
   std::optional<double> velocity{};      // mm/s
   std::optional<double> acceleration{};  // mm/s²
@@ -316,11 +316,12 @@ struct JoinFormation {
 };
 struct LeaveFormation {};
 
-using Command =
-    std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC, JoinTrack,
-                 LeaveTrack, MoveOnTrack, AdoptTrackOrientation, StartExternalSetpointGeneration, SetExternalSetpoint,
-                 StopExternalSetpointGeneration, Wait, Release, AddToGroup, RemoveFromGroup, GearInPosOnTrack,
-                 GearInPosOnTrackWithMasterMover, JoinFormation, LeaveFormation, MoveX, MoveY, MoveRelativeX, MoveRelativeY, MoveRelativeC, MoveVelocityX, MoveVelocityY, MoveVelocityC, HaltX, HaltY, HaltZ, HaltA, HaltB, HaltC, HaltOnTrack>;
+using Command = std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC,
+                             JoinTrack, LeaveTrack, MoveOnTrack, AdoptTrackOrientation, StartExternalSetpointGeneration,
+                             SetExternalSetpoint, StopExternalSetpointGeneration, Wait, Release, AddToGroup,
+                             RemoveFromGroup, GearInPosOnTrack, GearInPosOnTrackWithMasterMover, JoinFormation,
+                             LeaveFormation, MoveX, MoveY, MoveRelativeX, MoveRelativeY, MoveRelativeC, MoveVelocityX,
+                             MoveVelocityY, MoveVelocityC, HaltX, HaltY, HaltZ, HaltA, HaltB, HaltC, HaltOnTrack>;
 
 template <typename T, typename... Kinds>
 inline constexpr bool kIsOneOf = (std::is_same_v<T, Kinds> || ...);

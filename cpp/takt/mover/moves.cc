@@ -253,9 +253,7 @@ Answer HaltTurn(const Given& g, const MoveC& command) {
   const KinematicState from = Now(g.c, move);
   const CoordinateParams params = ParamsOf(g.c, s, kOthers.size() - 1);
   move.begin = g.c.cycle.count;
-  const auto plan = [&](const Limits& limits) {
-    return PlanRest(g.c.planner, from, limits, params, move.profile);
-  };
+  const auto plan = [&](const Limits& limits) { return PlanRest(g.c.planner, from, limits, params, move.profile); };
   const bool soft = plan(LimitsOf(command, params, s.limited_by)) && !WhyNotTurning(g, move).status.failed();
   if (!soft && !plan(params.maximum.limits())) return Refused(ErrorId::kPlanning);
   return PutTurn(g, move, {});

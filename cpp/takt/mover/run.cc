@@ -198,8 +198,8 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
     return;
   }
   // As hard as it can it stays within what it has reserved.
-  const bool hard =
-      !plane || InTheWay(c, rest.plane, rest.others.back(), IsOnTrack(s)) || LeadsAway(c, *plane, rest.others.back(), s);
+  const bool hard = !plane || InTheWay(c, rest.plane, rest.others.back(), IsOnTrack(s)) ||
+                    LeadsAway(c, *plane, rest.others.back(), s);
   if (plane && hard) rest = PlanRest(c, nullptr, s);
   // As the guard knows it.
   if (hard && !IsOnTrack(s) && s.escape.cycle == c.cycle.count) {

@@ -44,7 +44,7 @@ struct PlaneMove {
   MoveToPosition next;      // with all its dynamics
   bool each = false;        // X and Y move each by itself, to their goals
   std::array<Goal, 2> goals{};
-  bool turns = false;       // C belongs to it
+  bool turns = false;  // C belongs to it
   trajectory::Limits limits;
   bool tried = false;   // whether it can go round a corner has been looked at
   bool passes = false;  // it goes round a corner at its end: what is buffered next takes over where it ends
@@ -73,10 +73,10 @@ struct CoordinateMove {
 // A move of X, Y or C by velocity: as far as there is room.
 struct Endless {
   bool on = false;
-  bool reached = false;              // its velocity, as said
-  double velocity = 0;               // mm/s, deg/s
-  ErrorId end = ErrorId::kNone;      // why it ends where it does
-  ObjectInfo object{};               // that is in its way there
+  bool reached = false;          // its velocity, as said
+  double velocity = 0;           // mm/s, deg/s
+  ErrorId end = ErrorId::kNone;  // why it ends where it does
+  ObjectInfo object{};           // that is in its way there
 };
 inline constexpr std::array kEndless = {kX, kY, kC};
 

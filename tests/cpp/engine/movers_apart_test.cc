@@ -200,7 +200,8 @@ class RandomWorld {
         break;
       case 27:
         if (Whole(0, 1)) rig.Give(mover, "move_velocity_c", "{velocity: " + Number(Uniform(-300, 300)) + "}");
-        Whole(0, 1) ? rig.Give(mover, "halt_c", "{deceleration: 99}") : rig.Give(mover, "move_relative_c", "{distance: 9}");
+        Whole(0, 1) ? rig.Give(mover, "halt_c", "{deceleration: 99}")
+                    : rig.Give(mover, "move_relative_c", "{distance: 9}");
         break;
       default:
         rig.Give(mover, "move_on_track",
