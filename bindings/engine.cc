@@ -369,6 +369,15 @@ class VirtualEngine {
     return list;
   }
 
+  // Numbers of the tracks, from 0, that a mover is to go along.
+  py::typing::List<std::size_t> MoverTrail(std::size_t mover) {
+    const auto lock = Lock();
+    if (mover >= engine_.machine().movers.size()) throw std::out_of_range("no such mover");
+    py::typing::List<std::size_t> list;
+    for (const std::uint32_t track : engine_.mover_trail(mover).all()) list.append(track);
+    return list;
+  }
+
   // Of the way as it is now: x, y and the direction in deg.
   TrackRow TrackAt(std::size_t track, double s) {
     const auto lock = Lock();
@@ -673,6 +682,7 @@ void BindEngine(py::module_& m) {
       .def("take_hashes", &E::TakeHashes)
       .def("belt_objects", &E::BeltObjects, py::arg("belt"))
       .def("track_shape", &E::TrackShape, py::arg("track"))
+      .def("mover_trail", &E::MoverTrail, py::arg("mover"))
       .def("mover_history", &E::MoverHistory, py::arg("mover"))
       .def("track_at", &E::TrackAt, py::arg("track"), py::arg("s"))
       .def("track_closest_to", &E::TrackClosestTo, py::arg("track"), py::arg("x"), py::arg("y"))

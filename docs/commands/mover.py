@@ -1,8 +1,8 @@
 """Planar movers.
 
 A mover floats over stators and moves in six coordinates ([what it does](../../docs/movers.md)). Here it goes to a place
-and, in the middle of that, to another one, turns where it stands, follows set points from outside, and goes along a
-track, on which another one goes along with it; then both move as one body.
+and, in the middle of that, to another one, turns where it stands, follows set points from outside, moves X and Y each
+by itself, and goes along a track, on which another one goes along with it; then both move as one body.
 """
 
 import takt
@@ -19,6 +19,21 @@ COMMANDS = (
     "mover.move_a",
     "mover.move_b",
     "mover.move_c",
+    "mover.move_x",
+    "mover.move_y",
+    "mover.move_relative_x",
+    "mover.move_relative_y",
+    "mover.move_relative_c",
+    "mover.move_velocity_x",
+    "mover.move_velocity_y",
+    "mover.move_velocity_c",
+    "mover.halt_x",
+    "mover.halt_y",
+    "mover.halt_z",
+    "mover.halt_a",
+    "mover.halt_b",
+    "mover.halt_c",
+    "mover.halt_on_track",
     "mover.join_track",
     "mover.leave_track",
     "mover.move_on_track",
@@ -72,6 +87,13 @@ def scenario(session: takt.Session) -> None:
     last = shuttle.move_to_position(x=60, y=60, buffer_mode="buffered")
     shuttle.release()
     last.wait()
+    session.mark("x and y each by itself")
+    shuttle.move_velocity_x(velocity=200).wait(until="reached")
+    shuttle.move_relative_y(distance=60).wait()
+    shuttle.halt_x().wait()
+    shuttle.move_x(position=60)
+    shuttle.move_y(position=60).wait()
+    session.wait(lambda: shuttle.x == 60, 5)
     session.mark("along a track")
     session.track("line").enable().wait()
     shuttle.join_track(track="line", use_orientation=False).wait()

@@ -300,6 +300,9 @@ class Engine(Session):
     def _history(self, mover: Mover) -> Iterable[tuple[Any, ...]]:
         return self._core.mover_history(list(self.movers).index(mover.name))
 
+    def _trail(self, mover: Mover) -> Iterable[int]:
+        return self._core.mover_trail(list(self.movers).index(mover.name))
+
     def _track_at(self, track: Track, s: float) -> tuple[float, float, float, float]:
         return self._core.track_at(list(self.tracks).index(track.name), s)
 

@@ -9,6 +9,7 @@ from takt.component import Component
 from takt.errors import TaktError
 from takt.feedback import FeedbackState
 from takt.tables import named
+from takt.trail import TrackTrail
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,12 @@ class Mover(Component, MoverCommands, MoverOutputs):
     def blocked_by(self) -> Component | None:
         """What it waits for: a mover, the axis that is its master, a track that ends, a part. None: nothing."""
         return self.session._object_of(str(self.blocker_kind), self.blocker)
+
+    def track_trail(self) -> TrackTrail:
+        """The tracks along which its command leads it, that where it is first; of one that stands on a track and is to
+        stay: that alone. Empty: it is on no track. A track that it comes back to is named once."""
+        tracks = list(self.session.tracks)
+        return TrackTrail(dict.fromkeys(tracks[number] for number in self.session._trail(self)))
 
     def history(self) -> tuple[MoverRecord, ...]:
         """Its last 100 commands, the oldest first; external set points apart. Over LCM: those of all clients since this

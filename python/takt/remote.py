@@ -40,6 +40,7 @@ REFRESH_S = 2.0  # after which a command that is not finished is asked about: it
 ANSWER_S = 2.0  # after which a command that is not answered is given up
 LATE_S = 1.0  # how long published values may take to catch up with a feedback, or with one another
 IDLE_BEAT_S = 0.5  # between heartbeats that hold nothing but the client's name
+ON_TRACK = ("OnTrack", "CRotationOnTrack")  # command modes of movers
 POLL_S = 0.1  # longest wait before looking at clocks and Ctrl-C again
 STILL_S = 10.0  # how long an engine that is heard may stay at one cycle
 OTHER_RUN = 3017  # error of what was meant for another start of the engine
@@ -95,6 +96,7 @@ class RemoteSession(Session):
         self._key = key
         self._key_trouble = ""  # why the engine's last description could not be believed
         self._belt_objects: dict[str, msgs.belt_objects] = {}
+        self._trails: dict[str, msgs.mover_trail] = {}  # of movers on tracks
         self._cams = RemoteCams(self)
         self._sent: dict[int, _Sent] = {}
         self._held: list[Feedback] = []  # level-sensitive commands that need heartbeats
@@ -113,6 +115,7 @@ class RemoteSession(Session):
             ("takt/feedback", self._on_feedback),
             ("takt/command", self._on_command),
             ("takt/belt_objects/.*", self._on_objects),
+            ("takt/mover_trails/.*", self._on_trail),
             ("takt/cams", self._on_cam),
             *((f"{prefix}.*", self._on_state) for prefix in PREFIXES.values()),
         ):
@@ -287,6 +290,15 @@ class RemoteSession(Session):
                         recorder.lying.look(message.name, message.cycle * self.period, objects_of(message))
                 self._hear(channel, message.sequence)
 
+    def _on_trail(self, channel: str, data: bytes) -> None:
+        message = _decoded(msgs.mover_trail, data)
+        if message is None:
+            return
+        with self._news:
+            if self._believable(message):
+                self._trails[message.name] = message
+                self._hear(channel, message.sequence)
+
     def _on_cam(self, channel: str, data: bytes) -> None:
         message = _decoded(msgs.cam_piece, data)
         if message is None:
@@ -434,6 +446,16 @@ class RemoteSession(Session):
     def _history(self, mover: Mover) -> Iterable[tuple[Any, ...]]:
         with self._news:
             return self._log.of(mover.name) if self._log is not None else ()
+
+    def _trail(self, mover: Mover) -> Iterable[int]:
+        message, here = self._trails.get(mover.name), mover.track
+        tracks = [] if message is None else list(message.tracks)
+        if message is None or message.cycle < self._states[mover.name].cycle:
+            if mover.command_mode not in ON_TRACK:
+                return ()
+            # What the mover has left meanwhile is not ahead any more.
+            tracks = tracks[tracks.index(here) :] if here in tracks else [here]
+        return [track - 1 for track in tracks]
 
     def _track_at(self, track: Track, s: float) -> tuple[float, float, float, float]:
         return self._geometry.at(track, s)

@@ -603,6 +603,10 @@ class Session(SessionWithCams):
         """The last commands of a mover: the fields of a MoverRecord, the state by number."""
 
     @abstractmethod
+    def _trail(self, mover: Mover) -> Iterable[int]:
+        """Numbers of the tracks, from 0, that a mover is to go along."""
+
+    @abstractmethod
     def _track_at(self, track: Track, s: float) -> tuple[float, float, float, float]:
         """A position along a track: x, y, direction in deg, curvature."""
 

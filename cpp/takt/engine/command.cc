@@ -109,6 +109,27 @@ bool Releases(const pickplace::Jog& c) noexcept {
 bool Releases(const mover::Halt&) noexcept {
   return true;
 }
+bool Releases(const mover::HaltX&) noexcept {
+  return true;
+}
+bool Releases(const mover::HaltY&) noexcept {
+  return true;
+}
+bool Releases(const mover::HaltZ&) noexcept {
+  return true;
+}
+bool Releases(const mover::HaltA&) noexcept {
+  return true;
+}
+bool Releases(const mover::HaltB&) noexcept {
+  return true;
+}
+bool Releases(const mover::HaltC&) noexcept {
+  return true;
+}
+bool Releases(const mover::HaltOnTrack&) noexcept {
+  return true;
+}
 bool Releases(const mover::Disable&) noexcept {
   return true;
 }
@@ -292,6 +313,21 @@ const std::vector<Entry>& Entries() {
       Make<mover::Command, mover::MoveA>(kMover, "move_a"),
       Make<mover::Command, mover::MoveB>(kMover, "move_b"),
       Make<mover::Command, mover::MoveC>(kMover, "move_c"),
+      Make<mover::Command, mover::MoveX>(kMover, "move_x"),
+      Make<mover::Command, mover::MoveY>(kMover, "move_y"),
+      Make<mover::Command, mover::MoveRelativeX>(kMover, "move_relative_x"),
+      Make<mover::Command, mover::MoveRelativeY>(kMover, "move_relative_y"),
+      Make<mover::Command, mover::MoveRelativeC>(kMover, "move_relative_c"),
+      Make<mover::Command, mover::MoveVelocityX>(kMover, "move_velocity_x"),
+      Make<mover::Command, mover::MoveVelocityY>(kMover, "move_velocity_y"),
+      Make<mover::Command, mover::MoveVelocityC>(kMover, "move_velocity_c"),
+      Make<mover::Command, mover::HaltX>(kMover, "halt_x"),
+      Make<mover::Command, mover::HaltY>(kMover, "halt_y"),
+      Make<mover::Command, mover::HaltZ>(kMover, "halt_z"),
+      Make<mover::Command, mover::HaltA>(kMover, "halt_a"),
+      Make<mover::Command, mover::HaltB>(kMover, "halt_b"),
+      Make<mover::Command, mover::HaltC>(kMover, "halt_c"),
+      Make<mover::Command, mover::HaltOnTrack>(kMover, "halt_on_track"),
       Make<mover::Command, mover::JoinTrack>(kMover, "join_track"),
       Make<mover::Command, mover::LeaveTrack>(kMover, "leave_track"),
       Make<mover::Command, mover::MoveOnTrack>(kMover, "move_on_track"),

@@ -103,6 +103,8 @@ struct Engine::Impl {
         belts(machine, o, machine.belts, world.belt_outputs),
         poses(machine, o, machine.poses, world.pose_outputs),
         belt_objects(o.publish ? kObjectLists * machine.belts.size() : 2),
+        mover_trails(o.publish ? 64 + 2 * machine.movers.size() : 2),
+        trails(machine.movers.size()),
         pick_places(machine, o, machine.pick_and_place, world.pick_place_outputs),
         movers(machine, o, machine.movers, world.mover_outputs),
         tracks(machine, o, machine.tracks, world.tracks.outputs),
@@ -235,6 +237,22 @@ struct Engine::Impl {
     }
   }
 
+  // With the state of a mover, where it has changed, and now and then for those that come later.
+  void PublishTrails() noexcept {
+    const auto repeat = static_cast<std::uint64_t>(1 / machine.cycle.period_s);  // a second
+    for (std::uint32_t i = 0; i < movers.divisors.size(); ++i) {
+      if (movers.divisors[i] == 0 || world.cycle.count % movers.divisors[i] != 0) continue;
+      const planar::Route trail = planar::TrailOf(world.streets.riders[i]);
+      Said& said = trails[i];
+      if (trail == said.trail && (trail.count == 0 || world.cycle.count - said.cycle < repeat)) continue;
+      if (mover_trails.TryPush({world.cycle.count, i, trail})) {
+        said = {trail, world.cycle.count};
+      } else {
+        ++figures.snapshots_dropped;
+      }
+    }
+  }
+
   void Publish() noexcept {
     figures.cycle = world.cycle.count;
     figures.commands_refused = refused.load(std::memory_order_relaxed);
@@ -253,6 +271,7 @@ struct Engine::Impl {
     if (!options.publish) return;
     std::apply([this](auto&... kind) { (PublishAll(kind), ...); }, kinds());
     PublishObjects();
+    PublishTrails();
     track_shapes.Publish(world.cycle.count, world.tracks, track_places);
     if (figures_divisor > 0 && world.cycle.count % figures_divisor == 0) figure_queue.TryPush(figures);
   }
@@ -274,6 +293,12 @@ struct Engine::Impl {
   OfKind<conveyor::Outputs> belts;
   OfKind<conveyor::PoseOutputs> poses;
   SpscQueue<ObjectsSnapshot> belt_objects;
+  SpscQueue<TrailSnapshot> mover_trails;
+  struct Said {
+    planar::Route trail;
+    std::uint64_t cycle = 0;
+  };
+  std::vector<Said> trails;  // by mover, as published last
   OfKind<pickplace::Outputs> pick_places;
   OfKind<mover::Outputs> movers;
   OfKind<track::Outputs> tracks;
@@ -521,6 +546,12 @@ SpscQueue<ObjectsSnapshot>& Engine::belt_objects() noexcept {
 }
 SpscQueue<TrackPlaces>& Engine::track_places() noexcept {
   return impl_->track_places;
+}
+SpscQueue<TrailSnapshot>& Engine::mover_trails() noexcept {
+  return impl_->mover_trails;
+}
+planar::Route Engine::mover_trail(std::size_t mover) const noexcept {
+  return planar::TrailOf(impl_->world.streets.riders[mover]);
 }
 SpscQueue<cam::CamPiece>& Engine::cam_pieces() noexcept {
   return impl_->world.cams.pieces;

@@ -83,6 +83,8 @@ class Engine {
   const pickplace::Outputs& pick_place_outputs(std::size_t module) const noexcept;
   const mover::Outputs& mover_outputs(std::size_t mover) const noexcept;
   const mover::State& mover_state(std::size_t mover) const noexcept;
+  // The tracks that a mover is to go along (planar::TrailOf).
+  planar::Route mover_trail(std::size_t mover) const noexcept;
   const part::Outputs& part_outputs(std::size_t part) const noexcept;
   const track::Tracks& tracks() const noexcept;
   const planar::Grounds& grounds() const noexcept;
@@ -143,6 +145,7 @@ class Engine {
   SpscQueue<SnapshotOf<Outputs>>& snapshots() noexcept;
   SpscQueue<ObjectsSnapshot>& belt_objects() noexcept;
   SpscQueue<TrackPlaces>& track_places() noexcept;
+  SpscQueue<TrailSnapshot>& mover_trails() noexcept;
   SpscQueue<cam::CamPiece>& cam_pieces() noexcept;
   SpscQueue<EngineFigures>& figure_queue() noexcept;
   SpscQueue<JournalEntry>& journal() noexcept;

@@ -17,6 +17,7 @@
 #include "takt/mover/outputs.h"
 #include "takt/part/outputs.h"
 #include "takt/pickplace/outputs.h"
+#include "takt/planar/network.h"
 #include "takt/planargroup/outputs.h"
 #include "takt/track/outputs.h"
 
@@ -52,6 +53,13 @@ struct ObjectsSnapshot {
   std::uint64_t cycle = 0;
   std::uint32_t index = 0;  // of the belt
   conveyor::State state;
+};
+
+// The tracks that a mover is to go along.
+struct TrailSnapshot {
+  std::uint64_t cycle = 0;
+  std::uint32_t index = 0;  // of the mover
+  planar::Route trail;
 };
 
 struct JournalEntry {  // a command as it was applied

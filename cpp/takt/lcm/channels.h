@@ -28,6 +28,11 @@ inline std::string ObjectsChannel(std::string_view name) {
   return "takt/belt_objects/" + std::string(name);
 }
 
+// The tracks that a mover is to go along.
+inline std::string TrailChannel(std::string_view name) {
+  return "takt/mover_trails/" + std::string(name);
+}
+
 // The shape of a track.
 inline std::string ShapeChannel(std::string_view name) {
   return "takt/track_shapes/" + std::string(name);

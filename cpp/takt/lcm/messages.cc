@@ -598,6 +598,16 @@ msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine:
   return m;
 }
 
+msgs::mover_trail ToMessage(const engine::TrailSnapshot& snapshot, const engine::Machine& machine) {
+  msgs::mover_trail m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = machine.movers[snapshot.index].name;
+  for (const std::uint32_t track : snapshot.trail.all()) m.tracks.push_back(std::int64_t{track} + 1);
+  m.count = static_cast<std::int32_t>(m.tracks.size());
+  return m;
+}
+
 msgs::histogram ToMessage(const engine::Histogram& histogram) {
   msgs::histogram m{};
   std::transform(histogram.buckets.begin(), histogram.buckets.end(), m.buckets, Signed);

@@ -51,6 +51,9 @@ Publisher::Publisher(engine::Engine& engine, Clients& clients, Outlet* network, 
   for (const conveyor::BeltParams& belt : engine_.machine().belts) {
     object_channels_.push_back({.name = ObjectsChannel(belt.name)});
   }
+  for (const mover::MoverParams& mover : engine_.machine().movers) {
+    trail_channels_.push_back({.name = TrailChannel(mover.name)});
+  }
   for (const track::TrackParams& track : engine_.machine().tracks) {
     shape_channels_.push_back({.name = ShapeChannel(track.name)});
   }
@@ -96,6 +99,10 @@ bool Publisher::Drain() {
   any |= Take(engine_.belt_objects(), [this](const engine::ObjectsSnapshot& snapshot) {
     auto message = ToMessage(snapshot, engine_.machine());
     ToBoth(object_channels_[snapshot.index], message);
+  });
+  any |= Take(engine_.mover_trails(), [this](const engine::TrailSnapshot& snapshot) {
+    auto message = ToMessage(snapshot, engine_.machine());
+    ToBoth(trail_channels_[snapshot.index], message);
   });
   any |= Take(engine_.cam_pieces(), [this](const cam::CamPiece& piece) {
     auto message = ToMessage(piece, engine_.machine());

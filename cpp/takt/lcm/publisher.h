@@ -84,6 +84,7 @@ class Publisher {
   std::vector<std::vector<Channel>> state_channels_;  // by kind, by component
   std::size_t first_kind_ = 0;                        // that has its turn first
   std::vector<Channel> object_channels_;              // by belt
+  std::vector<Channel> trail_channels_;               // by mover
   std::vector<Channel> shape_channels_;               // by track
   std::vector<msgs::track_shape> shapes_;             // whole ones, for who comes later
   std::vector<msgs::track_shape> coming_;             // of which some places are there

@@ -14,7 +14,8 @@ namespace {
 // It has X and Y now, and not on top of what they do.
 bool TookOver(Ticket ticket, const State& s) {
   const bool alone = s.external.mode == SetpointMode::kAbsolute;
-  return ticket != 0 && (s.tickets[kPlane] == ticket || (alone && s.tickets[kExternal] == ticket));
+  const auto has = [&](Slot slot) { return s.tickets[slot] == ticket; };
+  return ticket != 0 && (has(kPlane) || has(kMoveX) || has(kMoveY) || has(kHaltOnTrack) || (alone && has(kExternal)));
 }
 
 bool HasGoodNumbers(const Command& command) {
@@ -49,15 +50,18 @@ bool MayBeGone(const Answer& answer) {
 bool MayWait(const Context& c, const Command& command) {
   const std::uint32_t group = c.grounds.Watching(c.grounds.group_of_mover[c.index]);
   if (group == 0 || !c.grounds.grounds[group - 1].waits) return false;
-  return std::holds_alternative<MoveToPosition>(command) || std::holds_alternative<MoveOnTrack>(command) ||
-         std::holds_alternative<JoinTrack>(command) || std::holds_alternative<LeaveTrack>(command);
+  return std::visit(
+      []<typename T>(const T&) {
+        return kIsOneOf<T, MoveToPosition, MoveX, MoveY, MoveRelativeX, MoveRelativeY, MoveOnTrack, JoinTrack,
+                        LeaveTrack>;
+      },
+      command);
 }
 
 // What a mover is told whatever its part does; the rest would move it.
 template <typename T>
-constexpr bool kAlways =
-    std::is_same_v<T, Enable> || std::is_same_v<T, Disable> || std::is_same_v<T, Reset> || std::is_same_v<T, Halt> ||
-    std::is_same_v<T, StopExternalSetpointGeneration> || std::is_same_v<T, Wait> || std::is_same_v<T, Release>;
+constexpr bool kAlways = kIsOneOf<T, Enable, Disable, Reset, Halt, HaltX, HaltY, HaltZ, HaltA, HaltB, HaltC,
+                                  HaltOnTrack, StopExternalSetpointGeneration, Wait, Release>;
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 // Commands as they arrive: what carrying them out has in common. Each family has a file of its own beside this one:
-// power.cc, moves.cc, on_tracks.cc, gear.cc, setpoints.cc, buffer.cc, membership.cc, formation.cc.
+// power.cc, moves.cc, by_coordinate.cc, on_tracks.cc, gear.cc, setpoints.cc, buffer.cc, membership.cc, formation.cc.
 #pragma once
 
 #include <algorithm>
@@ -69,9 +69,12 @@ trajectory::Limits LimitsOf(const Move& m, const Params& params, LimitedBy& limi
 }
 
 // Along tracks with these limits; as vectors in the plane acceleration and jerk keep the mover's maxima.
-inline planar::Pace PaceOf(const MoverParams& params, const trajectory::Limits& limits) noexcept {
+inline planar::Pace PaceOf(const MoverParams& params, const trajectory::Limits& limits,
+                           DynamicsReduction reduction = DynamicsReduction::kAccelerationLimitedVelocity) noexcept {
   const trajectory::Limits most = params.xy.maximum.limits();
-  return {limits, params.lateral(), std::max(most.acceleration, most.deceleration), most.jerk};
+  const double acceleration = std::max(most.acceleration, most.deceleration);
+  const double lateral = reduction == DynamicsReduction::kNone ? acceleration : params.lateral();
+  return {limits, lateral, acceleration, most.jerk};
 }
 
 // Carries it out, or refuses it; reports either way. Whether it was accepted. With `in_the_way`, one that only another
@@ -115,6 +118,21 @@ Answer CarryOut(const Given& g, const MoveZ& command) noexcept;
 Answer CarryOut(const Given& g, const MoveA& command) noexcept;
 Answer CarryOut(const Given& g, const MoveB& command) noexcept;
 Answer CarryOut(const Given& g, const MoveC& command) noexcept;
+Answer CarryOut(const Given& g, const MoveX& command) noexcept;
+Answer CarryOut(const Given& g, const MoveY& command) noexcept;
+Answer CarryOut(const Given& g, const MoveRelativeX& command) noexcept;
+Answer CarryOut(const Given& g, const MoveRelativeY& command) noexcept;
+Answer CarryOut(const Given& g, const MoveRelativeC& command) noexcept;
+Answer CarryOut(const Given& g, const MoveVelocityX& command) noexcept;
+Answer CarryOut(const Given& g, const MoveVelocityY& command) noexcept;
+Answer CarryOut(const Given& g, const MoveVelocityC& command) noexcept;
+Answer CarryOut(const Given& g, const HaltX& command) noexcept;
+Answer CarryOut(const Given& g, const HaltY& command) noexcept;
+Answer CarryOut(const Given& g, const HaltZ& command) noexcept;
+Answer CarryOut(const Given& g, const HaltA& command) noexcept;
+Answer CarryOut(const Given& g, const HaltB& command) noexcept;
+Answer CarryOut(const Given& g, const HaltC& command) noexcept;
+Answer CarryOut(const Given& g, const HaltOnTrack& command) noexcept;
 Answer CarryOut(const Given& g, const JoinTrack& command) noexcept;
 Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept;
 Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept;

@@ -52,7 +52,7 @@ constexpr bool IsLegal(CommandMode from, CommandMode to) {
 
 // What commands ask of a mover. Whatever its mode, it can be enabled, disabled, reset and halted.
 enum class Ask : std::uint8_t {
-  kMoveToPosition,
+  kMoveToPosition,  // or X or Y by itself
   kMoveC,
   kMoveAuxiliary,  // Z, A, B
   kExternalAbsolute,
@@ -63,8 +63,9 @@ enum class Ask : std::uint8_t {
   kAdoptTrackOrientation,
   kJoinFormation,
   kLeaveFormation,
+  kHaltOnTrack,
 };
-inline constexpr int kAsks = 11;
+inline constexpr int kAsks = 12;
 
 struct Acceptance {
   CommandMode mode;
@@ -86,6 +87,7 @@ inline constexpr std::array kAccepted = [] {
       Acceptance{M::kOnTrack, Ask::kLeaveTrack},
       Acceptance{M::kOnTrack, Ask::kMoveOnTrack},
       Acceptance{M::kOnTrack, Ask::kAdoptTrackOrientation},
+      Acceptance{M::kOnTrack, Ask::kHaltOnTrack},
       Acceptance{M::kCRotationFreeMovement, Ask::kMoveC},
       Acceptance{M::kCRotationFreeMovement, Ask::kMoveAuxiliary},
       Acceptance{M::kCRotationFreeMovement, Ask::kExternalRelative},
@@ -93,6 +95,7 @@ inline constexpr std::array kAccepted = [] {
       Acceptance{M::kCRotationOnTrack, Ask::kMoveAuxiliary},
       Acceptance{M::kCRotationOnTrack, Ask::kExternalRelative},
       Acceptance{M::kCRotationOnTrack, Ask::kAdoptTrackOrientation},
+      Acceptance{M::kCRotationOnTrack, Ask::kHaltOnTrack},
       Acceptance{M::kFormation, Ask::kMoveAuxiliary},
       Acceptance{M::kFormation, Ask::kLeaveFormation},
   };

@@ -141,6 +141,115 @@ void describe(Description<MoveC>& d) {
   });
 }
 
+namespace {
+
+template <typename T>
+void DescribeHalt(Description<T>& d, Unit acceleration, Unit jerk) {
+  d.template defaulted<&T::deceleration>(acceleration, kAccelerations, "Unset: the mover's standard.");
+  d.template defaulted<&T::jerk>(jerk, kJerks, "Unset: the mover's standard.");
+}
+
+// X or Y by itself.
+template <typename T>
+void DescribeEach(Description<T>& d) {
+  d.template required<&T::position>(unit::mm, kPlaces, "Where to stop.");
+  DescribeDynamics(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
+  DescribeReference(d);
+}
+
+template <typename T>
+void DescribeRelative(Description<T>& d, Unit distance, const Range& range, Unit speed, Unit acceleration, Unit jerk) {
+  d.template required<&T::distance>(distance, range, "From where it is when the command begins.");
+  DescribeDynamics(d, speed, acceleration, jerk);
+}
+
+template <typename T>
+void DescribeVelocity(Description<T>& d, Unit speed, Unit acceleration, Unit jerk) {
+  d.template required<&T::velocity>(speed, between(-1e9, 1e9), "Negative: downwards; 0: the coordinate comes to rest.");
+  d.template defaulted<&T::acceleration>(acceleration, kAccelerations,
+                                         "Largest acceleration; unset, as all that follows: the mover's standard.");
+  d.template defaulted<&T::deceleration>(acceleration, kAccelerations, "Largest deceleration.");
+  d.template defaulted<&T::jerk>(jerk, kJerks, "Largest jerk.");
+  d.template defaulted<&T::buffer_mode>("Whether it waits until all that were given before it are done.");
+}
+
+}  // namespace
+
+void describe(Description<MoveX>& d) {
+  d.about("Moves X, whatever Y and the other coordinates do; with at most 0.707 of the maximum dynamics of both.");
+  DescribeEach(d);
+}
+void describe(Description<MoveY>& d) {
+  d.about("Moves Y, whatever X and the other coordinates do; with at most 0.707 of the maximum dynamics of both.");
+  DescribeEach(d);
+}
+void describe(Description<MoveRelativeX>& d) {
+  d.about("Moves X by a distance, as move_x does.");
+  DescribeRelative(d, unit::mm, kPlaces, unit::mm_s, unit::mm_s2, unit::mm_s3);
+}
+void describe(Description<MoveRelativeY>& d) {
+  d.about("Moves Y by a distance, as move_y does.");
+  DescribeRelative(d, unit::mm, kPlaces, unit::mm_s, unit::mm_s2, unit::mm_s3);
+}
+void describe(Description<MoveRelativeC>& d) {
+  d.about("Turns the mover by an angle, as move_c does.");
+  DescribeRelative(d, unit::deg, kAngles, unit::deg_s, unit::deg_s2, unit::deg_s3);
+}
+void describe(Description<MoveVelocityX>& d) {
+  d.about(
+      "Moves X on and on, as move_x does. Active until another command of X or a halt ends it; where there is no more "
+      "room, as it was when the command began, X comes to rest, and the command ends with the reason as its error.");
+  DescribeVelocity(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
+}
+void describe(Description<MoveVelocityY>& d) {
+  d.about(
+      "Moves Y on and on, as move_y does. Active until another command of Y or a halt ends it; where there is no more "
+      "room, as it was when the command began, Y comes to rest, and the command ends with the reason as its error.");
+  DescribeVelocity(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
+}
+void describe(Description<MoveVelocityC>& d) {
+  d.about("Turns the mover on and on; X and Y must be at rest. Active until another command of C or a halt ends it.");
+  DescribeVelocity(d, unit::deg_s, unit::deg_s2, unit::deg_s3);
+}
+void describe(Description<HaltX>& d) {
+  d.about(
+      "Brings X to rest; Y and all others go on. A move of both, or of C with them, ends: all of it comes to rest.");
+  DescribeHalt(d, unit::mm_s2, unit::mm_s3);
+}
+void describe(Description<HaltY>& d) {
+  d.about(
+      "Brings Y to rest; X and all others go on. A move of both, or of C with them, ends: all of it comes to rest.");
+  DescribeHalt(d, unit::mm_s2, unit::mm_s3);
+}
+void describe(Description<HaltZ>& d) {
+  d.about("Brings Z to rest; the others go on.");
+  DescribeHalt(d, unit::mm_s2, unit::mm_s3);
+}
+void describe(Description<HaltA>& d) {
+  d.about("Brings A to rest; the others go on.");
+  DescribeHalt(d, unit::deg_s2, unit::deg_s3);
+}
+void describe(Description<HaltB>& d) {
+  d.about("Brings B to rest; the others go on.");
+  DescribeHalt(d, unit::deg_s2, unit::deg_s3);
+}
+void describe(Description<HaltC>& d) {
+  d.about("Brings C to rest; the others go on.");
+  DescribeHalt(d, unit::deg_s2, unit::deg_s3);
+}
+void describe(Description<HaltOnTrack>& d) {
+  d.about("Brings the mover to rest along its track, on which it stays; Z, A, B and C go on.");
+  DescribeHalt(d, unit::mm_s2, unit::mm_s3);
+}
+
+void describe(Enumeration<DynamicsReduction>& e) {
+  using D = DynamicsReduction;
+  e.about("How the limits of a move along tracks count in curves.");
+  e.value(D::kAccelerationLimitedVelocity, "acceleration_limited_velocity",
+          "It slows down, so that the mover's lateral_acceleration is kept.");
+  e.value(D::kNone, "none", "As fast as velocity, acceleration and jerk of X and Y, as vectors, keep their maxima.");
+}
+
 void describe(Description<JoinTrack>& d) {
   using J = JoinTrack;
   d.about("Moves X and Y straight to the nearest place of a track, and is on it then. The mover must be at rest.");
@@ -174,6 +283,7 @@ void describe(Description<MoveOnTrack>& d) {
   d.defaulted<&M::additional_turns>(between(0, 1000), "Of a closed loop; positive and negative only.");
   d.defaulted<&M::modulo_tolerance>(unit::mm, between(0, 1e5),
                                     "Of a closed loop: to a target as near as that it goes the shortest way.");
+  d.defaulted<&M::dynamics_reduction>("What bounds its speed in curves.");
   DescribeDynamics(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
   d.rule<&M::additional_turns>("must be 0 unless the direction is positive or negative", [](const M& m) {
     return m.additional_turns == 0 || m.direction == TurnDirection::kPositive ||

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 #include <variant>
 
 #include "takt/core/describe_fwd.h"
@@ -96,6 +97,102 @@ struct MoveC {
   Buffering buffer_mode = Buffering::kAborting;
 };
 
+// X or Y by itself, whatever the other one does.
+struct MoveX {
+  double position = 0;                   // mm
+  std::optional<double> velocity{};      // mm/s
+  std::optional<double> acceleration{};  // mm/s²
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+  Name reference{};                      // part or coordinate system that the position belongs to
+  Buffering buffer_mode = Buffering::kAborting;
+};
+struct MoveY {
+  double position = 0;                   // mm
+  std::optional<double> velocity{};      // mm/s
+  std::optional<double> acceleration{};  // mm/s²
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+  Name reference{};                      // part or coordinate system that the position belongs to
+  Buffering buffer_mode = Buffering::kAborting;
+};
+// By a distance from where the coordinate is when the command begins.
+struct MoveRelativeX {
+  double distance = 0;                   // mm
+  std::optional<double> velocity{};      // mm/s
+  std::optional<double> acceleration{};  // mm/s²
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+  Buffering buffer_mode = Buffering::kAborting;
+};
+struct MoveRelativeY {
+  double distance = 0;                   // mm
+  std::optional<double> velocity{};      // mm/s
+  std::optional<double> acceleration{};  // mm/s²
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+  Buffering buffer_mode = Buffering::kAborting;
+};
+struct MoveRelativeC {
+  double distance = 0;                   // deg
+  std::optional<double> velocity{};      // deg/s
+  std::optional<double> acceleration{};  // deg/s²
+  std::optional<double> deceleration{};  // deg/s²
+  std::optional<double> jerk{};          // deg/s³
+  Buffering buffer_mode = Buffering::kAborting;
+};
+// On and on, as far as there is room.
+struct MoveVelocityX {
+  double velocity = 0;                   // mm/s, negative: downwards
+  std::optional<double> acceleration{};  // mm/s²
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+  Buffering buffer_mode = Buffering::kAborting;
+};
+struct MoveVelocityY {
+  double velocity = 0;                   // mm/s, negative: downwards
+  std::optional<double> acceleration{};  // mm/s²
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+  Buffering buffer_mode = Buffering::kAborting;
+};
+struct MoveVelocityC {
+  double velocity = 0;                   // deg/s, negative: downwards
+  std::optional<double> acceleration{};  // deg/s²
+  std::optional<double> deceleration{};  // deg/s²
+  std::optional<double> jerk{};          // deg/s³
+  Buffering buffer_mode = Buffering::kAborting;
+};
+// One coordinate comes to rest; the others go on.
+struct HaltX {
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+};
+struct HaltY {
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+};
+struct HaltZ {
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+};
+struct HaltA {
+  std::optional<double> deceleration{};  // deg/s²
+  std::optional<double> jerk{};          // deg/s³
+};
+struct HaltB {
+  std::optional<double> deceleration{};  // deg/s²
+  std::optional<double> jerk{};          // deg/s³
+};
+struct HaltC {
+  std::optional<double> deceleration{};  // deg/s²
+  std::optional<double> jerk{};          // deg/s³
+};
+struct HaltOnTrack {                     // along its track; Z, A, B and C go on
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+};
+
 struct JoinTrack {
   Name track{};
   bool use_orientation = true;           // C goes to that of the track, which is 0
@@ -116,13 +213,19 @@ struct LeaveTrack {
   Name reference{};                      // part or coordinate system that X and Y belong to
   Buffering buffer_mode = Buffering::kAborting;
 };
+// How the limits of a move along tracks count in curves.
+enum class DynamicsReduction : std::uint8_t {
+  kAccelerationLimitedVelocity,  // slower, so that the lateral acceleration of the machine file is kept
+  kNone,                         // as fast as the maxima of X and Y, as vectors, allow
+};
 struct MoveOnTrack {
   double position = 0;          // mm along the track
   Name track{};                 // empty: that where the mover is
   std::optional<double> gap{};  // mm to the mover ahead, from centre to centre
   TurnDirection direction = TurnDirection::kNonModulo;
-  std::uint32_t additional_turns = 0;    // of a closed loop; positive, negative
-  double modulo_tolerance = 0;           // mm, of a closed loop
+  std::uint32_t additional_turns = 0;  // of a closed loop; positive, negative
+  double modulo_tolerance = 0;         // mm, of a closed loop
+  DynamicsReduction dynamics_reduction = DynamicsReduction::kAccelerationLimitedVelocity;
   std::optional<double> velocity{};      // mm/s
   std::optional<double> acceleration{};  // mm/s²
   std::optional<double> deceleration{};  // mm/s²
@@ -213,11 +316,15 @@ struct JoinFormation {
 };
 struct LeaveFormation {};
 
-using Command =
-    std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC, JoinTrack,
-                 LeaveTrack, MoveOnTrack, AdoptTrackOrientation, StartExternalSetpointGeneration, SetExternalSetpoint,
-                 StopExternalSetpointGeneration, Wait, Release, AddToGroup, RemoveFromGroup, GearInPosOnTrack,
-                 GearInPosOnTrackWithMasterMover, JoinFormation, LeaveFormation>;
+using Command = std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC,
+                             JoinTrack, LeaveTrack, MoveOnTrack, AdoptTrackOrientation, StartExternalSetpointGeneration,
+                             SetExternalSetpoint, StopExternalSetpointGeneration, Wait, Release, AddToGroup,
+                             RemoveFromGroup, GearInPosOnTrack, GearInPosOnTrackWithMasterMover, JoinFormation,
+                             LeaveFormation, MoveX, MoveY, MoveRelativeX, MoveRelativeY, MoveRelativeC, MoveVelocityX,
+                             MoveVelocityY, MoveVelocityC, HaltX, HaltY, HaltZ, HaltA, HaltB, HaltC, HaltOnTrack>;
+
+template <typename T, typename... Kinds>
+inline constexpr bool kIsOneOf = (std::is_same_v<T, Kinds> || ...);
 
 // Table of the arguments of the command at this place of the variant.
 const Type& TypeOfCommand(std::size_t index);
@@ -235,6 +342,22 @@ void describe(Description<MoveZ>&);
 void describe(Description<MoveA>&);
 void describe(Description<MoveB>&);
 void describe(Description<MoveC>&);
+void describe(Description<MoveX>&);
+void describe(Description<MoveY>&);
+void describe(Description<MoveRelativeX>&);
+void describe(Description<MoveRelativeY>&);
+void describe(Description<MoveRelativeC>&);
+void describe(Description<MoveVelocityX>&);
+void describe(Description<MoveVelocityY>&);
+void describe(Description<MoveVelocityC>&);
+void describe(Description<HaltX>&);
+void describe(Description<HaltY>&);
+void describe(Description<HaltZ>&);
+void describe(Description<HaltA>&);
+void describe(Description<HaltB>&);
+void describe(Description<HaltC>&);
+void describe(Description<HaltOnTrack>&);
+void describe(Enumeration<DynamicsReduction>&);
 void describe(Description<JoinTrack>&);
 void describe(Description<LeaveTrack>&);
 void describe(Description<MoveOnTrack>&);

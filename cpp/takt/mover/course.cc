@@ -213,7 +213,11 @@ void Hold(const Context& c, std::uint32_t other, State& s) noexcept {
   const bool known = s.escape.cycle == c.cycle.count;
   const Escape rest =
       known ? s.escape : Escape{StandingAt(s.set_point[kX].position, s.set_point[kY].position), c.cycle.count, 0};
-  if (plane.goes && !plane.waits) {
+  if (plane.goes && plane.each) {
+    const auto [x, y] = plane.goals;
+    plane.next = {.x = x.goes ? x.target : rest.motion.end_x, .y = y.goes ? y.target : rest.motion.end_y};
+    plane.waits = true;
+  } else if (plane.goes && !plane.waits) {
     const trajectory::Limits& l = plane.limits;
     plane.next = {.x = plane.passes ? plane.corner_x : plane.motion.end_x,
                   .y = plane.passes ? plane.corner_y : plane.motion.end_y,
@@ -234,11 +238,34 @@ void Hold(const Context& c, std::uint32_t other, State& s) noexcept {
   if (plane.goes) plane.held_by = other;
 }
 
+namespace {
+
+// The same where X and Y go on each by itself: as far as each takes to get to its speed.
+bool IsHeldEach(const Context& c, const planar::Place& here, const planar::Place& way, State& s) {
+  const auto ahead = [](const Goal& goal, double left) {
+    if (!goal.goes) return 0.0;
+    const trajectory::Limits& l = goal.limits;
+    const double needed = planar::WayToRest(l.velocity, {l.deceleration, l.jerk}) + kAhead;
+    return std::clamp(left, -needed, needed);
+  };
+  const double x = ahead(s.plane.goals[0], way.x), y = ahead(s.plane.goals[1], way.y);
+  Area area = KindOf(c, s, s.others.back(), s.set_point);
+  area.places = {here, here + planar::Place{x, 0}, here + planar::Place{x, y}, here + planar::Place{0, y}};
+  area.count = 4;
+  Course course;
+  planar::Add(area, course);
+  s.plane.held_by = Find(c, course);
+  return s.plane.held_by != kNobody;
+}
+
+}  // namespace
+
 bool IsHeld(const Context& c, State& s) noexcept {
   PlaneMove& plane = s.plane;
   if (plane.held_by == kNobody) return false;
   const planar::Place here{plane.motion.end_x, plane.motion.end_y};
   const planar::Place way = planar::Place{plane.next.x, plane.next.y} - here;
+  if (plane.each) return IsHeldEach(c, here, way, s);
   const double length = maths::Hypot(way.x, way.y);
   const double needed = planar::WayToRest(*plane.next.velocity, {*plane.next.deceleration, *plane.next.jerk}) + kAhead;
   const double share = length > needed ? needed / length : 1;

@@ -130,6 +130,17 @@ std::uint32_t LostPlanet(const Context& c) {
   return lost;
 }
 
+bool MovesOne(const Command& command) {
+  return std::visit(
+      []<typename T>(const T&) {
+        return kIsOneOf<T, MoveX, MoveY, MoveRelativeX, MoveRelativeY, MoveVelocityX, MoveVelocityY>;
+      },
+      command);
+}
+bool TurnsAlone(const Command& command) {
+  return std::visit([]<typename T>(const T&) { return kIsOneOf<T, MoveC, MoveRelativeC, MoveVelocityC>; }, command);
+}
+
 // It stands where it is, for itself.
 void Leave(const Context& c, State& s) {
   const Context star = StarOf(c, s);
@@ -173,18 +184,20 @@ Terms TermsOf(const Context& c, const Command& command, State& s) noexcept {
   if (!IsStar(c)) return terms;
   if (std::holds_alternative<JoinTrack>(command)) terms.error = ErrorId::kFormationOnTrack;
   const auto* move = std::get_if<MoveToPosition>(&command);
-  const auto* turn = std::get_if<MoveC>(&command);
-  if (!move && !turn && !std::holds_alternative<StartExternalSetpointGeneration>(command)) return terms;
+  const bool one = MovesOne(command);  // X or Y
+  const bool turn = TurnsAlone(command);
+  const bool is_move = move || one || turn;
+  if (!is_move && !std::holds_alternative<StartExternalSetpointGeneration>(command)) return terms;
   if (const std::uint32_t lost = LostPlanet(c); lost != kNoStar) {
     return {.params = c.params, .error = ErrorId::kPlanetLost, .object = MoverNumbered(lost)};
   }
-  if (!move && !turn) return terms;
+  if (!is_move) return terms;
   const planar::Place from{s.set_point[kX].position, s.set_point[kY].position};
   planar::Place to = move ? planar::Place{move->x, move->y} : from;
   if (move && ToItsSystem(c, s, move->reference, to.x, to.y) != ErrorId::kNone) return terms;
   const bool moves = !IsPlaneResting(c, s), turns = Turns(c, s);
-  const bool is_to_move = to.x != from.x || to.y != from.y;
-  const bool is_to_turn = turn || (TurnsAlong(*move) && *move->c != s.set_point[kC].position);
+  const bool is_to_move = one || to.x != from.x || to.y != from.y;
+  const bool is_to_turn = turn || (move && TurnsAlong(*move) && *move->c != s.set_point[kC].position);
   const bool both = (moves || is_to_move) && (turns || is_to_turn);
   Body& body = c.fleet.bodies[c.index];
   if (moves || turns) {

@@ -130,7 +130,7 @@ Answer Couple(const Given& g, const Gear& command, Rider& next, std::uint32_t ax
   next.gap = command.gap.value_or(std::max(g.c.params.gap, least));
   next.gear.tolerance = command.in_sync_tolerance;
   next.gear.sense = SenseOf(command.allowed_slave_sync_directions);
-  End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
+  for (const Slot slot : {kHalt, kHaltOnTrack}) End(g.c, slot, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kPlane);
   g.c.rider() = next;
   s.gear = {.axis = axis};

@@ -34,8 +34,23 @@ void Surround(const PlaneMotion& m, double t, planar::Move& move) {
     corner(along.min, across.max);
     return;
   }
-  if (above) corner(line.max, 0);
-  if (below) corner(line.min, 0);
+  const double off = m.across.end().position;
+  if (above) corner(line.max, off);
+  if (below) corner(line.min, off);
+}
+
+// The rectangle of all that a motion passes that comes to rest, and from there goes on with X and Y each by itself.
+void SurroundAll(const PlaneState& now, const planar::Place& rest, planar::Move& move) {
+  planar::Place lower{now.x.position, now.y.position}, upper = lower;
+  const auto add = [&](const planar::Place& p) {
+    lower = {std::min(lower.x, p.x), std::min(lower.y, p.y)};
+    upper = {std::max(upper.x, p.x), std::max(upper.y, p.y)};
+  };
+  for (std::size_t i = 0; i < move.corner_count; ++i) add(move.corners[i]);
+  add(rest);
+  add(move.target.place);
+  move.corners = {lower, planar::Place{upper.x, lower.y}, upper, planar::Place{lower.x, upper.y}};
+  move.corner_count = 4;
 }
 
 planar::Move MoveOf(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, bool on_track) {
@@ -45,8 +60,13 @@ planar::Move MoveOf(const Context& c, const PlaneMove& plane, const CoordinateMo
     Surround(m, Elapsed(c, plane.begin), move);
     move.target.place = {m.end_x, m.end_y};
     if (plane.waits) {
-      move.over = move.target.place;
+      const planar::Place rest = move.target.place;
       move.target.place = {plane.next.x, plane.next.y};
+      if (plane.each) {
+        SurroundAll(At(m, Elapsed(c, plane.begin)), rest, move);
+      } else {
+        move.over = rest;
+      }
     }
   }
   const double now = Now(c, turn).position, end = turn.profile.end().position;

@@ -5,6 +5,7 @@
 
 #include "takt/core/describe.h"
 #include "takt/core/maths.h"
+#include "takt/mover/by_coordinate.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/course.h"
 #include "takt/mover/follow.h"
@@ -31,10 +32,16 @@ Context NextTo(const Context& c) {
 void GoOn(const Context& c, State& s) {
   if (!s.plane.waits || Elapsed(c, s.plane.begin) < DurationOf(s.plane.motion)) return;
   if (IsOnTrack(s) ? GoesAlongTrack(c, s) : IsHeld(c, s)) return;
+  const PlaneState from = At(s.plane.motion, Elapsed(c, s.plane.begin));
+  if (s.plane.each) {
+    if (!PlanToGoals(c, from, s.plane)) return Fail(c, ErrorId::kPlanning, s);
+    s.plane.begin = c.cycle.count;
+    s.plane.waits = s.plane.hard = false;
+    return;
+  }
   const MoveToPosition next = s.plane.next;
   const trajectory::Limits limits{*next.velocity, *next.acceleration, *next.deceleration, *next.jerk};
   PlaneMotion motion;
-  const PlaneState from = At(s.plane.motion, Elapsed(c, s.plane.begin));
   if (!PlanMove(c.planner, from, next.x, next.y, limits, motion)) return Fail(c, ErrorId::kPlanning, s);
   s.plane.motion = motion;
   s.plane.begin = c.cycle.count;
@@ -139,11 +146,20 @@ void EndOfWay(const Context& c, State& s) {
   }
 }
 
+// When this cycle begins: X or Y is where its own command wanted it, or at rest.
+bool IsOver(const Context& c, const State& s, Coordinate which) {
+  const PlaneMove& p = s.plane;
+  const double t = Elapsed(c, p.begin);
+  if (p.waits) return p.each && !p.goals[which].goes && t >= DurationOf(p.motion);
+  return t >= (p.each ? which == kX ? p.motion.along.duration() : p.motion.across.duration() : DurationOf(p.motion));
+}
+
 // Commands that have what they wanted. The next cycle begins where this one ends.
 void Finish(const Context& now, State& s) {
   const Context c = NextTo(now);
   const auto done = [&](Slot slot) { End(now, slot, FeedbackState::kDone, ErrorId::kNone, s); };
   const bool turned = IsOver(c, s.others.back());
+  NoteVelocity(c, s);
   if (s.external.mode != SetpointMode::kAbsolute) {
     const bool there = IsOnTrack(s) ? c.rider().there : IsOver(c, s.plane);
     if (there && (!s.plane.turns || turned)) {
@@ -152,8 +168,11 @@ void Finish(const Context& now, State& s) {
       EndOfWay(c, s);
     }
     for (std::size_t i = 0; i < kOthers.size(); ++i) {
-      if (IsOver(c, s.others[i])) done(static_cast<Slot>(kMoveZ + i));
+      if (IsOver(c, s.others[i])) Conclude(now, static_cast<Slot>(kMoveZ + i), s);
     }
+    if (IsOver(c, s, kX)) Conclude(now, kMoveX, s);
+    if (IsOver(c, s, kY)) Conclude(now, kMoveY, s);
+    if (!GoesAlongTrack(c, s)) done(kHaltOnTrack);
     const bool rests = IsResting(c, s);
     if (rests) {
       done(kHalt);

@@ -1,8 +1,10 @@
 // Moves of one's own: X and Y in the plane, and the other coordinates.
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "takt/mover/admission.h"
+#include "takt/mover/by_coordinate.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/course.h"
 #include "takt/mover/formation.h"
@@ -149,6 +151,7 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
   if (const ObjectInfo object = InTheTurn(g.c, s, turn)) return Refused(ErrorId::kCollision, object);
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   if (turns_along) End(g.c, kMoveC, FeedbackState::kAborted, ErrorId::kNone, s);
+  EndEach(g.c, s);
   Take(g, kPlane);
   s.others.back() = turn;
   if (turns_along) ShowCourse(g.c, s);
@@ -178,21 +181,24 @@ Answer CarryOut(const Given& g, const MoveB& command) noexcept {
   return MoveOne(g, command, 2, Ask::kMoveAuxiliary);
 }
 
-Answer Turn(const Given& g, const MoveC& command, Ask ask) noexcept {
-  State& s = g.s;
-  if (const ErrorId why = WhyNot(s, ask); why != ErrorId::kNone) return Refused(why);
-  if (s.plane.turns) return Refused(ErrorId::kCommandMode);  // C belongs to another move
-  CoordinateMove move = s.others.back();
-  const KinematicState from = Now(g.c, move);
-  const CoordinateParams free = Windowed(g.c.params.c, from.position, false);
-  LimitedBy limited_by;
-  const Limits limits = LimitsOf(command, free, limited_by);
-  const double target = TargetOf(g.c.params, from, trajectory::StopPosition(from, limits), command);
-  if (!PlanCoordinate(g.c.planner, from, target, limits, free, move.profile)) return Refused(ErrorId::kPlanning);
-  const trajectory::Profile::Range range = move.profile.PositionRange();
-  const bool inside = InOneWindow(g.c.params.c, range.min, range.max);
-  if (!inside && (IsStar(g.c) || !IsPlaneResting(g.c, s))) return Refused(ErrorId::kOutsideWindow);
-  move.begin = g.c.cycle.count;
+namespace {
+
+// C is its own to turn, as `ask` says.
+ErrorId WhyNotTurn(const State& s, Ask ask) {
+  const ErrorId why = WhyNot(s, ask);
+  if (why != ErrorId::kNone) return why;
+  return s.plane.turns ? ErrorId::kCommandMode : ErrorId::kNone;  // then C belongs to another move
+}
+
+bool IsInside(const Context& c, const CoordinateMove& turn) {
+  const trajectory::Profile::Range range = turn.profile.PositionRange();
+  return InOneWindow(c.params.c, range.min, range.max);
+}
+
+// Why C may not move so; a good answer: it may.
+Answer WhyNotTurning(const Given& g, const CoordinateMove& move) {
+  const State& s = g.s;
+  if (!IsInside(g.c, move) && (IsStar(g.c) || !IsPlaneResting(g.c, s))) return Refused(ErrorId::kOutsideWindow);
   if (!IsOnTrack(s)) {
     const ErrorId why = WhyNotOn(g.c, s, CoverOf(g.c, s.plane, move));
     if (why != ErrorId::kNone) return RefusedThere(s, why);
@@ -201,19 +207,110 @@ Answer Turn(const Given& g, const MoveC& command, Ask ask) noexcept {
   }
   if (const ObjectInfo object = InTheWay(g.c, s.plane, move, IsOnTrack(s))) return Refused(ErrorId::kCollision, object);
   if (const ObjectInfo object = InTheTurn(g.c, s, move)) return Refused(ErrorId::kCollision, object);
-  if (!inside && s.mode == CommandMode::kFreeMovement) s.mode = CommandMode::kCRotationFreeMovement;
-  if (!inside && s.mode == CommandMode::kOnTrack) s.mode = CommandMode::kCRotationOnTrack;
+  return {};
+}
+
+// From now on C moves so.
+Answer PutTurn(const Given& g, const CoordinateMove& move, const Endless& endless) {
+  State& s = g.s;
+  if (!IsInside(g.c, move)) {
+    if (s.mode == CommandMode::kFreeMovement) s.mode = CommandMode::kCRotationFreeMovement;
+    if (s.mode == CommandMode::kOnTrack) s.mode = CommandMode::kCRotationOnTrack;
+  }
   s.others.back() = move;
   ShowCourse(g.c, s);
   Reserve(g.c, s, IsOnTrack(s));
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kMoveC);
-  s.limited_by = limited_by;
+  s.endless.back() = endless;
   return {Status::Ok(), move.profile.duration()};
+}
+
+// To `target`, a position that depends on where C is and would come to rest.
+template <typename Command, typename Target>
+Answer TurnTo(const Given& g, const Command& command, Ask ask, const Target& target, const Endless& endless = {}) {
+  State& s = g.s;
+  if (const ErrorId why = WhyNotTurn(s, ask); why != ErrorId::kNone) return Refused(why);
+  CoordinateMove move = s.others.back();
+  const KinematicState from = Now(g.c, move);
+  const CoordinateParams free = Windowed(g.c.params.c, from.position, false);
+  LimitedBy limited_by;
+  const Limits limits = LimitsOf(command, free, limited_by);
+  const double to = target(from, limits);
+  if (!PlanCoordinate(g.c.planner, from, to, limits, free, move.profile)) return Refused(ErrorId::kPlanning);
+  move.begin = g.c.cycle.count;
+  if (const Answer why = WhyNotTurning(g, move); why.status.failed()) return why;
+  s.limited_by = limited_by;
+  return PutTurn(g, move, endless);
+}
+
+// Dynamics that would turn it further than it may give way to the greatest ones: with these it comes to rest within
+// what it has reserved.
+Answer HaltTurn(const Given& g, const MoveC& command) {
+  State& s = g.s;
+  if (const ErrorId why = WhyNotTurn(s, Ask::kMoveC); why != ErrorId::kNone) return Refused(why);
+  CoordinateMove move = s.others.back();
+  const KinematicState from = Now(g.c, move);
+  const CoordinateParams params = ParamsOf(g.c, s, kOthers.size() - 1);
+  move.begin = g.c.cycle.count;
+  const auto plan = [&](const Limits& limits) { return PlanRest(g.c.planner, from, limits, params, move.profile); };
+  const bool soft = plan(LimitsOf(command, params, s.limited_by)) && !WhyNotTurning(g, move).status.failed();
+  if (!soft && !plan(params.maximum.limits())) return Refused(ErrorId::kPlanning);
+  return PutTurn(g, move, {});
+}
+
+// Z, A or B comes to rest.
+Answer HaltOne(const Given& g, const MoveToPosition& command, std::size_t other) {
+  State& s = g.s;
+  if (const ErrorId why = WhyNot(s, Ask::kMoveAuxiliary); why != ErrorId::kNone) return Refused(why);
+  const CoordinateParams params = ParamsOf(g.c, s, other);
+  const Limits limits = LimitsOf(command, params, s.limited_by);
+  CoordinateMove& move = s.others[other];
+  if (!PlanRest(g.c.planner, Now(g.c, move), limits, params, move.profile)) return Refused(ErrorId::kPlanning);
+  move.begin = g.c.cycle.count;
+  Take(g, static_cast<Slot>(kMoveZ + other));
+  return {Status::Ok(), move.profile.duration()};
+}
+
+}  // namespace
+
+Answer Turn(const Given& g, const MoveC& command, Ask ask) noexcept {
+  return TurnTo(g, command, ask, [&](const KinematicState& from, const Limits& limits) {
+    return TargetOf(g.c.params, from, trajectory::StopPosition(from, limits), command);
+  });
 }
 
 Answer CarryOut(const Given& g, const MoveC& command) noexcept {
   return Turn(g, command, Ask::kMoveC);
+}
+Answer CarryOut(const Given& g, const MoveRelativeC& command) noexcept {
+  return TurnTo(g, command, Ask::kMoveC,
+                [&](const KinematicState& from, const Limits&) { return from.position + command.distance; });
+}
+Answer CarryOut(const Given& g, const MoveVelocityC& command) noexcept {
+  if (command.velocity == 0) return HaltTurn(g, {.deceleration = command.deceleration, .jerk = command.jerk});
+  const MoveC as{.velocity = std::abs(command.velocity),
+                 .acceleration = command.acceleration,
+                 .deceleration = command.deceleration,
+                 .jerk = command.jerk};
+  const double sense = std::copysign(1.0, command.velocity);
+  const Endless endless{.on = true,
+                        .velocity = sense * std::min(*as.velocity, g.c.params.c.maximum.velocity),
+                        .end = ErrorId::kTargetBehindLimit};
+  return TurnTo(
+      g, as, Ask::kMoveC, [&](const KinematicState&, const Limits&) { return sense * kFar; }, endless);
+}
+Answer CarryOut(const Given& g, const HaltZ& command) noexcept {
+  return HaltOne(g, {.deceleration = command.deceleration, .jerk = command.jerk}, 0);
+}
+Answer CarryOut(const Given& g, const HaltA& command) noexcept {
+  return HaltOne(g, {.deceleration = command.deceleration, .jerk = command.jerk}, 1);
+}
+Answer CarryOut(const Given& g, const HaltB& command) noexcept {
+  return HaltOne(g, {.deceleration = command.deceleration, .jerk = command.jerk}, 2);
+}
+Answer CarryOut(const Given& g, const HaltC& command) noexcept {
+  return HaltTurn(g, {.deceleration = command.deceleration, .jerk = command.jerk});
 }
 
 }  // namespace takt::mover

@@ -68,7 +68,9 @@ void Add(const Area& kind, const PlaneMotion& m, double t, Cover& out) {
 
 void Add(const Context& c, const Area& kind, const PlaneMove& move, Cover& out) {
   Add(kind, move.motion, Elapsed(c, move.begin), out);
-  if (move.waits) Add(kind, {{move.motion.end_x, move.motion.end_y}, {move.next.x, move.next.y}}, out);
+  const planar::Place rest{move.motion.end_x, move.motion.end_y}, next{move.next.x, move.next.y};
+  if (move.waits && move.each) Add(kind, {rest, {next.x, rest.y}, next, {rest.x, next.y}}, out);
+  if (move.waits && !move.each) Add(kind, {rest, next}, out);
   // If nothing takes over before the corner it goes on to that.
   if (move.passes) {
     const PlaneMotion& m = move.motion;

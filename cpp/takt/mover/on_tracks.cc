@@ -273,7 +273,7 @@ Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
   if (const ErrorId why = WhyNot(s, Ask::kMoveOnTrack); why != ErrorId::kNone) return Refused(why);
   planar::Rider next = g.c.rider();
   LimitedBy limited_by;
-  next.pace = PaceOf(g.c.params, LimitsOf(command, g.c.params.xy, limited_by));
+  next.pace = PaceOf(g.c.params, LimitsOf(command, g.c.params.xy, limited_by), command.dynamics_reduction);
   if (const planar::Verdict way = FindWay(g.c, command, s, next); way.error != ErrorId::kNone) {
     return Refused(way);
   }
@@ -281,7 +281,7 @@ Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
   if (command.gap && *command.gap < least - planar::kSame) return RefusedGap(least);
   s.limited_by = limited_by;
   next.gap = command.gap.value_or(std::max(g.c.params.gap, least));
-  End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
+  for (const Slot slot : {kHalt, kHaltOnTrack}) End(g.c, slot, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kPlane);
   g.c.rider() = next;
   TakeRoute(g.c, next.route);

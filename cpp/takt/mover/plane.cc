@@ -113,6 +113,26 @@ PlaneMotion StandingAt(double x, double y) noexcept {
   return motion;
 }
 
+Limits LimitsOfEach(const Limits& maximum) noexcept {
+  Limits even = maximum;
+  even.acceleration = even.deceleration = std::min(maximum.acceleration, maximum.deceleration);
+  return ShareOf(kEach, even);
+}
+
+bool FitsEach(const PlaneState& at, const Limits& each) noexcept {
+  return Fits(at.x, 1, each) && Fits(at.y, 1, each);
+}
+
+PlaneMotion MotionOfEach(const Profile& x, const Profile& y) noexcept {
+  PlaneMotion motion;
+  motion.share = kEach;
+  motion.along = x;
+  motion.across = y;
+  motion.end_x = x.end().position;
+  motion.end_y = y.end().position;
+  return motion;
+}
+
 double DurationOf(const PlaneMotion& m) noexcept {
   return std::max(m.along.duration(), m.across.duration());
 }

@@ -1,6 +1,10 @@
 // Motions of X and Y: on a straight line, from one line onto another, to rest.
 //
-// Limits hold along the way. A motion has a frame: one coordinate along a direction, the other across it, each with a
+// Limits hold along the way. X and Y may also move each by itself (PlanEach): that is a motion whose frame is that of X
+// and Y. Whatever one of them does, the other has the share kEach of the limits, so that the vectors keep them and
+// neither has to know of the other.
+//
+// A motion has a frame: one coordinate along a direction, the other across it, each with a
 // profile of its own. On a line there is nothing across. Where a move begins in the middle of another one the new line
 // is the direction; what the mover has across it, it brakes and takes back while it already goes along. For that the
 // limits are split: the share s of each for across, sqrt(1 - s²) for along, so that velocity, acceleration and jerk as
@@ -58,6 +62,15 @@ bool PlanRest(trajectory::Planner& planner, const PlaneMotion& motion, double t,
 // direction, and then the velocity on a line.
 bool PlanRest(trajectory::Planner& planner, const PlaneState& from, const trajectory::Limits& limits,
               PlaneMotion& out) noexcept;
+
+// Of the limits, that X and Y each have that moves by itself: as vectors, both keep the limits whatever they do.
+inline constexpr double kEach = 0.70710678118654752;
+// Limits of X or Y by itself. One may brake while the other speeds up, so the smaller acceleration counts.
+trajectory::Limits LimitsOfEach(const trajectory::Limits& maximum) noexcept;
+// Whether X and Y can each go on by themselves from this state within such limits.
+bool FitsEach(const PlaneState& at, const trajectory::Limits& each) noexcept;
+// X and Y each by itself from now on; both profiles count from the origin of the coordinates.
+PlaneMotion MotionOfEach(const trajectory::Profile& x, const trajectory::Profile& y) noexcept;
 
 // Moves all of it.
 inline void Shift(double x, double y, PlaneMotion& motion) noexcept {

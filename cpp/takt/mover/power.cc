@@ -105,4 +105,16 @@ Answer CarryOut(const Given& g, const Halt& command) noexcept {
   return {Status::Ok(), planar::Brake(rider.at, rider.pace.brakes()).ends_s.back()};
 }
 
+Answer CarryOut(const Given& g, const HaltOnTrack& command) noexcept {
+  State& s = g.s;
+  if (const ErrorId why = WhyNot(s, Ask::kHaltOnTrack); why != ErrorId::kNone) return Refused(why);
+  const MoveToPosition as{.deceleration = command.deceleration, .jerk = command.jerk};
+  const Limits limits = LimitsOf(as, g.c.params.xy, s.limited_by);
+  for (const Slot slot : {kPlane, kPassing}) End(g.c, slot, FeedbackState::kAborted, ErrorId::kNone, s);
+  BringToRestOnTrack(g.c, limits, s);
+  Take(g, kHaltOnTrack);
+  const planar::Rider& rider = g.c.rider();
+  return {Status::Ok(), planar::Brake(rider.at, rider.pace.brakes()).ends_s.back()};
+}
+
 }  // namespace takt::mover

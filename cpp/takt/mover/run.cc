@@ -178,11 +178,11 @@ void RestOnTrack(const trajectory::Limits* softly, planar::Rider& rider) {
 }
 
 // Returns whether a stop on a track with these dynamics would leave the stators.
-bool LeadsAway(const Context& c, const trajectory::Limits& softly, const Rest& rest, const State& s) {
+bool LeadsAway(const Context& c, const trajectory::Limits& softly, const CoordinateMove& turn, const State& s) {
   if (!IsOnTrack(s)) return false;
   planar::Rider then = c.rider();
   RestOnTrack(&softly, then);
-  return WhyNotAlong(c, s, then, rest.others.back()) != ErrorId::kNone;
+  return WhyNotAlong(c, s, then, turn) != ErrorId::kNone;
 }
 
 }  // namespace
@@ -198,8 +198,8 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
     return;
   }
   // As hard as it can it stays within what it has reserved.
-  const bool hard =
-      !plane || InTheWay(c, rest.plane, rest.others.back(), IsOnTrack(s)) || LeadsAway(c, *plane, rest, s);
+  const bool hard = !plane || InTheWay(c, rest.plane, rest.others.back(), IsOnTrack(s)) ||
+                    LeadsAway(c, *plane, rest.others.back(), s);
   if (plane && hard) rest = PlanRest(c, nullptr, s);
   // As the guard knows it.
   if (hard && !IsOnTrack(s) && s.escape.cycle == c.cycle.count) {
@@ -213,6 +213,10 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
   s.external = {};
   if (IsStar(c)) s.formation.whole = &c.params == &c.fleet.bodies[c.index].alone;
   Reserve(c, s, IsOnTrack(s));
+}
+
+void BringToRestOnTrack(const Context& c, const trajectory::Limits& limits, State& s) noexcept {
+  RestOnTrack(LeadsAway(c, limits, s.others.back(), s) ? nullptr : &limits, c.rider());
 }
 
 void Fail(const Context& c, ErrorId error, State& s, bool aborts, const ObjectInfo& object) noexcept {

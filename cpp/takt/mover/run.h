@@ -60,6 +60,9 @@ bool PlanStop(const Context& c, const State& s, const SetPoint& at, const trajec
 // from outside are over; a mover that they have taken off its place on a track goes back there.
 void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) noexcept;
 
+// Along its track alone, with these dynamics where they do not lead it off the stators, else with the maximum.
+void BringToRestOnTrack(const Context& c, const trajectory::Limits& limits, State& s) noexcept;
+
 inline trajectory::Limits StandardOf(const PlaneParams& p) noexcept {
   return p.standard.value_or(p.maximum).limits();
 }

@@ -37,6 +37,14 @@ void describe(Description<History>& d) {
   d.internal<&History::count>("Of all commands so far.");
 }
 
+void describe(Description<Goal>& d) {
+  d.named("MoverGoal");
+  d.about("Where a command leads X or Y by itself.");
+  d.internal<&Goal::goes>("It leads it there; else it comes to rest, or stands.");
+  d.internal<&Goal::target>(unit::mm, "The position.");
+  d.internal<&Goal::limits>("Of the command.");
+}
+
 void describe(Description<PlaneMove>& d) {
   using P = PlaneMove;
   d.about("A motion of X and Y in progress.");
@@ -44,6 +52,8 @@ void describe(Description<PlaneMove>& d) {
   d.internal<&P::begin>("Cycle in which it began.");
   d.internal<&P::waits>("It only comes to rest, and then goes to next.");
   d.internal<&P::next>("What follows.");
+  d.internal<&P::each>("X and Y move each by itself.");
+  d.internal<&P::goals>("Where they go then.");
   d.internal<&P::turns>("C belongs to it.");
   d.internal<&P::limits>("Of the command.");
   d.internal<&P::tried>("Whether it can go round a corner has been looked at.");
@@ -69,6 +79,17 @@ void describe(Description<CoordinateMove>& d) {
   d.about("A motion of a coordinate in progress.");
   d.internal<&CoordinateMove::profile>("Where it leads.");
   d.internal<&CoordinateMove::begin>("Cycle in which it began.");
+}
+
+void describe(Description<Endless>& d) {
+  using E = Endless;
+  d.named("MoverEndless");
+  d.about("A move by velocity.");
+  d.internal<&E::on>("There is one.");
+  d.internal<&E::reached>("Its velocity, as said.");
+  d.internal<&E::velocity>(unit::mm_s, "Its velocity; of C: deg/s.");
+  d.internal<&E::end>("Why it ends where it does.");
+  d.internal<&E::object>("What is in its way there.");
 }
 
 void describe(Description<External>& d) {
@@ -124,6 +145,7 @@ void describe(Description<State>& d) {
   d.internal<&S::system>("Coordinate system where it is.");
   d.internal<&S::part>("Part that its middle is on.");
   d.internal<&S::others>("Motions of Z, A, B, C.");
+  d.internal<&S::endless>("Moves of X, Y and C by velocity.");
   d.internal<&S::external>("Set points from outside.");
   d.internal<&S::set_point>("Where it is at the end of the last cycle.");
   d.internal<&S::carried>("By parts: its place was put so much further on, without any motion.");

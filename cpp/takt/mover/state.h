@@ -29,13 +29,22 @@ inline constexpr std::array kOthers = {kZ, kA, kB, kC};  // besides X and Y
 
 using SetPoint = std::array<KinematicState, kCoordinates>;  // mm, deg
 
+// Where a command leads X or Y by itself.
+struct Goal {
+  bool goes = false;  // it leads it there; else it comes to rest, or stands
+  double target = 0;  // mm
+  trajectory::Limits limits;
+};
+
 // A motion of X and Y in progress.
 struct PlaneMove {
   PlaneMotion motion;
   std::uint64_t begin = 0;  // cycle
   bool waits = false;       // it only comes to rest, and then goes to `next`
   MoveToPosition next;      // with all its dynamics
-  bool turns = false;       // C belongs to it
+  bool each = false;        // X and Y move each by itself, to their goals
+  std::array<Goal, 2> goals{};
+  bool turns = false;  // C belongs to it
   trajectory::Limits limits;
   bool tried = false;   // whether it can go round a corner has been looked at
   bool passes = false;  // it goes round a corner at its end: what is buffered next takes over where it ends
@@ -60,6 +69,16 @@ struct CoordinateMove {
   trajectory::Profile profile;
   std::uint64_t begin = 0;  // cycle
 };
+
+// A move of X, Y or C by velocity: as far as there is room.
+struct Endless {
+  bool on = false;
+  bool reached = false;          // its velocity, as said
+  double velocity = 0;           // mm/s, deg/s
+  ErrorId end = ErrorId::kNone;  // why it ends where it does
+  ObjectInfo object{};           // that is in its way there
+};
+inline constexpr std::array kEndless = {kX, kY, kC};
 
 // Set points from outside.
 struct External {
@@ -94,11 +113,14 @@ struct FormationState {
 enum Slot : std::size_t {
   kPower,
   kPlane,
+  kMoveX,
+  kMoveY,
   kMoveZ,
   kMoveA,
   kMoveB,
   kMoveC,
   kHalt,
+  kHaltOnTrack,
   kExternal,
   kStopExternal,
   kWait,
@@ -125,6 +147,7 @@ struct State {
   GearState gear;
   FormationState formation;
   std::array<CoordinateMove, kOthers.size()> others;  // in the order of kOthers
+  std::array<Endless, kEndless.size()> endless;       // in the order of kEndless
   External external;
   SetPoint set_point{};     // at the end of the last cycle
   planar::Place carried{};  // mm, by parts: its place was put so much further on, without any motion
@@ -133,9 +156,11 @@ struct State {
 
 State MakeState(const MoverParams& params);
 
+void describe(Description<Goal>&);
 void describe(Description<PlaneMove>&);
 void describe(Description<Escape>&);
 void describe(Description<CoordinateMove>&);
+void describe(Description<Endless>&);
 void describe(Description<External>&);
 void describe(Description<GearState>&);
 void describe(Description<FormationState>&);

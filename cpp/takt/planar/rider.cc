@@ -18,6 +18,15 @@ trajectory::Limits LimitsNow(const Rider& r) noexcept {
   return limits;
 }
 
+Route TrailOf(const Rider& r) noexcept {
+  Route trail;
+  if (!r.on) return trail;
+  const bool stays = Rests(r.at) && (r.aim == Aim::kRest || r.there);
+  trail.count = stays ? 1 : r.route.count;
+  std::copy_n(r.route.tracks.begin(), trail.count, trail.tracks.begin());
+  return trail;
+}
+
 void describe(Enumeration<Aim>& e) {
   e.about("What a mover on a track is about.");
   e.value(Aim::kRest, "rest", "Come to rest and stay.");

@@ -88,6 +88,10 @@ inline bool Rests(const KinematicState& x) noexcept {
   return x.velocity == 0 && x.acceleration == 0;
 }
 
+// The tracks that it is to go along, that where it is first; of one that stands and is to stay, that one alone. Empty:
+// it is on none.
+Route TrailOf(const Rider& r) noexcept;
+
 void describe(Enumeration<Aim>&);
 void describe(Enumeration<Waits>&);
 void describe(Description<Pace>&);

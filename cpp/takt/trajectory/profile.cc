@@ -83,6 +83,22 @@ void Profile::Cut(double t) noexcept {
   }
 }
 
+void Profile::Skip(double t) noexcept {
+  if (!(t > 0)) return;
+  const KinematicState at = At(t);
+  Profile rest{at, at};
+  for (int i = 0; i < piece_count; ++i) {
+    const double end = piece_ends_s[Index(i)], begin = end - Length(i);
+    if (end <= t) continue;
+    const Piece& q = pieces[Index(i)];
+    const KinematicState from = q.At(std::max(t - begin, 0.0));
+    rest.pieces[Index(rest.piece_count)] = {from.position, from.velocity, from.acceleration, q.jerk};
+    rest.piece_ends_s[Index(rest.piece_count++)] = end - t;
+  }
+  if (rest.piece_count > 0) rest.end_state = end_state;
+  *this = rest;
+}
+
 double Profile::TimeAt(double position, double begin_s) const noexcept {
   for (int i = 0; i < piece_count; ++i) {
     const Piece& q = pieces[Index(i)];

@@ -36,6 +36,9 @@ struct Profile {
   // Ends the motion at `t`, with what it is there.
   void Cut(double t) noexcept;
 
+  // Begins the motion at `t` instead, with what it is there.
+  void Skip(double t) noexcept;
+
   // Moves the whole motion by `distance`.
   void Shift(double distance) noexcept {
     start_state.position += distance;

@@ -131,7 +131,8 @@ class RandomWorld {
     const std::string &mover = any(rig.machine.movers), &other = any(rig.machine.movers);
     const std::string& track = any(rig.machine.tracks);
     const std::string place = "x: " + Number(Uniform(-200, 1900)) + ", y: " + Number(Uniform(-500, 1100));
-    switch (Whole(0, 24)) {
+    const std::string axis = Whole(0, 1) ? "x" : "y";
+    switch (Whole(0, 32)) {
       case 0:
       case 1:
         rig.Give(mover, "enable");
@@ -182,6 +183,26 @@ class RandomWorld {
         break;
       case 19:
         return StartLeading();
+      case 20:
+      case 21:
+        rig.Give(mover, "move_" + axis, "{position: " + Number(Uniform(-500, 1900)) + "}");
+        break;
+      case 22:
+      case 23:
+        rig.Give(mover, "move_relative_" + axis, "{distance: " + Number(Uniform(-500, 500)) + "}");
+        break;
+      case 24:
+      case 25:
+        rig.Give(mover, "move_velocity_" + axis, "{velocity: " + Number(Uniform(-1000, 1000)) + "}");
+        break;
+      case 26:
+        rig.Give(mover, Whole(0, 1) ? "halt_on_track" : "halt_" + axis, "{deceleration: 800}");
+        break;
+      case 27:
+        if (Whole(0, 1)) rig.Give(mover, "move_velocity_c", "{velocity: " + Number(Uniform(-300, 300)) + "}");
+        Whole(0, 1) ? rig.Give(mover, "halt_c", "{deceleration: 99}")
+                    : rig.Give(mover, "move_relative_c", "{distance: 9}");
+        break;
       default:
         rig.Give(mover, "move_on_track",
                  "{track: " + (Whole(0, 1) ? track : std::string("back")) + ", position: " + Number(Uniform(0, 1500)) +
@@ -267,7 +288,7 @@ TEST(MoversApart, WhateverTheyAreTold) {
   for (std::uint32_t seed = 1; seed <= static_cast<std::uint32_t>(Trials(12)) && !HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
     RandomWorld world(seed);
-    world.Go(150);
+    world.Go(220);
     in_turn += world.in_turn;
     held += world.held;
     waits += world.waits;

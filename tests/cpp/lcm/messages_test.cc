@@ -350,6 +350,21 @@ TEST(Messages, BeltStateKeepsEveryNumber) {
       machine, "infeed");
 }
 
+// PL-86
+TEST(Messages, MoverTrailNamesItsTracksByTheirNumbers) {
+  engine::Machine machine = TestMachine();
+  machine.movers = {{.name = "other"}, {.name = "shuttle"}};
+  engine::TrailSnapshot snapshot{.cycle = 12, .index = 1};
+  EXPECT_EQ(ToMessage(snapshot, machine).count, 0);
+  snapshot.trail.count = 3;
+  snapshot.trail.tracks = {4, 0, 7};
+  const msgs::mover_trail message = ToMessage(snapshot, machine);
+  EXPECT_EQ(message.name, "shuttle");
+  EXPECT_EQ(message.cycle, 12);
+  EXPECT_EQ(message.count, 3);
+  EXPECT_EQ(message.tracks, (std::vector<std::int64_t>{5, 1, 8}));
+}
+
 // EN-20
 TEST(Messages, TrackStateKeepsEveryNumber) {
   engine::Machine machine = TestMachine();

@@ -178,7 +178,7 @@ TEST(MoverStates, RandomWalkKeepsToTheTables) {
       mode = rig.state.mode;
     };
     for (int i = 0; i < 60; ++i) {
-      switch (Whole(random, 0, 13)) {
+      switch (Whole(random, 0, 18)) {
         case 0:
         case 1:
         case 2:
@@ -211,6 +211,22 @@ TEST(MoverStates, RandomWalkKeepsToTheTables) {
         }
         case 12:
           rig.Give(StopExternalSetpointGeneration{});
+          break;
+        case 13:
+          rig.Give(MoveX{.position = Uniform(random, -500, 500)});
+          break;
+        case 14:
+          rig.Give(MoveVelocityY{.velocity = Uniform(random, -500, 500)});
+          break;
+        case 15:
+          rig.Give(MoveVelocityC{.velocity = Uniform(random, -500, 500)});
+          break;
+        case 16:
+          rig.Give(HaltX{});
+          rig.Give(HaltY{});
+          break;
+        case 17:
+          rig.Give(HaltC{});
           break;
         default:
           if (Whole(random, 0, 2) == 0) Fail(rig.context(), ErrorId::kOverrun, rig.state);

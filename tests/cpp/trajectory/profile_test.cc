@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -80,6 +81,23 @@ TEST(Profile, AppendsAnother) {
   EXPECT_EQ(p.size(), 4);
   EXPECT_EQ(p.end(), next.end());
   EXPECT_EQ(p.At(5.5), next.At(1.5));
+}
+
+// What is left of it is the same motion.
+TEST(Profile, SkipsItsBeginning) {
+  const Profile whole = Ramp();
+  for (const double t : {-1.0, 0.0, 0.4, 1.0, 2.2, 3.0, 3.9, 4.0, 7.0}) {
+    Profile rest = whole;
+    rest.Skip(t);
+    const double from = std::max(t, 0.0);
+    EXPECT_NEAR(rest.duration(), std::max(0.0, 4 - from), 1e-15);
+    for (const double later : {0.0, 0.1, 0.6, 1.0, 2.5, 5.0}) {
+      const KinematicState is = rest.At(later), was = whole.At(from + later);
+      EXPECT_NEAR(is.position, was.position, 1e-12);
+      EXPECT_NEAR(is.velocity, was.velocity, 1e-12);
+      EXPECT_NEAR(is.acceleration, was.acceleration, 1e-12);
+    }
+  }
 }
 
 TEST(Profile, RefusesWhatDoesNotFit) {

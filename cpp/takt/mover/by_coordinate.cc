@@ -1,0 +1,338 @@
+#include "takt/mover/by_coordinate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "takt/mover/admission.h"
+#include "takt/mover/coordinate.h"
+#include "takt/mover/course.h"
+#include "takt/mover/formation.h"
+#include "takt/mover/ground.h"
+#include "takt/mover/on_parts.h"
+
+namespace takt::mover {
+
+using trajectory::Limits;
+using trajectory::Profile;
+
+namespace {
+
+constexpr double kRoom = 0.1;   // mm: to within so much it uses the room there is
+constexpr double kLittle = 1;   // mm: less room than that is none
+constexpr int kDoublings = 31;  // of kLittle, up to kFar
+
+// What X or Y may have by itself.
+PlaneParams ParamsOfEach(const PlaneParams& p) {
+  const auto as = [](const Limits& l) { return Dynamics{l.velocity, l.acceleration, l.deceleration, l.jerk}; };
+  const Limits most = LimitsOfEach(p.maximum.limits()), standard = StandardOf(p);
+  return {as(most), as({std::min(standard.velocity, most.velocity), std::min(standard.acceleration, most.acceleration),
+                        std::min(standard.deceleration, most.deceleration), std::min(standard.jerk, most.jerk)})};
+}
+
+KinematicState& Of(PlaneState& at, Coordinate which) {
+  return which == kX ? at.x : at.y;
+}
+Profile& Of(PlaneMotion& motion, Coordinate which) {
+  return which == kX ? motion.along : motion.across;
+}
+
+bool PlanToGoal(trajectory::Planner& planner, const KinematicState& from, const Goal& goal, Profile& out) {
+  if (!goal.goes) return planner.Stop(from, goal.limits, out).ok();
+  return planner.ToPosition(from, goal.target, 0, goal.limits, out).ok();
+}
+
+std::array<Goal, 2> RestingGoals(const Context& c) {
+  const Goal rest{.limits = StandardOf(ParamsOfEach(c.params.xy))};
+  return {rest, rest};
+}
+
+void PutNext(PlaneMove& move) {
+  move.next = {.x = move.goals[0].goes ? move.goals[0].target : move.motion.end_x,
+               .y = move.goals[1].goes ? move.goals[1].target : move.motion.end_y};
+}
+
+// How X and Y move if one of them is told to go to this goal, and how long that one takes.
+struct Plan {
+  PlaneMove move;
+  double duration = 0;  // s
+};
+std::optional<Plan> PlanEach(const Context& c, const State& s, Coordinate which, const Goal& goal) {
+  const PlaneMove& old = s.plane;
+  const double now = Elapsed(c, old.begin);
+  const Limits maximum = c.params.xy.maximum.limits(), each = LimitsOfEach(maximum);
+  PlaneState at = At(old.motion, now);
+  Plan plan;
+  PlaneMove& move = plan.move;
+  move.begin = c.cycle.count;
+  move.each = true;
+  move.goals = old.each ? old.goals : RestingGoals(c);
+  move.goals[which] = goal;
+  move.goes = move.goals[0].goes || move.goals[1].goes;
+  if (old.each && !old.waits) {
+    Profile x = old.motion.along, y = old.motion.across;
+    x.Skip(now);
+    y.Skip(now);
+    move.motion = MotionOfEach(x, y);
+    Profile& its = Of(move.motion, which);
+    if (!PlanToGoal(c.planner, Of(at, which), goal, its)) return {};
+    plan.duration = its.duration();
+    move.motion = MotionOfEach(move.motion.along, move.motion.across);
+    return plan;
+  }
+  if (FitsEach(at, each)) {
+    if (!PlanToGoals(c, at, move)) return {};
+    plan.duration = Of(move.motion, which).duration();
+    return plan;
+  }
+  // It is too fast for that: it comes to rest on its line first.
+  const auto rests = [&](const Limits& limits) { return PlanRest(c.planner, old.motion, now, limits, move.motion); };
+  if (!rests(StandardOf(c.params.xy)) || SpeedBound(move.motion) > maximum.velocity * (1 + 1e-9)) {
+    if (!rests(maximum)) return {};
+    move.hard = true;
+  }
+  PlaneMove then = move;
+  const double rest = DurationOf(move.motion);
+  at = At(move.motion, rest);
+  if (!PlanToGoals(c, at, then)) return {};
+  move.waits = true;
+  PutNext(move);
+  plan.duration = rest + Of(then.motion, which).duration();
+  return plan;
+}
+
+// Why X and Y may not move so: none.
+planar::Verdict WhyNotSo(const Context& c, const State& s, const PlaneMove& move) {
+  if (const ErrorId why = WhyNotOn(c, s, CoverOf(c, move, s.others.back())); why != ErrorId::kNone) {
+    const Answer answer = RefusedThere(s, why);
+    return {why, answer.object};
+  }
+  if (const ObjectInfo object = InTheWay(c, move, s.others.back(), false)) return {ErrorId::kCollision, object};
+  return {ErrorId::kNone, {}};
+}
+
+Slot SlotOf(Coordinate which) {
+  return which == kX ? kMoveX : kMoveY;
+}
+
+// X and Y move so from now on, by a command of one of them.
+void Put(const Given& g, Coordinate which, const PlaneMove& move, const Endless& endless) {
+  State& s = g.s;
+  if (s.plane.turns) {  // that turn belonged to the move before
+    CoordinateMove& turn = s.others.back();
+    const CoordinateParams& c = g.c.params.c;
+    PlanRest(g.c.planner, Now(g.c, turn), StandardOf(c), ParamsOf(g.c, s, kOthers.size() - 1), turn.profile);
+    turn.begin = g.c.cycle.count;
+  }
+  End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
+  End(g.c, kPlane, FeedbackState::kAborted, ErrorId::kNone, s);
+  if (!s.plane.each) EndEach(g.c, s);
+  Take(g, SlotOf(which));
+  s.plane = move;
+  s.endless[which] = endless;
+  Reserve(g.c, s, false);
+}
+
+Answer MoveEach(const Given& g, Coordinate which, const Goal& goal) {
+  const std::optional<Plan> plan = PlanEach(g.c, g.s, which, goal);
+  if (!plan) return Refused(ErrorId::kPlanning);
+  if (const planar::Verdict why = WhyNotSo(g.c, g.s, plan->move); why.error != ErrorId::kNone) return Refused(why);
+  Put(g, which, plan->move, {});
+  return {Status::Ok(), plan->duration};
+}
+
+// As far in a direction as there is room: what has room further on has it nearer, too, so halving finds where it ends.
+Answer MoveEndlessly(const Given& g, Coordinate which, double velocity, const Limits& limits) {
+  const Context& c = g.c;
+  const double sense = std::copysign(1.0, velocity);
+  const PlaneState at = At(g.s.plane.motion, Elapsed(c, g.s.plane.begin));
+  const KinematicState from = which == kX ? at.x : at.y;
+  const double stop = trajectory::StopPosition(from, limits);
+  std::optional<Plan> best;
+  planar::Verdict end{ErrorId::kTargetBehindLimit, {}};
+  const auto reaches = [&](double way) {
+    const double target = std::clamp(stop + sense * way, -kFar, kFar);
+    std::optional<Plan> plan = PlanEach(c, g.s, which, {true, target, limits});
+    if (!plan) return false;
+    const planar::Verdict why = WhyNotSo(c, g.s, plan->move);
+    if (why.error != ErrorId::kNone) {
+      end = why;
+      return false;
+    }
+    best = plan;
+    return true;
+  };
+  if (!reaches(2 * kFar)) {
+    double room = 0, wanted = kLittle;
+    for (int i = 0; i < kDoublings && reaches(wanted); ++i) {
+      room = wanted;
+      wanted *= 2;
+    }
+    if (!best) return end.error == ErrorId::kTargetBehindLimit ? Refused(ErrorId::kPlanning) : Refused(end);
+    while (wanted - room > kRoom) {
+      const double middle = 0.5 * (room + wanted);
+      (reaches(middle) ? room : wanted) = middle;
+    }
+  }
+  Put(g, which, best->move, {.on = true, .velocity = sense * limits.velocity, .end = end.error, .object = end.object});
+  return {Status::Ok(), best->duration};
+}
+
+// Dynamics of a command of X or Y by itself, no more than it may have.
+template <typename Command>
+Limits LimitsOfEachIn(const Given& g, const Command& command) {
+  return LimitsOf(command, ParamsOfEach(g.c.params.xy), g.s.limited_by);
+}
+
+// As LimitsOf wants it: a velocity has a sign.
+template <typename Command>
+MoveToPosition Unsigned(const Command& command) {
+  return {.velocity = command.velocity == 0 ? std::nullopt : std::optional(std::abs(command.velocity)),
+          .acceleration = command.acceleration,
+          .deceleration = command.deceleration,
+          .jerk = command.jerk};
+}
+
+Answer MoveTo(const Given& g, Coordinate which, const auto& command) {
+  if (const ErrorId why = WhyNot(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
+  double x = command.position, y = command.position;
+  if (const ErrorId why = ToItsSystem(g.c, g.s, command.reference, x, y); why != ErrorId::kNone) return Refused(why);
+  return MoveEach(g, which, {true, which == kX ? x : y, LimitsOfEachIn(g, command)});
+}
+
+Answer MoveBy(const Given& g, Coordinate which, const auto& command) {
+  if (const ErrorId why = WhyNot(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
+  PlaneState at = At(g.s.plane.motion, Elapsed(g.c, g.s.plane.begin));
+  return MoveEach(g, which, {true, Of(at, which).position + command.distance, LimitsOfEachIn(g, command)});
+}
+
+Answer MoveOn(const Given& g, Coordinate which, const auto& command) {
+  if (const ErrorId why = WhyNot(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
+  const Limits limits = LimitsOfEachIn(g, Unsigned(command));
+  if (command.velocity == 0) return MoveEach(g, which, {.limits = limits});
+  return MoveEndlessly(g, which, command.velocity, limits);
+}
+
+// Both come to rest, on the line that they are on.
+PlaneMove RestOnLine(const Context& c, const State& s, const Limits& limits) {
+  PlaneMove move;
+  move.begin = c.cycle.count;
+  const Limits maximum = c.params.xy.maximum.limits();
+  const double now = Elapsed(c, s.plane.begin);
+  const bool found = PlanRest(c.planner, s.plane.motion, now, limits, move.motion);
+  if (!found || SpeedBound(move.motion) > maximum.velocity * (1 + 1e-9)) {
+    PlanRest(c.planner, s.plane.motion, now, maximum, move.motion);
+  }
+  return move;
+}
+
+// It is coming to rest already, or stands, and only the other coordinate may go on from there.
+Plan LeaveAtRest(const Context& c, const State& s, Coordinate which) {
+  Plan plan;
+  plan.duration = std::max(0.0, DurationOf(s.plane.motion) - Elapsed(c, s.plane.begin));
+  if (s.plane.goals[which == kX ? 1 : 0].goes) {
+    plan.move = s.plane;
+    plan.move.goals[which].goes = false;
+    PutNext(plan.move);
+    return plan;
+  }
+  plan.move.motion = s.plane.motion;
+  plan.move.begin = s.plane.begin;
+  plan.move.hard = s.plane.hard;
+  return plan;
+}
+
+// Dynamics that would lead it where it must not be give way to the greatest ones: with these it comes to rest within
+// what it has reserved.
+Answer HaltEach(const Given& g, Coordinate which, const auto& command) {
+  State& s = g.s;
+  const Context& c = g.c;
+  if (const ErrorId why = WhyNot(s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
+  const MoveToPosition as{.deceleration = command.deceleration, .jerk = command.jerk};
+  if (!s.plane.each) {
+    const PlaneMove soft = RestOnLine(c, s, LimitsOf(as, c.params.xy, s.limited_by));
+    const bool may = WhyNotSo(c, s, soft).error == ErrorId::kNone;
+    const PlaneMove& move = may ? soft : RestOnLine(c, s, c.params.xy.maximum.limits());
+    Put(g, which, move, {});
+    return {Status::Ok(), DurationOf(move.motion)};
+  }
+  std::optional<Plan> plan;
+  if (s.plane.waits) {
+    plan = LeaveAtRest(c, s, which);
+  } else {
+    plan = PlanEach(c, s, which, {.limits = LimitsOfEachIn(g, as)});
+    if (!plan || WhyNotSo(c, s, plan->move).error != ErrorId::kNone) {
+      plan = PlanEach(c, s, which, {.limits = LimitsOfEach(c.params.xy.maximum.limits())});
+    }
+  }
+  if (!plan) return Refused(ErrorId::kPlanning);
+  Put(g, which, plan->move, {});
+  return {Status::Ok(), plan->duration};
+}
+
+constexpr Slot kSlotOfEndless[] = {kMoveX, kMoveY, kMoveC};
+
+}  // namespace
+
+bool PlanToGoals(const Context& c, const PlaneState& from, PlaneMove& move) noexcept {
+  Profile x, y;
+  if (!PlanToGoal(c.planner, from.x, move.goals[0], x) || !PlanToGoal(c.planner, from.y, move.goals[1], y))
+    return false;
+  move.motion = MotionOfEach(x, y);
+  return true;
+}
+
+void EndEach(const Context& c, State& s) noexcept {
+  for (const Slot slot : {kMoveX, kMoveY}) End(c, slot, FeedbackState::kAborted, ErrorId::kNone, s);
+  s.endless[kX].on = s.endless[kY].on = false;
+}
+
+void NoteVelocity(const Context& c, State& s) noexcept {
+  const PlaneState at = At(s.plane.motion, Elapsed(c, s.plane.begin));
+  const std::array now = {at.x, at.y, Now(c, s.others.back())};
+  for (std::size_t i = 0; i < kEndless.size(); ++i) {
+    Endless& e = s.endless[i];
+    const Ticket ticket = s.tickets[kSlotOfEndless[i]];
+    e.on = e.on && ticket != 0;
+    if (!e.on || e.reached || now[i].acceleration != 0) continue;
+    e.reached = std::abs(now[i].velocity - e.velocity) <= 1e-9 * std::abs(e.velocity);
+    if (e.reached) c.feedback.Report({ticket, c.cycle.count, FeedbackState::kActive, true, ErrorId::kNone, 0});
+  }
+}
+
+void Conclude(const Context& c, Slot slot, State& s) noexcept {
+  const auto* const found = std::find(std::begin(kSlotOfEndless), std::end(kSlotOfEndless), slot);
+  if (found == std::end(kSlotOfEndless) || s.tickets[slot] == 0) {
+    return End(c, slot, FeedbackState::kDone, ErrorId::kNone, s);
+  }
+  Endless& e = s.endless[static_cast<std::size_t>(found - std::begin(kSlotOfEndless))];
+  End(c, slot, e.on ? FeedbackState::kError : FeedbackState::kDone, e.on ? e.end : ErrorId::kNone, s, e.object);
+  e = {};
+}
+
+Answer CarryOut(const Given& g, const MoveX& command) noexcept {
+  return MoveTo(g, kX, command);
+}
+Answer CarryOut(const Given& g, const MoveY& command) noexcept {
+  return MoveTo(g, kY, command);
+}
+Answer CarryOut(const Given& g, const MoveRelativeX& command) noexcept {
+  return MoveBy(g, kX, command);
+}
+Answer CarryOut(const Given& g, const MoveRelativeY& command) noexcept {
+  return MoveBy(g, kY, command);
+}
+Answer CarryOut(const Given& g, const MoveVelocityX& command) noexcept {
+  return MoveOn(g, kX, command);
+}
+Answer CarryOut(const Given& g, const MoveVelocityY& command) noexcept {
+  return MoveOn(g, kY, command);
+}
+Answer CarryOut(const Given& g, const HaltX& command) noexcept {
+  return HaltEach(g, kX, command);
+}
+Answer CarryOut(const Given& g, const HaltY& command) noexcept {
+  return HaltEach(g, kY, command);
+}
+
+}  // namespace takt::mover
