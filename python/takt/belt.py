@@ -34,7 +34,8 @@ class Belt(Component, BeltCommands, BeltOutputs):
 
     def __repr__(self) -> str:
         lying = counted(self.object_count, "object")
-        return f"<Belt {self.name}: at {self.position:.6g}, {self.velocity:.6g}/s, {lying}>"
+        unit = "deg" if self.parameters["kind"] == "turning" else "mm"
+        return f"<Belt {self.name}: at {self.position:.6g} {unit}, {self.velocity:.6g} {unit}/s, {lying}>"
 
     @property
     def axis(self) -> Axis:
