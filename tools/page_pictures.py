@@ -96,14 +96,14 @@ REPORTS: dict[str, tuple[bool, str]] = {
         True,
         """() => {
             document.getElementById("scene-section").scrollIntoView();
-            window.takt.clock.set(window.takt.clock.from + 15.3);
+            window.takt.clock.set(window.takt.clock.from + 15.37);
         }""",
     ),
     "report_3d": (
         False,
         """() => {
             document.getElementById("scene-section").scrollIntoView();
-            window.takt.clock.set(window.takt.clock.from + 15.3);
+            window.takt.clock.set(window.takt.clock.from + 15.37);
             window.takt.scene.open("space");
         }""",
     ),

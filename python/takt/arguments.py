@@ -19,9 +19,10 @@ def to_text(arguments: Mapping[str, Any], defaults: Mapping[str, Any] | None = N
     for key in arguments:
         if not isinstance(key, str) or not _PLAIN.fullmatch(key):
             raise ValueError(f"{key!r} is no name of an argument")
-    usual = {key: _value(value) for key, value in (defaults or {}).items()}
+    usual = defaults or {}
     given = {key: _value(value) for key, value in arguments.items() if value is not None}
-    text = ", ".join(f"{key}: {value}" for key, value in given.items() if usual.get(key) != value)
+    told = [(key, value) for key, value in given.items() if key not in usual or _value(usual[key]) != value]
+    text = ", ".join(f"{key}: {value}" for key, value in told)
     return f"{{{text}}}" if text else ""
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from takt._commands import BeltCommands, BeltOutputs
 from takt.axis import Axis
@@ -34,9 +35,10 @@ class Belt(Component, BeltCommands, BeltOutputs):
 
     def __repr__(self) -> str:
         lying = counted(self.object_count, "object")
-        return f"<Belt {self.name}: at {self.position:.6g}, {self.velocity:.6g}/s, {lying}>"
+        unit = "deg" if self.parameters["kind"] == "turning" else "mm"
+        return f"<Belt {self.name}: at {self.position:.6g} {unit}, {self.velocity:.6g} {unit}/s, {lying}>"
 
-    @property
+    @cached_property
     def axis(self) -> Axis:
         """The axis that moves it, or measures it."""
         return self.session.axis(self.parameters["axis"])

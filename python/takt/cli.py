@@ -177,10 +177,13 @@ def run(
     settings: tuple[str, ...],
     key: Path | None,
 ) -> int:
-    """Run a scenario FILE and verify what was recorded; the same on a running engine and in virtual time."""
+    """Run a scenario FILE, or that of a ready machine by its name, and verify what was recorded; the same on a running
+    engine and in virtual time."""
+    from takt.ready import scenario_of
+
     if machine is not None and url is not None:
         raise click.UsageError("--machine is for virtual time, --url for a running engine: give one of them")
-    scenario, changes = with_settings(load_scenario(file), settings_of(settings))
+    scenario, changes = with_settings(load_scenario(scenario_of(str(file))), settings_of(settings))
     if changes and url is not None:
         raise click.UsageError(f"{next(iter(changes))}: keys of the machine file can be set in virtual time only")
     if url is not None:
@@ -809,7 +812,10 @@ def _show_sweep(result: sweeping.Result) -> int:
     if result.made:
         print(f"{counted(result.made, 'run')} made, {60 * result.made / max(result.elapsed_s, 1e-9):,.0f} a minute")
     print(f"table: {result.table}")
-    print(f"table: {result.parquet}" if result.parquet else "Parquet, too, with: pip install pyarrow")
+    if result.parquet:
+        print(f"table: {result.parquet}")
+    elif summary.runs:
+        print("Parquet, too, with: pip install pyarrow")
     print(f"page: {result.page}")
     return FAILED if summary.failed else 0
 

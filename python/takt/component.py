@@ -22,6 +22,11 @@ class Component:
         self.name: str = parameters["name"]
         self.parameters = parameters  # all of the machine file's, with the defaults
 
+    def _repr_html_(self) -> str:
+        from takt.notebook import component_table
+
+        return component_table(self)
+
     def _command(self, verb: str, arguments: Mapping[str, Any]) -> Feedback:
         return self.session.command(self.name, verb, arguments)
 

@@ -31,7 +31,7 @@ from takt.plant import Plant, axes_of
 from takt.recording import Recording
 from takt.saved import JournalEntry, Saved
 from takt.session import Recorder, Session
-from takt.tables import KINDS, fields_of_kind, make_recording, named
+from takt.tables import KINDS, fields_of_kind, make_recording
 from takt.track import Track
 
 if TYPE_CHECKING:
@@ -291,8 +291,10 @@ class Engine(Session):
         return release
 
     def _value(self, component: Component, field: str) -> Any:
-        place = KINDS[component.KIND].places[field]
-        return named(component.KIND, field, self._core.value(component.index, place))
+        kind = KINDS[component.KIND]
+        value = self._core.value(component.index, kind.places[field])
+        names = kind.names.get(field)
+        return names[value] if names else value
 
     def _objects(self, belt: Belt) -> Iterable[tuple[Any, ...]]:
         return self._core.belt_objects(list(self.belts).index(belt.name))

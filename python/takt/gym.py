@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from takt.engine import Engine, Machine
-from takt.errors import TaktError, seconds
+from takt.errors import TaktError
 
 try:
     import gymnasium
@@ -55,18 +55,25 @@ class ReachEnv(gymnasium.Env[Floats, Floats]):
         episode_s: float = 5.0,
         within: float = 0.01,
     ) -> None:
-        self._engine = Engine(machine, journal=True)
         if not axes:
             raise TaktError("an environment needs at least one axis")
         self._names = list(axes)
-        self._cycles = max(1, round(seconds(step_s, "a step") / self._engine.period))
-        self._most = max(1, round(seconds(episode_s, "an episode") / step_s))
+        if len(set(self._names)) < len(self._names):
+            raise TaktError(f"an environment has each axis once, found {', '.join(self._names)}")
+        if other := set(ranges or {}) - set(self._names):
+            raise TaktError(f"ranges: expected axes of the environment, found {', '.join(sorted(other))}")
+        for what, value in (("step_s", step_s), ("episode_s", episode_s), ("within", within)):
+            if not 0 < value < np.inf:
+                raise TaktError(f"{what}: expected a number above 0, found {value!r}")
+        self._engine = Engine(machine, journal=True)
+        self._cycles = max(1, round(step_s / self._engine.period))
+        self._most = max(1, round(episode_s / step_s))
         self._within = within
         low, high, speed = [], [], []
         for name in self._names:
             limits = self._engine.axis(name).parameters["limits"]
             lower, upper = (ranges or {}).get(name, (limits.get("lower"), limits.get("upper")))
-            if lower is None or upper is None or not lower < upper:
+            if lower is None or upper is None or not -np.inf < lower < upper < np.inf:
                 raise TaktError(f"axis {name}: no range: give ranges={{'{name}': (LOWEST, HIGHEST)}}, or SW limits")
             low.append(lower)
             high.append(upper)

@@ -15,11 +15,14 @@ if TYPE_CHECKING:
     from takt.component import Component
     from takt.recording import Recording
     from takt.report.comparison import Comparison
+    from takt.scenario import Outcome
     from takt.session import Session
+    from takt.sweep.sweeping import Result
+    from takt.twin.judging import Judged
     from takt.verdict import Verdict
 
 FIELDS = 6  # of a component, named in a table
-ROWS = 30  # of differences
+ROWS = 30  # of differences, of what failed in a sweep
 
 
 def table(title: str, head: Sequence[str], rows: Iterable[Sequence[str]], note: str = "") -> str:
@@ -28,10 +31,8 @@ def table(title: str, head: Sequence[str], rows: Iterable[Sequence[str]], note: 
     lines = ("".join(f'<td style="text-align:left">{html.escape(str(text))}</td>' for text in row) for row in rows)
     body = "".join(f"<tr>{line}</tr>" for line in lines)
     below = f"<div>{html.escape(note)}</div>" if note else ""
-    return (
-        f"<div><b>{html.escape(title)}</b></div>"
-        f"<table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table>{below}"
-    )
+    above = f"<div><b>{html.escape(title)}</b></div>" if title else ""
+    return f"{above}<table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table>{below}"
 
 
 def recording_table(recording: Recording) -> str:
@@ -69,18 +70,87 @@ def _state(component: Component) -> str:
     return state if colon else "—"
 
 
-def verdict_picture(verdict: Verdict) -> str:
-    """What it says, and its picture."""
-    from takt import plot, style
+def component_table(component: Component) -> str:
+    """What a component publishes at this time, without what is 0 or off, but for its first fields."""
+    from takt.tables import KINDS, unit_of, units_of
+
+    session, kind = component.session, KINDS[component.KIND]
+    title = f"{component.name}, {component.KIND.replace('_', ' ')} of {session.name} at {session.now:.3f} s"
+    own = units_of(session.machine, kind, component.parameters)
+    rows: list[tuple[str, str, str]] = []
+    try:
+        for number, field in enumerate(kind.units):
+            value = component._value(field)
+            if number >= FIELDS and (value != value or not value):  # NaN, 0, off
+                continue
+            unit = unit_of(kind.name, field, own).removeprefix("1") if isinstance(value, float) else ""
+            rows.append((field, f"{value:.6g}" if isinstance(value, float) else _text(value), unit))
+    except TaktError as error:  # over LCM, where nothing was heard of it yet
+        return table(title, (), (), str(error))
+    rest = len(kind.units) - len(rows)
+    return table(title, ("", "value", "unit"), rows, f"{counted(rest, 'other')}: 0, off or unknown" if rest else "")
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return str(getattr(value, "value", value))  # of enumerations
+
+
+def outcome_table(outcome: Outcome) -> str:
+    """The verdicts of a scenario, with pictures of those that failed."""
+    verdicts = (*([outcome.assertion] if outcome.assertion is not None else []), *outcome.verdicts)
+    failed = [verdict for verdict in verdicts if not verdict.passed]
+    rows = [("passed", verdict.title, verdict.sentence) for verdict in verdicts if verdict.passed]
+    title = f"{len(rows)} passed, {len(failed)} failed; {outcome.recording.duration_s:.3f} s"
+    lacks = all_missing(outcome.recording)
+    below = table(title, ("", "check", ""), rows, f"missing: {lacks}" if lacks else "no sample missing")
+    return "".join(verdict_picture(verdict) for verdict in failed) + below
+
+
+def sweep_table(result: Result) -> str:
+    """What failed in a sweep, with the commands that make these runs again, and its numbers."""
+    summary = result.summary
+    rest = summary.size - summary.runs
+    title = f"{summary.passed:,} passed, {summary.failed:,} failed" + (f", {rest:,} not made yet" if rest else "")
+    reasons = sorted(summary.reasons.items(), key=lambda item: -item[1][0])[:ROWS]
+    failed = [(reason, f"{count:,}", str(first), command) for reason, (count, first, command) in reasons]
+    numbers = [
+        (name, f"{one.least:.6g}", str(one.low[0][1]), f"{one.most:.6g}", str(one.high[0][1]))
+        for name, one in summary.columns.items()
+    ]
+    above = table(title, ("what failed", "runs", "the first", "makes it again"), failed) if failed else ""
+    return above + table(
+        "" if failed else title, ("number", "least", "run", "largest", "run"), numbers, f"{result.table}, {result.page}"
+    )
+
+
+def twin_table(judged: Judged) -> str:
+    """What a twin says of a run: figures beside those of the servo model, and verdicts."""
+    from takt.twin.judging import HEAD
+
+    title = f"{'passed' if judged.passed else 'failed'}: {counted(judged.cycles, 'cycle')} in the twin"
+    return table(title, HEAD, judged.table()) + "".join(_line(verdict) for verdict in judged.verdicts)
+
+
+def _line(verdict: Verdict) -> str:
+    from takt import style
 
     mark = "passed" if verdict.passed else "failed"
     colour = style.GOOD if verdict.passed else style.BAD
     text = f'<div><b style="color:{colour}">{mark}</b> <b>{html.escape(verdict.title)}</b> '
-    text += f"{html.escape(verdict.sentence)}</div>"
+    return text + f"{html.escape(verdict.sentence)}</div>"
+
+
+def verdict_picture(verdict: Verdict) -> str:
+    """What it says, and its picture."""
+    from takt import plot
+
+    text = _line(verdict)
     if not any(len(trace.time_s) for lane in verdict.lanes for trace in lane.traces):
         return text
     data = base64.b64encode(plot.png(plot.draw_verdict(verdict))).decode("ascii")
-    return text + f'<img alt="{html.escape(verdict.title)}" src="data:image/png;base64,{data}">'
+    return text + f'<img style="max-width:100%" alt="{html.escape(verdict.title)}" src="data:image/png;base64,{data}">'
 
 
 def comparison_table(comparison: Comparison) -> str:

@@ -35,6 +35,7 @@ Names = Mapping[int, str] | Sequence[str]
 
 FORMAT_VERSION = 1
 ARRAY = "$array"  # in the header of a file, instead of an array of `meta`: its number
+BLOCK = 1024  # rows that are copied at a time
 UNKNOWN_NAME = -1  # an enumerated value that was not a number when it was recorded
 
 
@@ -513,8 +514,11 @@ def _table(
         elif arrays[field].dtype.kind not in "bif":
             raise RecordingError(f"'{component}.{field}' holds {arrays[field].dtype}, not numbers")
     table = np.empty(len(time_s), dtype=[(f, a.dtype) for f, a in arrays.items()])
-    for field, values in arrays.items():
-        table[field] = values
+    for first in range(0, len(table), BLOCK):  # columns of all rows, one after the other, would leave the cache
+        part = slice(first, first + BLOCK)
+        rows = table[part]
+        for field, values in arrays.items():
+            rows[field] = values[part]
     table.flags.writeable = False
     return table
 

@@ -63,6 +63,9 @@ class Scenario:
     arguments: Mapping[str, Any] = field(default_factory=dict)  # of its parameters, where not the defaults
     view: str = ""  # VIEW in the file, as it stands behind the # of the live page's address
 
+    def __repr__(self) -> str:
+        return f"<Scenario {self.path}: {self.title}>"
+
     @property
     def machine(self) -> Path:
         """The machine file beside it."""
@@ -129,6 +132,16 @@ class Outcome:
     recording: Recording
     verdicts: tuple[Verdict, ...]
     assertion: Verdict | None = None  # a plain `assert` that failed, a command that was refused, nothing judged
+
+    def __repr__(self) -> str:
+        failed = sum(not verdict.passed for verdict in self.verdicts)
+        passed, failed = len(self.verdicts) - failed, failed + (self.assertion is not None)
+        return f"<Outcome: {passed} passed, {failed} failed; {self.recording!r}>"
+
+    def _repr_html_(self) -> str:
+        from takt.notebook import outcome_table
+
+        return outcome_table(self)
 
     @property
     def complaint(self) -> str:

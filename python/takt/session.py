@@ -92,6 +92,10 @@ class Recorder:
         self.belts = [name for name in self.components if name in session.belts]
         self.lying = Lying()  # on these
 
+    def __repr__(self) -> str:
+        said = "in progress" if self._recording is None else repr(self._recording)
+        return f"<Recorder of {', '.join(self.components)}: {said}>"
+
     @property
     def running(self) -> bool:
         return self._recording is None

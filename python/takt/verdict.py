@@ -69,6 +69,9 @@ class Verdict:
     def __bool__(self) -> bool:
         return self.passed
 
+    def __repr__(self) -> str:
+        return f"<Verdict {self.title}: {'passed' if self.passed else 'failed'}: {self.sentence}>"
+
     def _repr_html_(self) -> str:
         from takt.notebook import verdict_picture
 

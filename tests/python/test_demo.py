@@ -106,12 +106,20 @@ def test_the_readme_lists_them_as_they_introduce_themselves() -> None:
 @pytest.mark.parametrize(
     ("given", "nearest"), [("pickcell", "pick_cell"), ("saw", "flying_saw"), ("qqq", ", ".join(NAMES))]
 )
-def test_an_unknown_name_is_told_the_nearest_ones(given: str, nearest: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["demo", given]) == 2
+@pytest.mark.parametrize("command", ["demo", "run"])
+def test_an_unknown_name_is_told_the_nearest_ones(
+    given: str, nearest: str, command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([command, given]) == 2
     said = capsys.readouterr()
     assert said.out == ""
     assert said.err.startswith(f"takt: {given}: neither a scenario file nor a ready machine; the nearest: {nearest}")
     assert said.err.count("\n") == 1
+
+
+def test_one_runs_by_its_name_in_virtual_time(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "six_axes"]) == 0
+    assert " 0 failed; " in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("name", NAMES)

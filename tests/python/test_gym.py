@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 import warnings
+from typing import Any
 
 import numpy as np
 import pytest
@@ -49,6 +50,26 @@ def test_gymnasium_checks_it() -> None:
         ReachEnv(MACHINE, ["y"])
     with pytest.raises(takt.TaktError, match="at least one axis"):
         ReachEnv(MACHINE, [])
+
+
+@pytest.mark.parametrize(
+    ("axes", "options", "said"),
+    [
+        (["x", "x"], {}, "each axis once, found x, x"),
+        (["x"], {"step_s": 0}, "step_s: expected a number above 0, found 0"),
+        (["x"], {"episode_s": float("inf")}, "episode_s: expected a number above 0, found inf"),
+        (["x"], {"within": -1}, "within: expected a number above 0, found -1"),
+        (["x"], {"ranges": {"z": (0, 5)}}, "ranges: expected axes of the environment, found z"),
+        (["x"], {"ranges": {"x": (0, float("inf"))}}, "axis x: no range"),
+    ],
+)
+def test_what_no_environment_is_made_of(axes: list[str], options: dict[str, Any], said: str) -> None:
+    """PY-23: refused, where steps would divide by zero, observations be no numbers, or goals never be reached."""
+    pytest.importorskip("gymnasium")
+    from takt.gym import ReachEnv
+
+    with pytest.raises(takt.TaktError, match=said):
+        ReachEnv(MACHINE, axes, **options)
 
 
 def test_without_gymnasium() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import nan
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,7 +15,12 @@ from takt import checks, plot
 from takt.cam import Table
 from takt.recording import Recording
 from takt.report import compare
+from takt.scenario import Outcome
+from takt.sweep.design import Design
+from takt.sweep.summary import Summary
+from takt.sweep.sweeping import Result
 from takt.toolpath import Element, Toolpath
+from takt.twin.judging import AxisFigures, Judged, ToolFigures
 
 MACHINE = """\
 name: <cell>
@@ -64,6 +71,30 @@ def test_every_kind_of_component_says_something() -> None:
     with takt.Engine(text_of(FULL)) as session:
         text = shown(session)["text/html"]
         assert text.count("<tr>") == len(session.components) + 1
+        for name, component in session.components.items():
+            text = shown(component)["text/html"]
+            assert f"<b>{name}, {component.KIND.replace('_', ' ')} of small at 0.000 s</b>" in text
+            assert text.count("<tr>") > 1, name
+            assert "nan" not in text
+
+
+def test_a_component_shows_its_values() -> None:
+    with takt.Engine(MACHINE) as session:
+        x = session.axis("x")
+        x.power().wait()
+        x.move_absolute(position=12.5).wait()
+        text = shown(x)["text/html"]
+        belt = shown(session.belt("infeed"))["text/plain"]
+    cells = [row.split("<td")[1:] for row in text.split("<tr>")[2:]]
+    rows = {row[0].split(">")[1].split("<")[0]: [cell.split(">")[1].split("<")[0] for cell in row[1:]] for row in cells}
+    assert rows["set_position"] == ["12.5", "mm"]
+    assert rows["set_velocity"] == ["0", "mm/s"]  # of the first ones, so shown though it is 0
+    assert rows["state"] == ["Standstill", ""]
+    assert rows["loop_closed"] == ["yes", ""]
+    assert rows["override_factor"] == ["1", ""]
+    assert "error" not in rows
+    assert "others: 0, off or unknown" in text
+    assert belt == "<Belt infeed: at 0 mm, 0 mm/s, 0 objects>"
 
 
 def test_a_recording_shows_what_it_holds() -> None:
@@ -86,6 +117,49 @@ def test_a_verdict_shows_its_picture() -> None:
     empty = Recording({"x": {"time_s": [], "state": []}}, names={"x": {"state": ["a"]}})
     alone = checks.visits_states(empty, "x", ["a"])
     assert "failed" in shown(alone)["text/html"]
+
+
+def test_a_scenario_that_ran_shows_its_verdicts() -> None:
+    """Those that failed with their pictures; and one line as text, without curves."""
+    rec = one_axis()
+    verdicts = checks.within_limits(rec, "x", velocity=1.0), checks.within_limits(rec, "x")
+    said = shown(Outcome(rec, verdicts))
+    for wanted in ("1 passed, 1 failed", ">failed</b>", "no sample missing"):
+        assert wanted in said["text/html"], wanted
+    assert said["text/html"].count("data:image/png;base64,") == 1
+    assert said["text/plain"].startswith("<Outcome: 1 passed, 1 failed; <Recording")
+    assert repr(verdicts[1]) == f"<Verdict within_limits(x): passed: {verdicts[1].sentence}>"
+
+
+def test_a_sweep_shows_what_failed_and_its_numbers(tmp_path: Path) -> None:
+    row = {"run": "0", "velocity": "100", "passed": "1", "failed": "", "command": "takt run a.py", "stroke_s": "2.5"}
+    bad = row | {"run": "1", "velocity": "200", "passed": "0", "failed": "stays(x): <by far>", "command": "takt run b"}
+    summary = Summary.of([row, bad], Design.of(["velocity=100:300:3"], [], 0))
+    result = Result(tmp_path / "runs.csv", tmp_path / "sweep.html", None, summary, 2, 1.0, True)
+    said = shown(result)
+    for wanted in ("1 passed, 1 failed, 1 not made yet", "stays(x)", "takt run b", "velocity", "sweep.html"):
+        assert wanted in said["text/html"], wanted
+    assert said["text/plain"] == f"<Result {tmp_path}/runs.csv: 1 passed, 1 failed, 1 not made yet>"
+
+
+def test_a_twin_shows_its_figures() -> None:
+    verdict = checks.within_limits(one_axis(), "x")
+    axes = (
+        AxisFigures("x", "mm", (0.012, 0.5), (0.02, 0.6), (1.0, 9.0), 40.0, 0),
+        AxisFigures("off", "mm", (nan, nan), None, (0.0, 0.0), 40.0, 0),
+    )
+    judged = Judged(1000, axes, (ToolFigures("robot", (0.01, 0.1), 0.02, (1.5, 4.0), None),), None, (verdict,))
+    said = shown(judged)
+    for wanted in (
+        "1,000 cycles in the twin",
+        "tool from its set pose [mm]",
+        "0.012",
+        "torque of 40",
+        verdict.sentence,
+    ):
+        assert wanted in said["text/html"], wanted
+    assert "nan" not in said["text/html"]  # the position loop was never closed
+    assert said["text/plain"] == "<Judged 1,000 cycles: passed>"
 
 
 def test_a_comparison_shows_its_figures() -> None:

@@ -404,6 +404,25 @@ def verify(recording):
 '''
 
 
+def test_a_model_that_is_given_is_drawn(tmp_path: Path) -> None:
+    """PY-23: though it says nothing of pictures; one without shapes is told apart from drivers that cannot draw."""
+    given = machine("x c", "", "").replace("  axes:\n", "  model: model.xml\n  axes:\n")
+    given += "    - {axis: x, max_torque: 300, joint: rail}\n    - {axis: c, max_torque: 9, joint: spin}\n"
+    (tmp_path / "machine.yaml").write_text(given)
+    file = tmp_path / "twin.png"
+    (tmp_path / "model.xml").write_text(MJCF)
+    said = ""
+    try:
+        Twin.of(tmp_path / "machine.yaml").picture(file)
+    except takt.PlantError as error:  # nothing here can draw
+        said = str(error)
+    assert "framebuffer" not in said
+    assert said or file.read_bytes().startswith(b"\x89PNG")
+    (tmp_path / "model.xml").write_text(MJCF.replace("<geom", '<geom rgba="0 0 0 0"'))
+    with pytest.raises(takt.PlantError, match="the model has no shape that can be seen"):
+        Twin.of(tmp_path / "machine.yaml").picture(file)
+
+
 def test_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """takt twin: verdicts, figures beside our servo's, a picture where something here can draw."""
     (tmp_path / "scenario.py").write_text(SHORT)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -144,8 +145,9 @@ def test_what_of_belts_and_products_the_loader_refuses(tmp_path: Path) -> None:
 
 def test_the_pick_cell_in_the_twin(tmp_path: Path) -> None:
     """Belts, camera, gripper and products are MuJoCo's: a few are picked and placed, within what the cell allows."""
-    file = tmp_path / "scenario.py"
-    file.write_text(SHORT.replace("FOLDER", repr(str(EXAMPLES / "pick_cell"))))
+    folder = shutil.copytree(EXAMPLES / "pick_cell", tmp_path / "cell")
+    file = folder / "short.py"
+    file.write_text(SHORT)
     ran = twin_command.run(EXAMPLES / "pick_cell" / "machine.yaml", takt.scenario.load_scenario(file), compare=False)
     said = [verdict.sentence for verdict in ran.outcome.verdicts if not verdict.passed]
     assert ran.outcome.passed, (said, ran.outcome.complaint)
@@ -155,8 +157,6 @@ def test_the_pick_cell_in_the_twin(tmp_path: Path) -> None:
 
 
 SHORT = '''"""The first seconds of the pick cell."""
-import sys
-sys.path.insert(0, FOLDER)
 from cell import Settings
 from judge import judge
 from scenario import MACHINE, play

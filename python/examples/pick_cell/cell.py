@@ -70,30 +70,27 @@ def trays(settings: Settings) -> Iterator[Thing]:
         yield Thing(number, number * settings.pitch)
 
 
-def place(thing: Thing, travel: Array | float, settings: Settings) -> tuple[Array, Array]:
+def place(thing: Thing, travel: Array | float, settings: Settings) -> tuple[Any, Any]:
     """X and Y of a thing from the origin of its belt when its drive has really travelled so far, mm."""
-    x = np.asarray((1 - settings.slip) * np.asarray(travel) - thing.at)
+    x = (1 - settings.slip) * travel - thing.at
     slid = x > settings.slides_at
     return x + slid * thing.slides[0], thing.y + slid * thing.slides[1]
 
 
-def in_world(origin: dict[str, float], x: Array | float, y: Array | float) -> Array:
-    """(2, ...): X and Y of a place on a level belt."""
+def in_world(origin: dict[str, float], x: Any, y: Any) -> tuple[Any, Any]:
+    """X and Y of places on a level belt: numbers, or arrays of them."""
     turn = math.radians(origin.get("c", 0.0))
-    return np.array(
-        [
-            origin["x"] + math.cos(turn) * np.asarray(x) - math.sin(turn) * np.asarray(y),
-            origin["y"] + math.sin(turn) * np.asarray(x) + math.cos(turn) * np.asarray(y),
-        ]
-    )
+    cos, sin = math.cos(turn), math.sin(turn)
+    return origin["x"] + cos * x - sin * y, origin["y"] + sin * x + cos * y
 
 
 def reaches_in(belt: takt.Belt, distance: float) -> float:
     """s in which a belt cannot travel farther, mm, whatever it is told meanwhile."""
     if distance <= 0:
         return 0.0
-    fastest = max(belt.axis.set_velocity, belt.axis.actual_velocity) + 20.0  # mm/s: more than its servo is ever off
-    speeds_up = 2.0 * float(belt.axis.parameters["limits"]["acceleration"])
+    axis = belt.axis
+    fastest = max(axis.set_velocity, axis.actual_velocity) + 20.0  # mm/s: more than its servo is ever off
+    speeds_up = 2.0 * float(axis.parameters["limits"]["acceleration"])
     return (math.sqrt(fastest * fastest + 2 * speeds_up * distance) - fastest) / speeds_up
 
 
@@ -139,21 +136,23 @@ class Conveyor:
 
     def on_belt(self) -> list[Thing]:
         """What has passed the sensor, without that which has left at the end of the belt."""
-        ended = [number for number, thing in self.here.items() if self.travel - thing.at > BELT]
+        travel = self.travel
+        ended = [number for number, thing in self.here.items() if travel - thing.at > BELT]
         for number in ended if self.cargo is None else ():
             del self.here[number]
         return list(self.here.values())
 
-    def truth(self, thing: Thing) -> Array:
-        """X and Y in the world."""
+    def truth(self, thing: Thing, travel: float) -> tuple[float, float]:
+        """X and Y in the world when the belt's drive has really travelled so far."""
         if self.cargo is not None:
-            return np.asarray(self.cargo.position(thing.number)[:2])
-        return in_world(self.origin, *place(thing, self.travel, self.settings))
+            x, y, _ = self.cargo.position(thing.number).tolist()
+            return x, y
+        return in_world(self.origin, *place(thing, travel, self.settings))
 
     def looks_again(self) -> float:
         """s until the sensor has to be looked at again: the look before the next thing passes it, and when the camera
-        gives a pose."""
-        travel = self.travel
+        gives a pose. Of what `step` has seen in this cycle."""
+        travel = self._before[0] - self._start
         left = [-self._past(travel)]
         if self.cargo is not None:
             left = [] if left[0] == math.inf else left
@@ -338,10 +337,10 @@ class Cell:
 
     def nearest(self, conveyor: Conveyor) -> tuple[Thing | None, float]:
         """The thing on a belt that is nearest to the tool, and how far it is from there, mm."""
-        tool, z = self.robot.actual_pose[:3], conveyor.origin["z"]
+        tool, z, travel = self.robot.actual_pose[:3], conveyor.origin["z"], conveyor.travel
         found: tuple[Thing | None, float] = None, math.inf
         for thing in conveyor.on_belt():
-            apart = math.dist(tool, (*conveyor.truth(thing), z))
+            apart = math.dist(tool, (*conveyor.truth(thing, travel), z))
             if apart < found[1]:
                 found = thing, apart
         return found

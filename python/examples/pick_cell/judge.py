@@ -82,16 +82,20 @@ class Truth:
         self.settings = settings
         self._begins_s = begins_s
         self._recording = recording
+        self._moved: dict[str, tuple[Array, Array]] = {}  # by axis
         self.belts = {belt["name"]: belt for belt in machine["belts"]}
         (group,) = machine["groups"]
-        self.time_s: Array = recording[group["axes"][0]]["time_s"]
+        self.time_s = self._true(group["axes"][0])[0]
         arms = [np.interp(self.time_s, *self._true(arm)) for arm in group["axes"]]
         delta = kinematics.Kinematics(delta=group["kinematics"]["delta"])
-        self.tool: Array = delta.forward(np.stack(arms, axis=1))[:, :3]
+        self.tool: Array = np.asfortranarray(delta.forward(np.stack(arms, axis=1))[:, :3])  # columns are asked for
 
     def _true(self, axis: str) -> tuple[Array, Array]:
-        table = self._recording[axis]
-        return table["time_s"], table["true_position"]
+        """Times and positions, each in one piece: NumPy copies columns of a table again and again."""
+        if axis not in self._moved:
+            table = self._recording[axis]
+            self._moved[axis] = np.ascontiguousarray(table["time_s"]), np.ascontiguousarray(table["true_position"])
+        return self._moved[axis]
 
     def tool_at(self, time_s: float) -> Array:
         """X, Y and Z of the tool."""
@@ -105,7 +109,7 @@ class Truth:
     def thing_at(self, belt: str, thing: Thing, time_s: Array | float) -> Array:
         """X and Y of something that lies on a belt."""
         travel = self.travel_at(belt, time_s)
-        return in_world(self.belts[belt]["origin"], *place(thing, travel, self.settings))
+        return np.array(in_world(self.belts[belt]["origin"], *place(thing, travel, self.settings)))
 
 
 def judge(recording: Recording, machine: dict[str, Any], settings: Settings) -> Judgement:

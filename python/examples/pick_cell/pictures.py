@@ -73,7 +73,7 @@ def _from_above(ax: Axes, machine: dict[str, Any], found: Judgement, full: Any) 
         for span, colour in ((ends, "#eceff3"), (reach, "#dbe6f7")):
             low = float(span[0].min()), float(span[1].min()) - HALF_WIDTH
             ax.add_patch(Rectangle(low, float(np.ptp(span[0])), 2 * HALF_WIDTH, fc=colour, ec="none", zorder=1))
-        start, end = in_world(belt["origin"], np.array([20.0, 110.0]), np.full(2, HALF_WIDTH - 12.0)).T
+        start, end = np.array(in_world(belt["origin"], np.array([20.0, 110.0]), np.full(2, HALF_WIDTH - 12.0))).T
         ax.annotate("", end, start, arrowprops={"arrowstyle": "->", "color": plot.FAINT}, zorder=4)
         sensor = in_world(belt["origin"], np.zeros(2), np.array([-HALF_WIDTH, HALF_WIDTH]))
         ax.plot(*sensor, color=style.BAD, lw=1.4, zorder=4)

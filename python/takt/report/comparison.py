@@ -78,6 +78,9 @@ class Comparison:
     only: tuple[tuple[str, ...], tuple[str, ...]]  # components and signals that one of them has
     incomparable: tuple[str, ...]  # signals of both that mean something else, in sentences
 
+    def __repr__(self) -> str:
+        return f"<Comparison {' and '.join(self.names)}: {self.sentence}>"
+
     def _repr_html_(self) -> str:
         from takt.notebook import comparison_table
 

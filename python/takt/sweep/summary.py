@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from takt.counted import counted
 from takt.recording import FloatArray
 from takt.sweep.design import Design
 
@@ -57,6 +58,9 @@ class Summary:
     columns: dict[str, Column] = field(default_factory=dict)  # numbers
     texts: set[str] = field(default_factory=lambda: {"failed", "hash", "command"})  # columns that are none
     kept: dict[str, FloatArray] = field(default_factory=dict)  # numbers of every n-th row, NaN where there is none
+
+    def __repr__(self) -> str:
+        return f"<Summary: {self.runs:,} of {counted(self.size, 'run')}, {self.passed:,} passed>"
 
     @property
     def failed(self) -> int:

@@ -35,6 +35,16 @@ class Result:
     elapsed_s: float
     repeats: bool  # the first run had the same state when it was made again
 
+    def __repr__(self) -> str:
+        rest = self.summary.size - self.summary.runs
+        more = f", {rest:,} not made yet" if rest else ""
+        return f"<Result {self.table}: {self.summary.passed:,} passed, {self.summary.failed:,} failed{more}>"
+
+    def _repr_html_(self) -> str:
+        from takt.notebook import sweep_table
+
+        return sweep_table(self)
+
     @property
     def done(self) -> bool:
         return self.summary.runs == self.summary.size

@@ -111,6 +111,7 @@ class Gripper:
         self._body = body
         self._welds = welds
         self._due: list[tuple[int, bool]] = []
+        self._product: _Product | None = None  # that it holds
 
     def close(self) -> None:
         """Tells it to close; it holds the product within its reach, if there is one then."""
@@ -134,9 +135,6 @@ class Gripper:
         if self.holds is not None and self._pull() > self._told["force"]:
             self._let_go(cycle, f"pulled off with more than {self._told['force']:g} N")
 
-    def _product(self) -> _Product | None:
-        return next((one for one in self._cargo._products if one.held is self), None)
-
     def _grip(self, cycle: int) -> None:
         cargo = self._cargo
         flange, turn = self._tool.pose_in(cargo._data)
@@ -150,14 +148,13 @@ class Gripper:
                 near, best = one, off
         if near is None:
             return
-        near.held, self.holds = self, near.number
+        near.held, self.holds, self._product = self, near.number, near
         offset = (cargo._top(near) - place) * PER_M
         cargo.handled.append(Handled(near.number, self.group, cycle, offset))
         cargo._weld(self._welds[near.slot], self._body, near)
 
     def _let_go(self, cycle: int, lost: str) -> None:
-        product = self._product()
-        self.holds = None
+        product, self.holds, self._product = self._product, None, None
         if product is None:
             return
         product.held = None
@@ -167,7 +164,7 @@ class Gripper:
 
     def _pull(self) -> float:
         """N between cup and product."""
-        product = self._product()
+        product = self._product
         if product is None:
             return 0.0
         data = self._cargo._data
@@ -386,8 +383,9 @@ class Cargo:
         places = self._data.qpos[self._place_of[[one.slot for one in free]]]
         may = places[:, 2] < self._floor + ROUNDING_M
         for belt in self._belts.values():
-            along = (places - belt.origin[:3, 3]) @ belt.origin[:3, 0]
-            may |= along > belt.to_m - self._half[0] - ROUNDING_M
+            seen = (places - belt.origin[:3, 3]) @ belt.origin[:3, :2]
+            beside = np.abs(seen[:, 1]) <= belt.half_width + ROUNDING_M
+            may |= beside & (seen[:, 0] > belt.to_m - self._half[0] - ROUNDING_M)
         return [one for one, leaves in zip(free, may.tolist(), strict=True) if leaves]
 
     def _leave(self, one: _Product, cycle: int) -> None:

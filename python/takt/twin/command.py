@@ -13,7 +13,7 @@ from takt.errors import TaktError
 from takt.plant import PlantError
 from takt.ready import scenario_of
 from takt.scenario import Outcome, Scenario, load_scenario, run_scenario
-from takt.twin.judging import Judged, judge
+from takt.twin.judging import HEAD, Judged, judge
 from takt.twin.plant import Twin
 
 
@@ -72,18 +72,7 @@ def _drawn(twin: Twin, report: Path | None) -> str:
 
 def table(judged: Judged) -> Table:
     """Figures of the twin beside those of our servo model."""
-    made = Table("", "", "twin rms", "largest", "servo rms", "largest", box=None)
-    for tool in judged.tools:
-        made.add_row(tool.group, "tool from its set pose [mm]", *_pair(tool.off), *_pair(tool.servo_off))
-        made.add_row("", "tool from Takt's kinematics [mm]", *_pair(tool.agreement), "", "")
-    if judged.products is not None:
-        made.add_row("products", "tool from their middle, gripped [mm]", *_pair(judged.products.beside), "", "")
-        made.add_row("", "moved after they were put down [mm]", *_pair(judged.products.moved), "", "")
-    for axis in judged.axes:
-        made.add_row(axis.axis, f"following error [{axis.unit}]", *_pair(axis.following), *_pair(axis.servo))
-        made.add_row("", f"torque of {axis.max_torque:g}", *_pair(axis.torque), "", "")
+    made = Table(*HEAD, box=None)
+    for row in judged.table():
+        made.add_row(*row)
     return made
-
-
-def _pair(values: tuple[float, float] | None) -> tuple[str, str]:
-    return ("", "") if values is None else (f"{values[0]:.2g}", f"{values[1]:.2g}")

@@ -19,6 +19,7 @@ AGREES_MM = 0.3  # between the tool of the model and Takt's kinematics of the mo
 AGREES_DEG = 0.3
 LIES_MM = 1.0  # that a product may move on its belt after a gripper has let it go
 LIES_DEG = 2.0
+HEAD = ("", "", "twin rms", "largest", "servo rms", "largest")
 
 
 @dataclass(frozen=True)
@@ -63,9 +64,36 @@ class Judged:
     products: ProductFigures | None
     verdicts: tuple[Verdict, ...]
 
+    def __repr__(self) -> str:
+        failed = ", ".join(verdict.title for verdict in self.verdicts if not verdict.passed)
+        return f"<Judged {counted(self.cycles, 'cycle')}: {f'failed: {failed}' if failed else 'passed'}>"
+
+    def _repr_html_(self) -> str:
+        from takt.notebook import twin_table
+
+        return twin_table(self)
+
     @property
     def passed(self) -> bool:
         return all(verdict.passed for verdict in self.verdicts)
+
+    def table(self) -> list[tuple[str, ...]]:
+        """Rows of figures under `HEAD`."""
+        rows: list[tuple[str, ...]] = []
+        for tool in self.tools:
+            rows.append((tool.group, "tool from its set pose [mm]", *_pair(tool.off), *_pair(tool.servo_off)))
+            rows.append(("", "tool from Takt's kinematics [mm]", *_pair(tool.agreement), "", ""))
+        if self.products is not None:
+            rows.append(("products", "tool from their middle, gripped [mm]", *_pair(self.products.beside), "", ""))
+            rows.append(("", "moved after they were put down [mm]", *_pair(self.products.moved), "", ""))
+        for axis in self.axes:
+            rows.append((axis.axis, f"following error [{axis.unit}]", *_pair(axis.following), *_pair(axis.servo)))
+            rows.append(("", f"torque of {axis.max_torque:g}", *_pair(axis.torque), "", ""))
+        return rows
+
+
+def _pair(values: tuple[float, float] | None) -> tuple[str, str]:
+    return ("", "") if values is None or math.isnan(values[0]) else (f"{values[0]:.2g}", f"{values[1]:.2g}")
 
 
 def judge(twin: Twin, recording: Recording, servo: Recording | None = None) -> Judged:

@@ -20,6 +20,7 @@ GROUPS = 29
 PARK_M = (0.0, 50.0, 0.0)  # where products wait that are not in the machine, and one from another
 PARK_STEP_M = 1.0
 UNSEEN = 'rgba="0 0 0 0" contype="0" conaffinity="0"'  # what is there for its mass alone
+SEEN = 'contype="0" conaffinity="0"'  # what is there for pictures alone
 TIP = 1.0  # mm between a cup and what it hangs from
 SLIDES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
 TURNS = {"a": (1, 0, 0), "b": (0, 1, 0), "c": (0, 0, 1)}
@@ -250,7 +251,16 @@ def _delta(
     name, lower = group["name"], p["lower_arm"] / 1000
     half = (p["rod_spacing"] or ROD_SPACING) / 2000
     platform = p["platform_radius"] / 1000
-    arms, sites = "", ""
+    thick = 0.008
+    # A gripper's cup hangs from the platform, which then is above it.
+    height = (
+        max(0.0, (group["tool"]["z"] + told["gripper"]["length"]) / 1000 + thick + TIP / 1000)
+        if told.get("gripper")
+        else 0.0
+    )
+    radius = p["base_radius"] / 1000
+    arms = f'<geom type="cylinder" size="{radius!r} 0.01" pos="0 0 0.03" mass="0" rgba=".55 .6 .65 1" {SEEN}/>'
+    sites = ""
     for i in range(3):
         turn = p["first_arm_deg"] + 120 * i
         cos, sin = math.cos(math.radians(turn)), math.sin(math.radians(turn))
@@ -267,6 +277,11 @@ def _delta(
             at = f"{platform * cos - y * sin!r} {platform * sin + y * cos!r} 0"
             sites += f'<site name={quoteattr(end + ".at")} pos="{at}"/>'
             made.equality.append(f"<connect site1={quoteattr(end)} site2={quoteattr(end + '.at')}/>")
+            if height:
+                sites += (
+                    f'<geom type="capsule" size="0.003" fromto="{at} {at[:-1]}{height!r}" mass="0"'
+                    f' rgba=".8 .2 .2 1" {SEEN}/>'
+                )
         axis = axes[group["axes"][i]]
         joint = _joint(made, axis, (0, 1, 0), False)
         arms += (
@@ -275,13 +290,6 @@ def _delta(
             f'<geom type="capsule" size="0.02" fromto="0 0 0 {p["upper_arm"] / 1000!r} 0 0" mass="{axis["mass"]!r}"'
             f' rgba=".2 .4 .8 1" {_contacts(number)}/>{rods}</body></body>'
         )
-    thick = 0.008
-    # A gripper's cup hangs from the platform, which then is above it.
-    height = (
-        max(0.0, (group["tool"]["z"] + told["gripper"]["length"]) / 1000 + thick + TIP / 1000)
-        if told.get("gripper")
-        else 0.0
-    )
     tool = _tool(made, number, group, told)
     if p["rotary"]:
         axis = axes[group["axes"][3]]

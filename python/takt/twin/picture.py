@@ -4,6 +4,7 @@ that cannot draw may end its process."""
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -22,6 +23,7 @@ DRIVERS = ("egl", "osmesa")  # that need no screen
 SIZE = (960, 640)  # pixels
 RENDER = Path(__file__).with_name("render.py")
 WAIT_S = 60.0
+ERROR = re.compile(r"[\w.]+Error: ")
 
 
 def draw(model: Model, frame: Frame, file: Path) -> Path:
@@ -47,6 +49,12 @@ def draw(model: Model, frame: Frame, file: Path) -> Path:
                 continue
             if ended.returncode == 0 and file.is_file():
                 return file
-            lines = [line for line in ended.stderr.splitlines() if line.strip()]
-            reasons.append(f"{driver}: {lines[-1].strip() if lines else f'ended with {ended.returncode}'}")
+            reasons.append(f"{driver}: {_reason(ended.stderr) or f'ended with {ended.returncode}'}")
     raise PlantError(f"no picture: {'; '.join(reasons)}")
+
+
+def _reason(said: str) -> str:
+    """What a program that failed says last: the line of its exception, where it has one."""
+    lines = [line.strip() for line in said.splitlines() if line.strip()]
+    errors = [line for line in lines if ERROR.match(line)]
+    return (errors or lines or [""])[-1]

@@ -114,6 +114,9 @@ class Twin(Plant):
         text, file_name = read_machine(machine)
         return cls(text, file_name, json.loads(_core.load_machine(text, file_name)))
 
+    def __repr__(self) -> str:
+        return f"<Twin {self.name}: {', '.join(self.axes)}; cycle {self._cycle}>"
+
     @property
     def frame(self) -> Frame:
         """The state after the last cycle that was good."""

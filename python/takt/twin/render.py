@@ -16,11 +16,16 @@ def render(saved: str, state: str, file: str, width: int, height: int) -> None:
     data.qpos[:] = np.load(state)
     mujoco.mj_forward(model, data)
     places = [data.geom_xpos[i] for i in range(model.ngeom) if model.geom_rgba[i, 3] > 0]  # others wait elsewhere
+    if not places:
+        raise SystemExit("the model has no shape that can be seen")
     middle = (np.min(places, axis=0) + np.max(places, axis=0)) / 2
     extent = float(np.max(np.ptp(places, axis=0))) + 0.3
     camera = mujoco.MjvCamera()
     camera.lookat[:] = middle
     camera.distance, camera.azimuth, camera.elevation = 1.7 * extent, 125, -18
+    # Of a model that is given: what it was made for may be smaller.
+    frame = model.vis.global_
+    frame.offwidth, frame.offheight = max(frame.offwidth, width), max(frame.offheight, height)
     renderer = mujoco.Renderer(model, height, width)
     try:
         renderer.update_scene(data, camera)
