@@ -238,7 +238,7 @@ def less_machine(rng: np.random.Generator, limits: Limits) -> tuple[str, dict[st
 
 @pytest.mark.parametrize("seed", [303, *range(1000 if LONG else 20)])
 def test_axes_with_less_than_the_path_keep_their_limits(seed: int) -> None:
-    """GR-40: moves that differ in speed, acceleration and jerk, with and without stops, disturbed at random instants."""
+    """GR-40: moves that differ in speed, acceleration and jerk, with and without stops, disturbed at random."""
     rng = np.random.default_rng(seed)
     case = random_case(rng, least_leg=1)
     text, of = less_machine(rng, case.limits)
