@@ -397,8 +397,11 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   most = std::max(most, kLeastStep);
   double end = left < 1.5 * most ? stretch.end() : c.ahead.last.s + most;
   trajectory::PathPoint next;
+  const auto bends = carried                       ? trajectory::HiddenBends::kIgnored
+                     : c.params.path.planned_ahead ? trajectory::HiddenBends::kInJerk
+                                                   : trajectory::HiddenBends::kInAcceleration;
   for (bool even = false; !even;) {
-    if (!trajectory::NextPoint(c.ahead.last, end, limits, c.ahead.window.build_up_s(), c.cycle.period_s, !carried,
+    if (!trajectory::NextPoint(c.ahead.last, end, limits, c.ahead.window.build_up_s(), c.cycle.period_s, bends,
                                slopes_at, next)) {
       CutShort(c, stretch, reason, failed_at - stretch.begin, s);
       return false;

@@ -194,8 +194,10 @@ void BeginTiming(const Context& c, State& s) noexcept {
   // All that is gone before the next stop.
   std::uint64_t behind = s.done + 1;
   while (behind < s.done + s.queue.count && MoveAt(s, behind).blends()) ++behind;
-  // How long it takes is known to the next stop only, and a module wants to know it to the end of its order.
+  // How long it takes is known to the next stop only, and a module wants to know it to the end of its order. Others may
+  // give a move later that blends onto what moves.
   const bool to_the_end = c.carriers.modules;
+  if (!to_the_end && std::ranges::any_of(s.cargoes, [](const Cargo& cargo) { return cargo.carrier != 0; })) return;
   if (to_the_end && behind == s.done + 1 && behind < s.done + s.queue.count) return;
   for (std::uint64_t i = s.done; i < behind; ++i) {
     const Request& move = MoveAt(s, i);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "takt/core/maths.h"
 #include "takt/trajectory/path_limits.h"
@@ -94,12 +95,15 @@ inline double StepBetweenSlowPlaces(const PathPoint& point, double begin, double
   return std::max(growth * growth, std::min(out, in));
 }
 
+// Where bends between the places that are looked at are searched for. Ignored: the second slopes are not those of the
+// first.
+enum class HiddenBends : std::uint8_t { kIgnored, kInAcceleration, kInJerk };
+
 // The node behind `before`, at `end` at most. `slopes_at(s, point)` fills slopes and what is left of the limits; it
-// answers false where there is no path, then this does, too. The limits along the way are those of `before`. `exact`:
-// the second slopes are those of the first.
+// answers false where there is no path, then this does, too. The limits along the way are those of `before`.
 template <typename SlopesAt>
 bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limits, double build_up_s, double period_s,
-               bool exact, const SlopesAt& slopes_at, PathPoint& next) {
+               HiddenBends bends, const SlopesAt& slopes_at, PathPoint& next) {
   namespace c = sampling;
   const auto square_at = [&](const PathPoint& point) { return SquareAt(point, limits, 1); };
   const double time = std::max(c::kTimeShare * build_up_s, c::kCycles * period_s);
@@ -120,7 +124,7 @@ bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limi
     for (std::size_t k = 0; k < limits.count && linear; ++k) {
       const double line = 0.5 * (before.slopes.second[k] + next.slopes.second[k]);
       linear = std::abs(middle.slopes.second[k] - line) * square <= c::kBend * limits.of[k].acceleration;
-      if (!linear || !exact || i >= c::kHalvingsForHidden) continue;
+      if (!linear || bends == HiddenBends::kIgnored || i >= c::kHalvingsForHidden) continue;
       // A bend that all three places miss changes the first slopes.
       const double before_it = before.slopes.second[k], in_it = middle.slopes.second[k], behind = next.slopes.second[k];
       const double whole =
@@ -131,7 +135,8 @@ bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limi
       // What is passed within a cycle is no finer than the set points.
       double most = c::kHidden * limits.of[k].acceleration;
       const double passing_s = step / std::sqrt(square);
-      if (passing_s > period_s) most = std::min(most, c::kHiddenRate / 16 * limits.of[k].jerk * passing_s);
+      if (bends == HiddenBends::kInJerk && passing_s > period_s)
+        most = std::min(most, c::kHiddenRate / 16 * limits.of[k].jerk * passing_s);
       linear = std::max(std::abs(whole), std::abs(half)) * square <= most;
     }
     if (linear || i == c::kHalvings) {

@@ -7,7 +7,8 @@ namespace takt::trajectory {
 
 namespace {
 
-constexpr double kLead_s = 0.004;         // from the order of a plan to its start, at least ...
+constexpr double kLead_s = 0.012;         // from the order of a plan to its start, at least, with a plan in force ...
+constexpr double kFirstLead_s = 0.004;    // ... and without ...
 constexpr std::uint64_t kOfLastPlan = 2;  // ... and so many times as long as the last one took
 constexpr std::uint64_t kMostLead = 400;  // cycles
 constexpr std::uint64_t kOrderAgain = 8;  // cycles after one that failed
@@ -15,7 +16,7 @@ constexpr double kRenew_s = 0.4;          // before a law ends, if the path does
 constexpr double kRenewShare = 0.75;      // ... and this share of its duration
 constexpr double kAgainShare = 0.1;       // of the time before it ends: the wait after a plan that failed, at least
 constexpr int kRefinements = 3;           // of a plan, as long as ...
-constexpr double kRefined = 0.99;         // ... they shorten it to this share
+constexpr double kRefined = 0.99;         // ... they shorten it to this share; a speed that is kept may dip in them
 constexpr double kUrgent_s = 0.15;        // before the law in force ends: a slower plan is accepted
 constexpr double kWithin = 1 + 1e-7;      // of a limit
 constexpr int kSamples = 12;              // of a piece of a profile that is verified, besides the nodes it passes
@@ -252,7 +253,7 @@ double PathTiming::BrakesTo(const PathWindow& window, const PathPace& pace) cons
 }
 
 bool PathTiming::Order(const PathWindow& window, double factor, const PathPace& pace) noexcept {
-  const auto least = static_cast<std::uint64_t>(std::ceil(kLead_s / period_s_));
+  const auto least = static_cast<std::uint64_t>(std::ceil((current_.planned ? kLead_s : kFirstLead_s) / period_s_));
   const std::uint64_t lead = std::clamp(kOfLastPlan * took_, std::max(late_, least), std::max(kMostLead, least));
   const KinematicState begin = StateAt(tick_ + lead);
   const std::uint64_t node = NodeAt(window, pace.node, begin.position);
@@ -303,10 +304,9 @@ std::optional<std::uint64_t> PathTiming::MakePlan() noexcept {
     const double before_s = next_.plan.duration();
     if (!maker_->course.Make(next_.course, next_.plan)) break;
     const PathPlanStatus status = maker_->planner.Plan(maker_->course.Request(), maker_->plan);
-    if (status != PathPlanStatus::kPlanned || !(maker_->plan.duration() < before_s)) break;
+    if (status != PathPlanStatus::kPlanned || !(maker_->plan.duration() < kRefined * before_s)) break;
     std::swap(maker_->course, next_.course);
     std::swap(maker_->plan, next_.plan);
-    if (next_.plan.duration() > kRefined * before_s) break;
   }
   const std::uint64_t number = maker_->number;
   maker_->order.store(OrderState::kMade, std::memory_order_release);

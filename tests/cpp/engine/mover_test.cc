@@ -47,21 +47,6 @@ std::vector<mover::Command> GoodMoverCommands() {
           mover::MoveA{},
           mover::MoveB{},
           mover::MoveC{},
-          mover::MoveX{},
-          mover::MoveY{},
-          mover::MoveRelativeX{},
-          mover::MoveRelativeY{},
-          mover::MoveRelativeC{},
-          mover::MoveVelocityX{},
-          mover::MoveVelocityY{},
-          mover::MoveVelocityC{},
-          mover::HaltX{},
-          mover::HaltY{},
-          mover::HaltZ{},
-          mover::HaltA{},
-          mover::HaltB{},
-          mover::HaltC{},
-          mover::HaltOnTrack{},
           mover::JoinTrack{.track = Name::Of("way")},
           mover::LeaveTrack{},
           mover::MoveOnTrack{.track = Name::Of("way")},
@@ -80,7 +65,22 @@ std::vector<mover::Command> GoodMoverCommands() {
                                                  .direction_slave_sync_position = mover::TurnDirection::kPositive,
                                                  .direction_master_sync_position = mover::TurnDirection::kPositive},
           mover::JoinFormation{Name::Of("one")},
-          mover::LeaveFormation{}};
+          mover::LeaveFormation{},
+          mover::MoveX{},
+          mover::MoveY{},
+          mover::MoveRelativeX{},
+          mover::MoveRelativeY{},
+          mover::MoveRelativeC{},
+          mover::MoveVelocityX{},
+          mover::MoveVelocityY{},
+          mover::MoveVelocityC{},
+          mover::HaltX{},
+          mover::HaltY{},
+          mover::HaltZ{},
+          mover::HaltA{},
+          mover::HaltB{},
+          mover::HaltC{},
+          mover::HaltOnTrack{}};
 }
 
 Command To(std::uint32_t mover, const mover::Command& body) {
@@ -247,7 +247,7 @@ TEST(MoverMachine, WhatStopsEverythingStopsMovers) {
 TEST(MoverMachine, WhatStopsAMoverLetsGo) {
   std::size_t lets_go = 0;
   for (const mover::Command& command : GoodMoverCommands()) lets_go += LetsGo(To(0, command)) ? 1 : 0;
-  EXPECT_EQ(lets_go, 3u);
+  EXPECT_EQ(lets_go, 10u);  // those of one coordinate and on the track, too
   EXPECT_TRUE(LetsGo(To(0, mover::Halt{})));
   EXPECT_TRUE(LetsGo(To(0, mover::Disable{})));
   EXPECT_TRUE(LetsGo(To(0, mover::StopExternalSetpointGeneration{})));

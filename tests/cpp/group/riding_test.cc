@@ -149,12 +149,14 @@ TEST(Riding, TellsWhatItIsOn) {
   EXPECT_GT(in_sync, 1000);
 }
 
-// CV-23: given at any time while the tool comes to rest, a move onto a belt and the one behind it are rounded.
+// CV-23: given at any time while the tool comes to rest, a move onto a belt and the one behind it are rounded. Behind a
+// path that is planned ahead it stops.
 TEST(Riding, BlendsBehindAMotionThatEnds) {
   for (const double speed : {0.0, 300.0}) {
     for (int given = 0; given < 200; given += 10) {
       SCOPED_TRACE(testing::Message() << speed << " mm/s, given in cycle " << given);
       Rig rig = DeltaRobot();
+      rig.params.path.planned_ahead = false;
       rig.StartAt({-150, -60, -850});
       const auto belts =
           Put(rig, {BeltAt("belt", {100, 150, -900, 0, 0, 180}, [=](double t) { return Steady(t, speed); })});

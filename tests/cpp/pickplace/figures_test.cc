@@ -48,7 +48,7 @@ Known OneWay() {
   return {};
 }
 
-// PP-51: there and back, over and over.
+// PP-51, PP-65: there and back, over and over.
 TEST(Figures, StandardCycle) {
   Cell cell(StandardCycle(), {}, group::DeltaRobot());
   cell.Start({0, -kSide, -850, 0, 0, 0});
@@ -70,13 +70,15 @@ TEST(Figures, StandardCycle) {
     way += (group::ToolOf(cell.rig, cell.rig.trace[i]).p - group::ToolOf(cell.rig, cell.rig.trace[i - 1]).p).Norm();
   }
   const Known known = OneWay();
-  EXPECT_NEAR(way / kOrders, known.length, 1e-3 * known.length);
+  // Of the quintic that passes a corner at one speed; the one of two ramps that overlap lies nearer to the corner.
+  EXPECT_NEAR(way / kOrders, known.length, 0.01 * known.length);
+  EXPECT_GE(way / kOrders, known.length);
   const double ratio = known.least / taken;
   std::cout << 60 / (2 * taken) << " picks/min, one way " << taken << " s, least " << known.least << " s, ratio "
             << ratio << "\n";
   EXPECT_LE(ratio, 1);
-  EXPECT_GE(ratio, 0.91);  // a path bound by jerk nearly all the way; 0.95 is wished for
-  EXPECT_GE(60 / (2 * taken), 106);
+  EXPECT_GE(ratio, 0.95);  // a path bound by jerk nearly all the way
+  EXPECT_GE(60 / (2 * taken), 111);
 }
 
 // PP-17: no cycle makes more than a few nodes of the path, of which each takes some inverses; and the tool sets out
