@@ -282,6 +282,36 @@ def test_axes_with_less_than_the_path_keep_their_limits(seed: int) -> None:
     assert off_path(case.points, recording) <= (0 if stops else case.deviation) + 1e-3
 
 
+@pytest.mark.parametrize("factor", [0.5, 0.1, 0.0, None])
+def test_stops_and_overrides_are_answered_where_bends_leave_little(factor: float | None) -> None:
+    """GR-40: on a circle whose speed the jerk of the axes limits, at four places of it; None: a stop."""
+    axes = Limits(1000, 10_000, 200_000)
+    text = machine([(1.0, 0.0, 0.0)], Limits(500, 5000, 100_000)).split("paths:")[0]
+    text = text.replace(values(Limits(500, 5000, 100_000)), values(axes), 3)
+    for cycles in (900, 970, 1040, 1110):
+        with takt.Engine(text) as session:
+            group = session.group("g")
+            group.power().wait()
+            group.enable().wait()
+            with session.record("g", "x", "y", "z") as recorder:
+                group.move_circular_absolute(
+                    circ_mode="center", aux_x=-15, aux_y=0, aux_z=0, normal_z=1, turns=60, x=0, y=0, z=0
+                )
+                session.run(cycles * PERIOD)
+                speed = group.path_velocity
+                assert speed > 300
+                if factor is None:
+                    group.stop()
+                else:
+                    group.set_override(velocity_factor=factor)
+                session.run(0.4)
+                assert group.path_velocity <= 500 * (factor or 0) + 1e-6
+            for name in "xyz":
+                axis = recorder.recording[name]
+                assert np.abs(axis["set_acceleration"]).max() <= WITHIN * axes.acceleration
+                assert np.abs(np.diff(axis["set_position"], 3)).max() <= (1 + 1e-4) * axes.jerk * PERIOD**3
+
+
 # --- with everything else ---
 
 STOPS: dict[str, Callable[[takt.Engine, takt.Group], object]] = {

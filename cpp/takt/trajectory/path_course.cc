@@ -120,7 +120,9 @@ Limits PathCourse::Between(const Slow& from, const Slow& to) const noexcept {
     acceleration += way * std::min(along.acceleration, along.deceleration);
     jerk += way * along.jerk;
   }
-  velocity = std::max({velocity / length, from.speed, to.speed});
+  // A start faster than the speed limit (the factor has become less) is braked to it.
+  const bool brakes = &from == &slow_.front() && begin_.velocity > factor_ * nodes_.front().at.limits.velocity;
+  velocity = std::max({velocity / length, brakes ? 0 : from.speed, to.speed});
   acceleration *= kReferenceShare * share_ / length;
   return {velocity, acceleration, acceleration, kReferenceShare * share_ * jerk / length};
 }

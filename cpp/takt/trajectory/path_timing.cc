@@ -20,14 +20,19 @@ constexpr double kRefined = 0.99;         // ... they shorten it to this share; 
 constexpr double kUrgent_s = 0.15;        // before the law in force ends: a slower plan is accepted
 constexpr double kWithin = 1 + 1e-7;      // of a limit
 constexpr int kSamples = 12;              // of a piece of a profile that is verified, besides the nodes it passes
-constexpr double kShares[] = {1, 0.8, 0.6, 0.45, 0.3, 0.2, 0.1};  // of limits, tried for braking and for bridges
-constexpr double kReferenceShares[] = {1, 0.8, 0.5};              // of limits, tried for the reference of a plan
-constexpr double kRoomForPlans = 0.97;                            // of limits: a plan can start from such a motion
-constexpr double kSamePosition = 1e-9;                            // mm
-constexpr double kCoordinatesShare = 0.979;                       // of the coordinates' limits; plans use 0.98
-constexpr int kTails = 8;                                         // starts tried for a tail
-constexpr double kTailShares[] = {1, 0.8, 0.5};                   // of limits, tried for it
-constexpr double kStraight = 1e-12;                               // second slopes that are rounding
+constexpr double kShares[] = {1, 0.8, 0.6, 0.45, 0.3, 0.2, 0.1};  // of limits, tried for bridges
+constexpr double kBrakeShares[] = {1,   0.8,  0.6,   0.45,   0.3,  0.2,
+                                   0.1, 0.05, 0.025, 0.0125, 0.006};  // of limits, tried for braking
+constexpr double kBrakesWithin[] = {kWithin, 1.008};  // of the limits of the window, 0.98 of the members'
+constexpr double kOfBrakes = 2;                       // of deceleration, times that of jerk
+constexpr std::uint64_t kBrakeAgain = 4;              // cycles after which a harder one is tried
+constexpr double kReferenceShares[] = {1, 0.8, 0.5};  // of limits, tried for the reference of a plan
+constexpr double kRoomForPlans = 0.97;                // of limits: a plan can start from such a motion
+constexpr double kSamePosition = 1e-9;                // mm
+constexpr double kCoordinatesShare = 0.979;           // of the coordinates' limits; plans use 0.98
+constexpr int kTails = 8;                             // starts tried for a tail
+constexpr double kTailShares[] = {1, 0.8, 0.5};       // of limits, tried for it
+constexpr double kStraight = 1e-12;                   // second slopes that are rounding
 constexpr double kUnlimitedAlong = std::numeric_limits<double>::max();
 constexpr double kGentle = 0.3;  // of the limits: a stop that kShares finds later may be so gentle
 
@@ -57,7 +62,7 @@ PathTiming::PathTiming(double period_s)
     : period_s_(period_s), maker_(std::make_unique<Maker>(period_s)), current_(period_s), next_(period_s) {}
 
 void PathTiming::Clear() noexcept {
-  active_ = braking_ = final_ = reserved_ = false;
+  active_ = braking_ = final_ = reserved_ = slows_ = false;
   DropPlan();
 }
 
@@ -104,7 +109,8 @@ bool PathTiming::Settles(double place) const noexcept {
 }
 
 // Returns whether a motion keeps the limits of all coordinates and never reverses.
-bool PathTiming::Holds(const PathWindow& window, std::uint64_t node, const Profile& profile) const noexcept {
+bool PathTiming::Holds(const PathWindow& window, std::uint64_t node, const Profile& profile,
+                       double within) const noexcept {
   if (profile.VelocityRange().min < -kSamePosition) return false;
   KinematicState before = profile.At(0);
   double begin_s = 0;
@@ -122,11 +128,11 @@ bool PathTiming::Holds(const PathWindow& window, std::uint64_t node, const Profi
         const double square = std::lerp(before.velocity * before.velocity, at.velocity * at.velocity, share);
         const double acceleration = std::lerp(before.acceleration, at.acceleration, share);
         const KinematicState there{s, std::sqrt(square), acceleration};
-        if (UseOf(window, node, there, jerk) > kWithin) return false;
+        if (UseOf(window, node, there, jerk) > within) return false;
         ++node;
-        if (UseOf(window, node, there, jerk) > kWithin) return false;
+        if (UseOf(window, node, there, jerk) > within) return false;
       }
-      if (UseOf(window, node, at, jerk) > kWithin) return false;
+      if (UseOf(window, node, at, jerk) > within) return false;
       before = at;
     }
     begin_s = profile.piece_ends_s[k];
@@ -175,7 +181,7 @@ bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, co
       Profile profile{};
       if (planner_.ToPosition(pace.now, window[to].at.s, 0, limits, profile).failed()) continue;
       if (profile.PositionRange().max > window[to].at.s + kSamePosition) continue;
-      if (!Holds(window, pace.node, profile)) continue;
+      if (!Holds(window, pace.node, profile, kWithin)) continue;
       DropPlan();
       Take(profile, factor);
       final_ = to == end && straight && share >= kRoomForPlans;
@@ -193,7 +199,7 @@ void PathTiming::Go(const PathWindow& window, PathPace& pace) noexcept {
   if (ready_ && next_.begin <= tick_) {
     std::swap(current_, next_);
     ready_ = false;
-    braking_ = final_ = false;
+    braking_ = final_ = slows_ = false;
   }
   pace.now = pace.raw = StateAt(tick_);
   pace.node = pace.passed = NodeAt(window, pace.node, pace.now.position);
@@ -204,42 +210,65 @@ void PathTiming::Go(const PathWindow& window, PathPace& pace) noexcept {
 void PathTiming::Advance(const PathWindow& window, double factor, PathPace& pace) noexcept {
   if (factor > 0 && IsAtRest(pace.now) && rest_s() == 0 && !ready_) {
     Bridge(window, factor, no_plan_, pace);
+  } else if (slows_ && !ready_ && !IsAtRest(pace.now)) {
+    if (!braking_) Brake(window, {}, 0, pace);
+    if (braking_ && braked_ < 1 && tick_ >= tried_ + kBrakeAgain) Brake(window, {}, braked_, pace);
   }
   Go(window, pace);
 }
 
-void PathTiming::Stop(const PathWindow& window, const PathBrake& brake, PathPace& pace) noexcept {
-  if ((!braking_ || (brake.full && !full_)) && !IsAtRest(pace.now)) {
-    AlongPath asked = window[pace.node].at.limits;
-    if (brake.deceleration > 0) asked.deceleration = brake.deceleration;
-    if (brake.jerk > 0) asked.jerk = std::min(brake.jerk, asked.jerk);
-    PathPoint here = window[pace.node].at;
-    here.limits = asked;
-    AlongPath along = LimitsAt(here, window.limits(), kCoordinatesShare);
-    if (brake.full) {
-      const AlongPath own = along;
-      here.limits.deceleration = here.limits.jerk = kUnlimitedAlong;
-      along = LimitsAt(here, window.limits(), kCoordinatesShare);
-      if (along.deceleration == kUnlimitedAlong) along.deceleration = own.deceleration;
-      if (along.jerk == kUnlimitedAlong) along.jerk = own.jerk;
-    }
-    const double furthest = window[StopBehind(window, pace.node)].at.s;
-    for (const double share : kShares) {
+// Takes one jerk-limited motion to rest, the hardest that is found: of those above `least`, a share of the limits.
+bool PathTiming::Brake(const PathWindow& window, const PathBrake& brake, double least, const PathPace& pace) noexcept {
+  AlongPath asked = window[pace.node].at.limits;
+  if (brake.deceleration > 0) asked.deceleration = brake.deceleration;
+  if (brake.jerk > 0) asked.jerk = std::min(brake.jerk, asked.jerk);
+  PathPoint here = window[pace.node].at;
+  here.limits = asked;
+  AlongPath along = LimitsAt(here, window.limits(), kCoordinatesShare);
+  if (brake.full) {
+    const AlongPath own = along;
+    here.limits.deceleration = here.limits.jerk = kUnlimitedAlong;
+    along = LimitsAt(here, window.limits(), kCoordinatesShare);
+    if (along.deceleration == kUnlimitedAlong) along.deceleration = own.deceleration;
+    if (along.jerk == kUnlimitedAlong) along.jerk = own.jerk;
+  }
+  const double furthest = window[StopBehind(window, pace.node)].at.s;
+  for (const double within : kBrakesWithin) {
+    for (const double share : kBrakeShares) {
+      if (share <= least) break;
       Profile profile{};
-      const Limits limits{along.velocity, along.deceleration, share * along.deceleration, share * along.jerk};
+      // What bends leave is less of jerk than of acceleration where both are nearly used up.
+      const Limits limits{along.velocity, along.deceleration, std::min(1.0, kOfBrakes * share) * along.deceleration,
+                          share * along.jerk};
       if (planner_.Stop(pace.now, limits, profile).failed()) continue;
-      if (profile.end().position > furthest || !Holds(window, pace.node, profile)) continue;
+      if (profile.end().position > furthest || !Holds(window, pace.node, profile, within)) continue;
+      if (braking_ && !(profile.duration() < rest_s())) return false;
       Take(profile, current_.factor);
       DropPlan();
       braking_ = true;
       full_ = brake.full;
       final_ = false;
-      break;
+      braked_ = share;
+      tried_ = tick_;
+      return true;
     }
+    if (braking_) break;  // there is one already
   }
-  if (IsAtRest(pace.now)) {
+  tried_ = tick_;
+  return false;
+}
+
+void PathTiming::Stop(const PathWindow& window, const PathBrake& brake, PathPace& pace) noexcept {
+  if (!IsAtRest(pace.now)) {
+    if (!braking_ || (brake.full && !full_)) {
+      Brake(window, brake, 0, pace);
+    } else if (braked_ < 1 && tick_ >= tried_ + kBrakeAgain) {
+      Brake(window, brake, braked_, pace);  // the slower it is the more do bends leave
+    }
+  } else {
     DropPlan();
     braking_ = true;
+    braked_ = 1;
     Take(Profile(pace.now), current_.factor);
   }
   Go(window, pace);
@@ -348,6 +377,7 @@ void PathTiming::TakePlan(std::uint64_t number) noexcept {
     const double wait_s = kAgainShare * std::min(rest_s(), kRenew_s);
     wait_until_ = tick_ + std::max(kOrderAgain, static_cast<std::uint64_t>(wait_s / period_s_));
     no_plan_ = from_rest_;
+    slows_ = next_.factor < current_.factor;
   }
   late_ = 0;
 }
@@ -378,7 +408,7 @@ bool PathTiming::StopBefore(const PathWindow& window, double place, const PathPa
                           share * least.deceleration, share * least.jerk};
       Profile profile{};
       const bool found = !planner_.ToPosition(from, place, 0, limits, profile).failed() &&
-                         profile.PositionRange().max <= place + kSamePosition && Holds(window, node, profile);
+                         profile.PositionRange().max <= place + kSamePosition && Holds(window, node, profile, kWithin);
       if (!found) continue;
       current_.tail_s = static_cast<double>(tick - current_.begin) * period_s_;
       current_.tail = profile;

@@ -5,7 +5,9 @@
 // motion to rest before the first bend. Meanwhile a time-optimal plan (PathPlanner) is computed outside the cycle, from
 // a state that the law in force will reach; it takes over at that instant if it is verified and in time, and is dropped
 // and ordered again if not. Longer paths and other speed factors come into force in the same way. Braking is one
-// jerk-limited motion, verified over all nodes ahead; if none is found, because the path bends, the law in force stays.
+// jerk-limited motion, verified over all nodes ahead, and a harder one as soon as that is found; if there is none,
+// because the path bends, the law in force stays. For a lower speed factor for which no plan is found it brakes, too,
+// until there is one.
 // (Ours.)
 #pragma once
 
@@ -75,8 +77,9 @@ class PathTiming {
   static constexpr std::size_t kIntervals = 256;
 
   KinematicState StateAt(std::uint64_t tick) const noexcept;
-  bool Holds(const PathWindow& window, std::uint64_t node, const Profile& profile) const noexcept;
+  bool Holds(const PathWindow& window, std::uint64_t node, const Profile& profile, double within) const noexcept;
   bool Bridge(const PathWindow& window, double factor, bool slowly, const PathPace& pace) noexcept;
+  bool Brake(const PathWindow& window, const PathBrake& brake, double least, const PathPace& pace) noexcept;
   bool EndsSooner() const noexcept;
   void Take(const Profile& profile, double factor) noexcept;
   void Go(const PathWindow& window, PathPace& pace) noexcept;
@@ -106,6 +109,9 @@ class PathTiming {
   bool active_ = false;
   bool braking_ = false;          // the law in force brakes ...
   bool full_ = false;             // ... as hard as the coordinates can
+  bool slows_ = false;            // no plan was found for a lower speed factor: it brakes until there is one
+  double braked_ = 1;             // share of the limits with which the law in force brakes
+  std::uint64_t tried_ = 0;       // tick at which a harder one was tried last
   bool final_ = false;            // no plan would be faster ...
   bool reserved_ = false;         // ... but for the room that the law in force leaves for one that leads further
   bool planning_ = false;         // a plan is ordered ...
