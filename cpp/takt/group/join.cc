@@ -236,10 +236,13 @@ bool GoOnFromLastCorner(const Context& c, const State& s, const CornerBlend& d, 
   Stretch blend = d.stretch;
   const double middle = line.length / 2;
   if (d.first < middle && d.second < ahead.next.segment.length / 2) return false;  // it is the deviation that counts
-  // A corner that two ramps pass, overlapped, sooner than one speed: no curvature to keep up.
-  const double overlap_s =
-      path::Overlap(line, ahead.next.segment, std::min(middle, d.second), RampOf(c, ahead[last_one], ahead.next));
-  if (std::isfinite(overlap_s)) return false;
+  // Both corners are passed sooner by two ramps each that overlap than at one speed: there is no curvature to keep up.
+  const auto is_sharp = [&](const path::Segment& first, const path::Segment& second, double distance) {
+    return std::isfinite(path::Overlap(first, second, distance, RampOf(c, ahead[last_one], ahead.next)));
+  };
+  if (is_sharp(ahead.corner.first, line, middle) && is_sharp(line, ahead.next.segment, std::min(middle, d.second))) {
+    return false;
+  }
   const auto bend = path::BendBetween(ahead.corner.first, line, ahead.next.segment);
   if (!bend) return false;
   Stretch last = ahead[last_one];

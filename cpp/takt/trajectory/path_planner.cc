@@ -589,6 +589,7 @@ void PathPlanner::HoldSpeed(PathPlan& out) noexcept {
     std::copy_n(kept_tighten_.begin(), n_, tighten_.begin());
     const bool faster = good && TimeOf() < out.duration();
     if (faster) Publish(out);
+    holds_ = faster;
     std::ranges::fill(held_, std::uint8_t{0});
     if (faster) return;
     std::copy_n(kept_.begin(), n_, ordinates_.begin());
@@ -629,6 +630,7 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
   n_ = request.lengths.size();
   count_ = request.limits.size();
   steps_ = 0;
+  holds_ = false;
   most_use_ = 0;
   if (n_ > most_intervals_ || count_ > most_coordinates_ || out.knots_.size() < n_ + 1)
     return PathPlanStatus::kTooLarge;

@@ -91,6 +91,7 @@ class PathPlanner {
   // `out` must have room for the intervals.
   PathPlanStatus Plan(const PathPlanRequest& request, PathPlan& out) noexcept;
 
+  bool holds() const noexcept { return holds_; }          // the last plan keeps the velocity limit somewhere, exactly
   int steps() const noexcept { return steps_; }           // Newton steps of the last call
   double most_use() const noexcept { return most_use_; }  // largest share of a limit that the last plan uses
 
@@ -156,6 +157,7 @@ class PathPlanner {
   std::vector<double> diagonal_, next_, second_next_, right_, step_;
   std::size_t row_count_ = 0;
   int steps_ = 0;
+  bool holds_ = false;
   double most_use_ = 0;
   double gap_ = 0, residual_ = 0, infeasible_ = 0, primal_ = 0, dual_ = 0;  // of the last step
 };

@@ -16,7 +16,8 @@ constexpr double kRenew_s = 0.4;          // before a law ends, if the path does
 constexpr double kRenewShare = 0.75;      // ... and this share of its duration
 constexpr double kAgainShare = 0.1;       // of the time before it ends: the wait after a plan that failed, at least
 constexpr int kRefinements = 3;           // of a plan, as long as ...
-constexpr double kRefined = 0.99;         // ... they shorten it to this share; a speed that is kept may dip in them
+constexpr double kRefined = 0.99;         // ... they shorten it to this share ...
+constexpr double kWorthIt = 0.99;         // ... taken at this one where speeds are held, which dip in a refinement
 constexpr double kUrgent_s = 0.15;        // before the law in force ends: a slower plan is accepted
 constexpr double kWithin = 1 + 1e-7;      // of a limit
 constexpr int kSamples = 12;              // of a piece of a profile that is verified, besides the nodes it passes
@@ -331,11 +332,13 @@ std::optional<std::uint64_t> PathTiming::MakePlan() noexcept {
   // optimum.
   for (int i = 0; i < kRefinements && maker_->status == PathPlanStatus::kPlanned; ++i) {
     const double before_s = next_.plan.duration();
+    const double most_s = maker_->planner.holds() ? kWorthIt * before_s : before_s;
     if (!maker_->course.Make(next_.course, next_.plan)) break;
     const PathPlanStatus status = maker_->planner.Plan(maker_->course.Request(), maker_->plan);
-    if (status != PathPlanStatus::kPlanned || !(maker_->plan.duration() < kRefined * before_s)) break;
+    if (status != PathPlanStatus::kPlanned || !(maker_->plan.duration() < most_s)) break;
     std::swap(maker_->course, next_.course);
     std::swap(maker_->plan, next_.plan);
+    if (next_.plan.duration() > kRefined * before_s) break;
   }
   const std::uint64_t number = maker_->number;
   maker_->order.store(OrderState::kMade, std::memory_order_release);
