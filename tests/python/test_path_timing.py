@@ -312,6 +312,33 @@ def test_stops_and_overrides_are_answered_where_bends_leave_little(factor: float
                 assert np.abs(np.diff(axis["set_position"], 3)).max() <= (1 + 1e-4) * axes.jerk * PERIOD**3
 
 
+@pytest.mark.parametrize("instant", range(0, 700, 7) if LONG else range(0, 700, 70))
+def test_overrides_and_interrupts_cross_where_bends_leave_little(instant: int) -> None:
+    """GR-40: interrupted while a lower override brakes, continued, raised again; each time answered, and it goes on."""
+    axes = Limits(1000, 10_000, 200_000)
+    text = machine([(1.0, 0.0, 0.0)], Limits(500, 5000, 100_000)).split("paths:")[0]
+    text = text.replace(values(Limits(500, 5000, 100_000)), values(axes), 3)
+    with takt.Engine(text) as session:
+        group = session.group("g")
+        group.power().wait()
+        group.enable().wait()
+        done = group.move_circular_absolute(
+            circ_mode="center", aux_x=-15, aux_y=0, aux_z=0, normal_z=1, turns=30, x=0, y=0, z=0
+        )
+        session.run(instant * PERIOD)
+        for wait in (5, 30, 90, 150):
+            session.run(0.5)
+            group.set_override(velocity_factor=0.1)
+            session.run(wait * PERIOD)
+            group.interrupt().wait(timeout=0.6)
+            group.continue_path()
+            session.run(0.2)
+            assert group.path_velocity == pytest.approx(50, abs=1e-3)
+            group.set_override(velocity_factor=1.0)
+        done.wait(timeout=20)
+        assert np.abs([session.axis(name).set_position for name in "xyz"]).max() <= 1e-6
+
+
 # --- with everything else ---
 
 STOPS: dict[str, Callable[[takt.Engine, takt.Group], object]] = {

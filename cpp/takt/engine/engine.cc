@@ -237,7 +237,7 @@ struct Engine::Impl {
     }
   }
 
-  // With the state of a mover, where it has changed, and now and then for those that come later.
+  // With the state of a mover when it has changed, and periodically for later subscribers.
   void PublishTrails() noexcept {
     const auto repeat = static_cast<std::uint64_t>(1 / machine.cycle.period_s);  // a second
     for (std::uint32_t i = 0; i < movers.divisors.size(); ++i) {

@@ -191,7 +191,7 @@ bool IsTimed(const Context& c, const Request& move, const Stretch& stretch) noex
 void BeginTiming(const Context& c, State& s) noexcept {
   c.ahead.timing.Clear();
   if (!c.params.path.planned_ahead || Jogs(s) || s.master.axis != 0 || s.track.ticket != 0) return;
-  // All that is gone before the next stop.
+  // The moves up to the next stop.
   std::uint64_t behind = s.done + 1;
   while (behind < s.done + s.queue.count && MoveAt(s, behind).blends()) ++behind;
   // How long it takes is known to the next stop only, and a module wants to know it to the end of its order. Others may

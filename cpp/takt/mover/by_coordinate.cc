@@ -38,7 +38,7 @@ Profile& Of(PlaneMotion& motion, Coordinate which) {
 }
 
 bool PlanToGoal(trajectory::Planner& planner, const KinematicState& from, const Goal& goal, Profile& out) {
-  if (!goal.goes) return planner.Stop(from, goal.limits, out).ok();
+  if (!goal.active) return planner.Stop(from, goal.limits, out).ok();
   return planner.ToPosition(from, goal.target, 0, goal.limits, out).ok();
 }
 
@@ -48,8 +48,8 @@ std::array<Goal, 2> RestingGoals(const Context& c) {
 }
 
 void PutNext(PlaneMove& move) {
-  move.next = {.x = move.goals[0].goes ? move.goals[0].target : move.motion.end_x,
-               .y = move.goals[1].goes ? move.goals[1].target : move.motion.end_y};
+  move.next = {.x = move.goals[0].active ? move.goals[0].target : move.motion.end_x,
+               .y = move.goals[1].active ? move.goals[1].target : move.motion.end_y};
 }
 
 // How X and Y move if one of them is told to go to this goal, and how long that one takes.
@@ -68,7 +68,7 @@ std::optional<Plan> PlanEach(const Context& c, const State& s, Coordinate which,
   move.each = true;
   move.goals = old.each ? old.goals : RestingGoals(c);
   move.goals[which] = goal;
-  move.goes = move.goals[0].goes || move.goals[1].goes;
+  move.goes = move.goals[0].active || move.goals[1].active;
   if (old.each && !old.waits) {
     Profile x = old.motion.along, y = old.motion.across;
     x.Skip(now);
@@ -230,9 +230,9 @@ PlaneMove RestOnLine(const Context& c, const State& s, const Limits& limits) {
 Plan LeaveAtRest(const Context& c, const State& s, Coordinate which) {
   Plan plan;
   plan.duration = std::max(0.0, DurationOf(s.plane.motion) - Elapsed(c, s.plane.begin));
-  if (s.plane.goals[which == kX ? 1 : 0].goes) {
+  if (s.plane.goals[which == kX ? 1 : 0].active) {
     plan.move = s.plane;
-    plan.move.goals[which].goes = false;
+    plan.move.goals[which].active = false;
     PutNext(plan.move);
     return plan;
   }

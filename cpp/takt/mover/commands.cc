@@ -165,7 +165,8 @@ void DescribeRelative(Description<T>& d, Unit distance, const Range& range, Unit
 
 template <typename T>
 void DescribeVelocity(Description<T>& d, Unit speed, Unit acceleration, Unit jerk) {
-  d.template required<&T::velocity>(speed, between(-1e9, 1e9), "Negative: downwards; 0: the coordinate comes to rest.");
+  d.template required<&T::velocity>(speed, between(-1e9, 1e9),
+                                    "Negative: towards smaller values; 0: the coordinate stops.");
   d.template defaulted<&T::acceleration>(acceleration, kAccelerations,
                                          "Largest acceleration; unset, as all that follows: the mover's standard.");
   d.template defaulted<&T::deceleration>(acceleration, kAccelerations, "Largest deceleration.");
@@ -197,18 +198,21 @@ void describe(Description<MoveRelativeC>& d) {
 }
 void describe(Description<MoveVelocityX>& d) {
   d.about(
-      "Moves X on and on, as move_x does. Active until another command of X or a halt ends it; where there is no more "
+      "Moves X at a velocity, as move_x does. Active until another command of X or a halt ends it; where there is no "
+      "more "
       "room, as it was when the command began, X comes to rest, and the command ends with the reason as its error.");
   DescribeVelocity(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
 }
 void describe(Description<MoveVelocityY>& d) {
   d.about(
-      "Moves Y on and on, as move_y does. Active until another command of Y or a halt ends it; where there is no more "
+      "Moves Y at a velocity, as move_y does. Active until another command of Y or a halt ends it; where there is no "
+      "more "
       "room, as it was when the command began, Y comes to rest, and the command ends with the reason as its error.");
   DescribeVelocity(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
 }
 void describe(Description<MoveVelocityC>& d) {
-  d.about("Turns the mover on and on; X and Y must be at rest. Active until another command of C or a halt ends it.");
+  d.about(
+      "Turns the mover at a velocity; X and Y must be at rest. Active until another command of C or a halt ends it.");
   DescribeVelocity(d, unit::deg_s, unit::deg_s2, unit::deg_s3);
 }
 void describe(Description<HaltX>& d) {

@@ -141,23 +141,23 @@ struct MoveRelativeC {
   std::optional<double> jerk{};          // deg/s³
   Buffering buffer_mode = Buffering::kAborting;
 };
-// On and on, as far as there is room.
+// At a velocity, as far as there is room.
 struct MoveVelocityX {
-  double velocity = 0;                   // mm/s, negative: downwards
+  double velocity = 0;                   // mm/s, negative: towards smaller values
   std::optional<double> acceleration{};  // mm/s²
   std::optional<double> deceleration{};  // mm/s²
   std::optional<double> jerk{};          // mm/s³
   Buffering buffer_mode = Buffering::kAborting;
 };
 struct MoveVelocityY {
-  double velocity = 0;                   // mm/s, negative: downwards
+  double velocity = 0;                   // mm/s, negative: towards smaller values
   std::optional<double> acceleration{};  // mm/s²
   std::optional<double> deceleration{};  // mm/s²
   std::optional<double> jerk{};          // mm/s³
   Buffering buffer_mode = Buffering::kAborting;
 };
 struct MoveVelocityC {
-  double velocity = 0;                   // deg/s, negative: downwards
+  double velocity = 0;                   // deg/s, negative: towards smaller values
   std::optional<double> acceleration{};  // deg/s²
   std::optional<double> deceleration{};  // deg/s²
   std::optional<double> jerk{};          // deg/s³

@@ -215,7 +215,7 @@ void Hold(const Context& c, std::uint32_t other, State& s) noexcept {
       known ? s.escape : Escape{StandingAt(s.set_point[kX].position, s.set_point[kY].position), c.cycle.count, 0};
   if (plane.goes && plane.each) {
     const auto [x, y] = plane.goals;
-    plane.next = {.x = x.goes ? x.target : rest.motion.end_x, .y = y.goes ? y.target : rest.motion.end_y};
+    plane.next = {.x = x.active ? x.target : rest.motion.end_x, .y = y.active ? y.target : rest.motion.end_y};
     plane.waits = true;
   } else if (plane.goes && !plane.waits) {
     const trajectory::Limits& l = plane.limits;
@@ -243,7 +243,7 @@ namespace {
 // The same where X and Y go on each by itself: as far as each takes to get to its speed.
 bool IsHeldEach(const Context& c, const planar::Place& here, const planar::Place& way, State& s) {
   const auto ahead = [](const Goal& goal, double left) {
-    if (!goal.goes) return 0.0;
+    if (!goal.active) return 0.0;
     const trajectory::Limits& l = goal.limits;
     const double needed = planar::WayToRest(l.velocity, {l.deceleration, l.jerk}) + kAhead;
     return std::clamp(left, -needed, needed);

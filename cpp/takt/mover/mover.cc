@@ -150,7 +150,7 @@ void EndOfWay(const Context& c, State& s) {
 bool IsOver(const Context& c, const State& s, Coordinate which) {
   const PlaneMove& p = s.plane;
   const double t = Elapsed(c, p.begin);
-  if (p.waits) return p.each && !p.goals[which].goes && t >= DurationOf(p.motion);
+  if (p.waits) return p.each && !p.goals[which].active && t >= DurationOf(p.motion);
   return t >= (p.each ? which == kX ? p.motion.along.duration() : p.motion.across.duration() : DurationOf(p.motion));
 }
 

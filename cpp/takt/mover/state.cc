@@ -40,7 +40,7 @@ void describe(Description<History>& d) {
 void describe(Description<Goal>& d) {
   d.named("MoverGoal");
   d.about("Where a command leads X or Y by itself.");
-  d.internal<&Goal::goes>("It leads it there; else it comes to rest, or stands.");
+  d.internal<&Goal::active>("A command leads to it; else the coordinate comes to rest, or stands.");
   d.internal<&Goal::target>(unit::mm, "The position.");
   d.internal<&Goal::limits>("Of the command.");
 }

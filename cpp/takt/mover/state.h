@@ -31,7 +31,7 @@ using SetPoint = std::array<KinematicState, kCoordinates>;  // mm, deg
 
 // Where a command leads X or Y by itself.
 struct Goal {
-  bool goes = false;  // it leads it there; else it comes to rest, or stands
+  bool active = false;  // a command leads to it; else the coordinate comes to rest, or stands
   double target = 0;  // mm
   trajectory::Limits limits;
 };

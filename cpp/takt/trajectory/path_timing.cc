@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace takt::trajectory {
 
@@ -16,16 +17,17 @@ constexpr double kRenew_s = 0.4;          // before a law ends, if the path does
 constexpr double kRenewShare = 0.75;      // ... and this share of its duration
 constexpr double kAgainShare = 0.1;       // of the time before it ends: the wait after a plan that failed, at least
 constexpr int kRefinements = 3;           // of a plan, as long as ...
-constexpr double kRefined = 0.99;         // ... they shorten it to this share ...
-constexpr double kWorthIt = 0.99;         // ... taken at this one where speeds are held, which dip in a refinement
-constexpr double kUrgent_s = 0.15;        // before the law in force ends: a slower plan is accepted
-constexpr double kWithin = 1 + 1e-7;      // of a limit
-constexpr int kSamples = 12;              // of a piece of a profile that is verified, besides the nodes it passes
+constexpr double kRefined = 0.99;     // ... they shorten it to this share; no other is taken where a plan holds speeds
+constexpr double kUrgent_s = 0.15;    // before the law in force ends: a slower plan is accepted
+constexpr double kWithin = 1 + 1e-7;  // of a limit
+constexpr int kSamples = 12;          // of a piece of a profile that is verified, besides the nodes it passes
 constexpr double kShares[] = {1, 0.8, 0.6, 0.45, 0.3, 0.2, 0.1};  // of limits, tried for bridges
 constexpr double kBrakeShares[] = {1,   0.8,  0.6,   0.45,   0.3,  0.2,
                                    0.1, 0.05, 0.025, 0.0125, 0.006};  // of limits, tried for braking
-constexpr double kBrakesWithin[] = {kWithin, 1.008};  // of the limits of the window, 0.98 of the members'
-constexpr double kOfBrakes = 2;                       // of deceleration, times that of jerk
+constexpr double kBrakesWithin[] = {kWithin, 1.008, 1.018};  // of the limits of the window, 0.98 of the members'
+constexpr double kOfBrakes = 2;                              // of deceleration, times that of jerk
+constexpr double kLastResort = 0.1;                   // share of the limits that may be tried within more than kWithin
+constexpr std::uint64_t kMoreAfter = 10;              // cycles in which nothing was found within less
 constexpr std::uint64_t kBrakeAgain = 4;              // cycles after which a harder one is tried
 constexpr double kReferenceShares[] = {1, 0.8, 0.5};  // of limits, tried for the reference of a plan
 constexpr double kRoomForPlans = 0.97;                // of limits: a plan can start from such a motion
@@ -35,7 +37,12 @@ constexpr int kTails = 8;                             // starts tried for a tail
 constexpr double kTailShares[] = {1, 0.8, 0.5};       // of limits, tried for it
 constexpr double kStraight = 1e-12;                   // second slopes that are rounding
 constexpr double kUnlimitedAlong = std::numeric_limits<double>::max();
-constexpr double kGentle = 0.3;  // of the limits: a stop that kShares finds later may be so gentle
+constexpr double kGentle = 0.3;  // of the limits: a stop that kBrakeShares finds later may be so gentle
+
+// What a motion to rest may use of the limits after so many cycles in which none was found.
+double WithinAfter(std::uint64_t cycles) {
+  return kBrakesWithin[std::min<std::size_t>(cycles / kMoreAfter, std::size(kBrakesWithin) - 1)];
+}
 
 bool IsAtRest(const KinematicState& state) {
   return state.velocity == 0 && state.acceleration == 0;
@@ -81,7 +88,7 @@ void PathTiming::KeepPlanTo(double place) noexcept {
 void PathTiming::Begin(const PathPace& pace) noexcept {
   Clear();
   active_ = true;
-  late_ = took_ = tick_ = wait_until_ = ordered_ = 0;
+  late_ = refused_ = took_ = tick_ = wait_until_ = ordered_ = 0;
   Take(Profile(pace.now), 1);
 }
 
@@ -185,6 +192,7 @@ bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, co
       if (!Holds(window, pace.node, profile, kWithin)) continue;
       DropPlan();
       Take(profile, factor);
+      slows_ = false;
       final_ = to == end && straight && share >= kRoomForPlans;
       reserved_ = final_ && !last;
       braking_ = false;
@@ -201,6 +209,7 @@ void PathTiming::Go(const PathWindow& window, PathPace& pace) noexcept {
     std::swap(current_, next_);
     ready_ = false;
     braking_ = final_ = slows_ = false;
+    refused_ = 0;
   }
   pace.now = pace.raw = StateAt(tick_);
   pace.node = pace.passed = NodeAt(window, pace.node, pace.now.position);
@@ -215,6 +224,7 @@ void PathTiming::Advance(const PathWindow& window, double factor, PathPace& pace
     if (!braking_) Brake(window, {}, 0, pace);
     if (braking_ && braked_ < 1 && tick_ >= tried_ + kBrakeAgain) Brake(window, {}, braked_, pace);
   }
+  if (!slows_) refused_ = 0;
   Go(window, pace);
 }
 
@@ -234,9 +244,12 @@ bool PathTiming::Brake(const PathWindow& window, const PathBrake& brake, double 
     if (along.jerk == kUnlimitedAlong) along.jerk = own.jerk;
   }
   const double furthest = window[StopBehind(window, pace.node)].at.s;
+  tried_ = tick_;
   for (const double within : kBrakesWithin) {
+    if (within > (braking_ ? braked_within_ : WithinAfter(refused_))) break;
     for (const double share : kBrakeShares) {
       if (share <= least) break;
+      if (within > kWithin && share > kLastResort) continue;  // only what hardly changes the motion
       Profile profile{};
       // What bends leave is less of jerk than of acceleration where both are nearly used up.
       const Limits limits{along.velocity, along.deceleration, std::min(1.0, kOfBrakes * share) * along.deceleration,
@@ -250,21 +263,22 @@ bool PathTiming::Brake(const PathWindow& window, const PathBrake& brake, double 
       full_ = brake.full;
       final_ = false;
       braked_ = share;
-      tried_ = tick_;
+      braked_within_ = within;
+      refused_ = 0;
       return true;
     }
-    if (braking_) break;  // there is one already
   }
-  tried_ = tick_;
+  if (!braking_) ++refused_;
   return false;
 }
 
 void PathTiming::Stop(const PathWindow& window, const PathBrake& brake, PathPace& pace) noexcept {
+  slows_ = false;
   if (!IsAtRest(pace.now)) {
     if (!braking_ || (brake.full && !full_)) {
       Brake(window, brake, 0, pace);
     } else if (braked_ < 1 && tick_ >= tried_ + kBrakeAgain) {
-      Brake(window, brake, braked_, pace);  // the slower it is the more do bends leave
+      Brake(window, brake, braked_, pace);  // the slower the motion, the more bends leave
     }
   } else {
     DropPlan();
@@ -332,7 +346,7 @@ std::optional<std::uint64_t> PathTiming::MakePlan() noexcept {
   // optimum.
   for (int i = 0; i < kRefinements && maker_->status == PathPlanStatus::kPlanned; ++i) {
     const double before_s = next_.plan.duration();
-    const double most_s = maker_->planner.holds() ? kWorthIt * before_s : before_s;
+    const double most_s = maker_->planner.holds() ? kRefined * before_s : before_s;
     if (!maker_->course.Make(next_.course, next_.plan)) break;
     const PathPlanStatus status = maker_->planner.Plan(maker_->course.Request(), maker_->plan);
     if (status != PathPlanStatus::kPlanned || !(maker_->plan.duration() < most_s)) break;

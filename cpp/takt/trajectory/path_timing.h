@@ -111,6 +111,8 @@ class PathTiming {
   bool full_ = false;             // ... as hard as the coordinates can
   bool slows_ = false;            // no plan was found for a lower speed factor: it brakes until there is one
   double braked_ = 1;             // share of the limits with which the law in force brakes
+  double braked_within_ = 1;      // ... and what it may use of them where the path bends
+  std::uint64_t refused_ = 0;     // cycles in which no motion to rest was found
   std::uint64_t tried_ = 0;       // tick at which a harder one was tried last
   bool final_ = false;            // no plan would be faster ...
   bool reserved_ = false;         // ... but for the room that the law in force leaves for one that leads further
