@@ -32,7 +32,7 @@ using SetPoint = std::array<KinematicState, kCoordinates>;  // mm, deg
 // Where a command leads X or Y by itself.
 struct Goal {
   bool active = false;  // a command leads to it; else the coordinate comes to rest, or stands
-  double target = 0;  // mm
+  double target = 0;    // mm
   trajectory::Limits limits;
 };
 
