@@ -339,6 +339,59 @@ def test_overrides_and_interrupts_cross_where_bends_leave_little(instant: int) -
         assert np.abs([session.axis(name).set_position for name in "xyz"]).max() <= 1e-6
 
 
+STOP_AT = 293  # cycles
+FURTHER = {"x": 20, "y": -40, "z": 5}
+AROUND_A_STOP: dict[str, Callable[[takt.Engine, takt.Group], object]] = {
+    "nothing": lambda _, __: None,
+    "override": lambda _, group: group.set_override(velocity_factor=0.4),
+    "override for a cycle": lambda session, group: (
+        group.set_override(velocity_factor=0.4),
+        session.run(PERIOD),
+        group.set_override(velocity_factor=1.0),
+    ),
+    "interrupt": lambda session, group: (group.interrupt().wait(timeout=2), session.run(0.02), group.continue_path()),
+    "one more": lambda _, group: group.move_linear_absolute(buffer_mode="buffered", **FURTHER),
+    "one more that blends": lambda _, group: group.move_linear_absolute(
+        buffer_mode="blending_next", transition_mode="corner_distance", transition_parameter=2, **FURTHER
+    ),
+    "abort": lambda _, group: group.move_linear_absolute(**FURTHER),
+    "halt": lambda _, group: (group.halt().wait(timeout=2), group.move_linear_absolute(**FURTHER)),
+}
+
+
+@pytest.mark.parametrize("left", range(-20, 130, 3) if LONG else (-1, 0, 1, 2, 12, 60, 110))
+@pytest.mark.parametrize("event", AROUND_A_STOP)
+def test_what_is_behind_a_stop_sets_out_at_once(event: str, left: int) -> None:
+    """GR-41: it is planned before, though it bends at once; whatever happens so many cycles before the stop."""
+    limits = Limits(400, 4000, 80_000)
+    with takt.Engine(machine([(1.0, 0.0, 0.0)], limits).split("paths:")[0]) as session:
+        group = session.group("g")
+        group.power().wait()
+        group.enable().wait()
+        with session.record("g", "x", "y", "z") as recorder:
+            first = group.move_circular_absolute(circ_mode="border", aux_x=10, aux_y=10, aux_z=0, x=20, y=0, z=0)
+            group.move_circular_absolute(
+                circ_mode="border", aux_x=30, aux_y=-10, aux_z=0, x=20, y=-20, z=0, buffer_mode="buffered"
+            )
+            session.run((STOP_AT - left) * PERIOD)
+            AROUND_A_STOP[event](session, group)
+            session.run(1.5)
+        assert group.state == "GroupStandby"
+        assert first.done or event in ("abort", "halt")
+        recording = recorder.recording
+    path = recording["g"]
+    assert np.abs(path["path_acceleration"]).max() <= WITHIN * limits.acceleration
+    for name in "xyz":
+        axis = recording[name]
+        assert np.abs(axis["set_acceleration"]).max() <= WITHIN * limits.acceleration
+        assert np.abs(np.diff(axis["set_position"], 3)).max() <= (1 + 1e-4) * limits.jerk * PERIOD**3
+    ends = (20, -20, 0) if event in ("nothing", "override", "override for a cycle", "interrupt") else (20, -40, 5)
+    assert [recording[name]["set_position"][-1] for name in "xyz"] == pytest.approx(ends, abs=1e-6)
+    if event == "nothing":
+        still = np.flatnonzero(path["path_velocity"][STOP_AT - 20 : STOP_AT + 20] == 0)
+        assert len(still) <= 1
+
+
 # --- with everything else ---
 
 STOPS: dict[str, Callable[[takt.Engine, takt.Group], object]] = {

@@ -188,26 +188,38 @@ bool IsTimed(const Context& c, const Request& move, const Stretch& stretch) noex
   return move.cargo.carrier == 0 && move.master == 0 && !IsCarried(c.ahead, stretch);
 }
 
-void BeginTiming(const Context& c, State& s) noexcept {
-  c.ahead.timing.Clear();
-  if (!c.params.path.planned_ahead || Jogs(s) || s.master.axis != 0 || s.track.ticket != 0) return;
+namespace {
+
+bool CanBeTimed(const Context& c, const State& s) {
+  if (!c.params.path.planned_ahead || Jogs(s) || s.master.axis != 0 || s.track.ticket != 0) return false;
   // The moves up to the next stop.
   std::uint64_t behind = s.done + 1;
   while (behind < s.done + s.queue.count && MoveAt(s, behind).blends()) ++behind;
   // How long it takes is known to the next stop only, and a module wants to know it to the end of its order. Others may
   // give a move later that blends onto what moves.
   const bool to_the_end = c.carriers.modules;
-  if (!to_the_end && std::ranges::any_of(s.cargoes, [](const Cargo& cargo) { return cargo.carrier != 0; })) return;
-  if (to_the_end && behind == s.done + 1 && behind < s.done + s.queue.count) return;
+  if (!to_the_end && std::ranges::any_of(s.cargoes, [](const Cargo& cargo) { return cargo.carrier != 0; }))
+    return false;
+  if (to_the_end && behind == s.done + 1 && behind < s.done + s.queue.count) return false;
   for (std::uint64_t i = s.done; i < behind; ++i) {
     const Request& move = MoveAt(s, i);
-    if (move.cargo.carrier != 0 || move.master != 0) return;
+    if (move.cargo.carrier != 0 || move.master != 0) return false;
   }
   for (std::uint64_t i = c.ahead.first; i < c.ahead.end() && c.ahead[i].move < behind; ++i) {
-    if (IsCarried(c.ahead, c.ahead[i])) return;
-    if (to_the_end && c.ahead[i].stops && i + 1 < c.ahead.end() && c.ahead[i + 1].move < behind) return;
+    if (IsCarried(c.ahead, c.ahead[i])) return false;
+    if (to_the_end && c.ahead[i].stops && i + 1 < c.ahead.end() && c.ahead[i + 1].move < behind) return false;
   }
-  c.ahead.timing.Begin(s.pace);
+  return true;
+}
+
+}  // namespace
+
+void BeginTiming(const Context& c, State& s) noexcept {
+  if (CanBeTimed(c, s)) {
+    c.ahead.timing.Begin(s.pace);
+  } else {
+    c.ahead.timing.Clear();
+  }
 }
 
 bool Advance(const Context& c, State& s) noexcept {
@@ -219,7 +231,8 @@ bool Advance(const Context& c, State& s) noexcept {
       trajectory::BeginAt(window, next, c.cycle.period_s, s.pace);
       const std::uint64_t move = c.ahead[c.ahead.first].move;
       BeginFollowing(c, MoveAt(s, move), move, s);
-      BeginTiming(c, s);
+      // A module has foretold when its order ends by the timing that the order began with.
+      if (!c.carriers.modules || c.ahead.timing.active()) BeginTiming(c, s);
     }
   }
   trajectory::PathTiming& timing = c.ahead.timing;

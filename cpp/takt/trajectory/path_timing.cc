@@ -15,6 +15,7 @@ constexpr std::uint64_t kMostLead = 400;  // cycles
 constexpr std::uint64_t kOrderAgain = 8;  // cycles after one that failed
 constexpr double kRenew_s = 0.4;          // before a law ends, if the path does not ...
 constexpr double kRenewShare = 0.75;      // ... and this share of its duration
+constexpr double kBehind_s = 0.1;         // before the end of a law the motion behind a stop there is planned
 constexpr double kAgainShare = 0.1;       // of the time before it ends: the wait after a plan that failed, at least
 constexpr int kRefinements = 3;           // of a plan, as long as ...
 constexpr double kRefined = 0.99;     // ... they shorten it to this share; no other is taken where a plan holds speeds
@@ -46,6 +47,14 @@ double WithinAfter(std::uint64_t cycles) {
 
 bool IsAtRest(const KinematicState& state) {
   return state.velocity == 0 && state.acceleration == 0;
+}
+
+bool IsStraight(const PathWindow& window, std::uint64_t from, std::uint64_t to) {
+  for (std::uint64_t i = from; i <= to; ++i) {
+    const auto straight = [](double q) { return std::abs(q) < kStraight; };
+    if (!std::ranges::all_of(window[i].at.slopes.second, straight)) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -86,10 +95,14 @@ void PathTiming::KeepPlanTo(double place) noexcept {
 }
 
 void PathTiming::Begin(const PathPace& pace) noexcept {
+  const bool planned = ready_ && behind_ && std::abs(next_.begin_place - pace.now.position) < kSamePosition;
   Clear();
   active_ = true;
   late_ = refused_ = took_ = tick_ = wait_until_ = ordered_ = 0;
   Take(Profile(pace.now), 1);
+  behind_ = false;
+  ready_ = planned;
+  next_.begin = tick_;
 }
 
 void PathTiming::Take(const Profile& profile, double factor) noexcept {
@@ -173,15 +186,14 @@ bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, co
   for (const std::uint64_t to : {slowly ? end : bend, bend}) {
     AlongPath least = window[pace.node].at.limits;
     double velocity = std::numeric_limits<double>::infinity();
-    bool straight = true;
     for (std::uint64_t i = pace.node; i <= to; ++i) {
       const PathPoint& point = window[i].at;
       least = Least(least, LimitsAt(point, window.limits(), kCoordinatesShare));
       const double most = factor * point.limits.velocity;
-      straight = straight && std::ranges::all_of(point.slopes.second, [](double q) { return std::abs(q) < kStraight; });
       velocity = std::min({velocity, most, std::max(factor, 1e-3) * std::sqrt(window[i].own)});
     }
     if (!(velocity > 0)) continue;
+    const bool straight = IsStraight(window, pace.node, to);
     const bool last = to == end && straight && window[to].stop;
     for (double share : kShares) {
       if (share == 1 && !last) share = kRoomForPlans;
@@ -205,7 +217,7 @@ bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, co
 
 void PathTiming::Go(const PathWindow& window, PathPace& pace) noexcept {
   ++tick_;
-  if (ready_ && next_.begin <= tick_) {
+  if (ready_ && !behind_ && next_.begin <= tick_) {
     std::swap(current_, next_);
     ready_ = false;
     braking_ = final_ = slows_ = false;
@@ -301,25 +313,49 @@ bool PathTiming::Order(const PathWindow& window, double factor, const PathPace& 
   const std::uint64_t lead = std::clamp(kOfLastPlan * took_, std::max(late_, least), std::max(kMostLead, least));
   const KinematicState begin = StateAt(tick_ + lead);
   const std::uint64_t node = NodeAt(window, pace.node, begin.position);
-  if (!next_.course.Take(window, node, begin, StopBehind(window, pace.node), factor)) return false;
+  if (!OrderFrom(window, node, begin, factor)) return false;
   from_rest_ = IsAtRest(begin);
   maker_->urgent = rest_s() < kUrgent_s;
   next_.begin = tick_ + lead;
+  reserved_ = no_plan_ = behind_ = false;
+  maker_->order.store(OrderState::kOrdered, std::memory_order_release);
+  return true;
+}
+
+bool PathTiming::OrderFrom(const PathWindow& window, std::uint64_t node, const KinematicState& begin,
+                           double factor) noexcept {
+  if (!next_.course.Take(window, node, begin, StopBehind(window, node), factor)) return false;
+  next_.begin_place = begin.position;
   next_.planned = true;
   next_.factor = factor;
   next_.tail_s = std::numeric_limits<double>::infinity();
   ++maker_->number;
-  maker_->order.store(OrderState::kOrdered, std::memory_order_release);
   planning_ = true;
-  dropped_ = no_plan_ = false;
+  dropped_ = false;
   known_to_ = std::numeric_limits<double>::infinity();
   ordered_ = tick_;
-  reserved_ = false;
   return true;
 }
 
+// The motion behind the stop at a node, so that it sets out at once and its duration is known then.
+void PathTiming::OrderBehind(const PathWindow& window, std::uint64_t stop, double factor) noexcept {
+  const std::uint64_t node = stop + 1;
+  if (rest_s() > kBehind_s || !window.swept() || node + 1 >= window.known()) return;
+  if (IsStraight(window, node, StopBehind(window, node))) return;  // a bridge is as fast
+  if (!OrderFrom(window, node, {window[node].at.s, 0, 0}, factor)) {
+    wait_until_ = tick_ + kOrderAgain;
+    return;
+  }
+  from_rest_ = false;  // not from that of the law in force
+  maker_->urgent = false;
+  behind_ = true;
+  maker_->order.store(OrderState::kOrdered, std::memory_order_release);
+}
+
 void PathTiming::Ask(const PathWindow& window, double factor, const PathPace& pace) noexcept {
-  if (!active_ || ready_ || !(factor > 0) || tick_ == 0) return;
+  if (!active_ || !(factor > 0) || tick_ == 0) return;
+  if (ready_ && behind_ && next_.factor != factor) DropPlan();
+  if (ready_) return;
   if (planning_) {
     if (tick_ > ordered_ + kMostLead) no_plan_ = true;  // no maker runs
     return;
@@ -328,7 +364,9 @@ void PathTiming::Ask(const PathWindow& window, double factor, const PathPace& pa
   const bool further = window[end].at.s > rest_place() + kSamePosition;
   const bool wanted = (further && rest_s() < std::min(kRenew_s, kRenewShare * current_.Duration())) || braking_ ||
                       (!current_.planned && !final_) || current_.factor != factor || (reserved_ && window[end].stop);
-  if (!wanted || tick_ < wait_until_ || !(window[end].at.s > pace.now.position + kSamePosition)) return;
+  if (tick_ < wait_until_) return;
+  if (!wanted && !further && window[end].stop) OrderBehind(window, end, factor);
+  if (!wanted || !(window[end].at.s > pace.now.position + kSamePosition)) return;
   if (Order(window, factor, pace)) return;
   wait_until_ = tick_ + kOrderAgain;
   no_plan_ = IsAtRest(pace.now);
@@ -379,12 +417,12 @@ void PathTiming::TakePlan(std::uint64_t number) noexcept {
   const PathPlanStatus status = maker_->status;
   const bool found = status == PathPlanStatus::kPlanned || status == PathPlanStatus::kScaled;
   if (found && next_.EndPlace() > known_to_ + kSamePosition) return;  // the path has changed there
-  if (found && final_ && !braking_ && next_.factor == current_.factor && !EndsSooner()) return;
+  if (found && !behind_ && final_ && !braking_ && next_.factor == current_.factor && !EndsSooner()) return;
   if (found && from_rest_) {
     const auto rests = current_.begin + static_cast<std::uint64_t>(std::ceil(current_.Duration() / period_s_ - 1e-9));
     next_.begin = std::max(tick_, rests);
     ready_ = true;
-  } else if (found && next_.begin >= tick_) {
+  } else if (found && (behind_ || next_.begin >= tick_)) {
     ready_ = true;
   } else if (found) {  // too late
     late_ = std::min(2 * (next_.begin - ordered_), kMostLead);
@@ -394,7 +432,7 @@ void PathTiming::TakePlan(std::uint64_t number) noexcept {
     const double wait_s = kAgainShare * std::min(rest_s(), kRenew_s);
     wait_until_ = tick_ + std::max(kOrderAgain, static_cast<std::uint64_t>(wait_s / period_s_));
     no_plan_ = from_rest_;
-    slows_ = next_.factor < current_.factor;
+    slows_ = !behind_ && next_.factor < current_.factor;
   }
   late_ = 0;
 }

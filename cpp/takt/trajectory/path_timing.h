@@ -4,11 +4,10 @@
 // replaces it by another such law. From rest a bridge starts at once if the path is straight there: one jerk-limited
 // motion to rest before the first bend. Meanwhile a time-optimal plan (PathPlanner) is computed outside the cycle, from
 // a state that the law in force will reach; it takes over at that instant if it is verified and in time, and is dropped
-// and ordered again if not. Longer paths and other speed factors come into force in the same way. Braking is one
-// jerk-limited motion, verified over all nodes ahead, and a harder one as soon as that is found; if there is none,
-// because the path bends, the law in force stays. For a lower speed factor for which no plan is found it brakes, too,
-// until there is one.
-// (Ours.)
+// and ordered again if not. Longer paths and other speed factors come into force in the same way; the motion behind a
+// stop is planned before the law in force ends there. Braking is one jerk-limited motion, verified over all nodes
+// ahead, and a harder one as soon as that is found; if there is none, because the path bends, the law in force stays.
+// For a lower speed factor for which no plan is found it brakes, too, until there is one. (Ours.)
 #pragma once
 
 #include <atomic>
@@ -61,6 +60,7 @@ class PathTiming {
     explicit Law(double period_s) : course(kIntervals, period_s) {}
 
     std::uint64_t begin = 0;  // tick
+    double begin_place = 0;   // of a plan
     bool planned = false;
     Profile profile = {};
     PathCourse course;
@@ -84,6 +84,8 @@ class PathTiming {
   void Take(const Profile& profile, double factor) noexcept;
   void Go(const PathWindow& window, PathPace& pace) noexcept;
   bool Order(const PathWindow& window, double factor, const PathPace& pace) noexcept;
+  bool OrderFrom(const PathWindow& window, std::uint64_t node, const KinematicState& begin, double factor) noexcept;
+  void OrderBehind(const PathWindow& window, std::uint64_t stop, double factor) noexcept;
   void DropPlan() noexcept;
   void KeepPlanTo(double place) noexcept;
 
@@ -118,7 +120,8 @@ class PathTiming {
   bool reserved_ = false;         // ... but for the room that the law in force leaves for one that leads further
   bool planning_ = false;         // a plan is ordered ...
   bool dropped_ = false;          // ... and not wanted any more
-  bool ready_ = false;            // next_ takes over at its begin
+  bool ready_ = false;            // next_ takes over at its begin ...
+  bool behind_ = false;           // ... or, when the motion behind the stop ahead begins, there
   bool from_rest_ = false;        // next_ begins at rest
   bool no_plan_ = false;          // from the present rest
   double known_to_ = 0;           // arc length up to which the path is as it was when the plan was ordered [mm]

@@ -73,7 +73,7 @@ class Cell {
                       const auto* cell = static_cast<Cell*>(owner);
                       return conveyor::CarrierOf(cell->belts[i - 1].params, cell->belt_states[i - 1].travel);
                     },
-                    nullptr, this};
+                    nullptr, this, true};
     MoveBelts();
   }
   Cell(const Cell&) = delete;
