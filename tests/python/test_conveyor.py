@@ -375,6 +375,66 @@ def test_coarsely_measured_belts_are_followed(increments: int) -> None:
     assert np.ptp(robot["velocity"][last] - belt["velocity"][last]) < 5
 
 
+PLACING = """\
+name: placing
+axes:
+  - {name: x, unit: mm, limits: {velocity: 4000, acceleration: 40000, jerk: 2000000}}
+  - {name: y, unit: mm, limits: {velocity: 4000, acceleration: 40000, jerk: 2000000}}
+  - {name: z, unit: mm, limits: {velocity: 4000, acceleration: 40000, jerk: 2000000}}
+  - name: drive
+    unit: mm
+    limits: {velocity: 2000, acceleration: 10000, jerk: 500000}
+    encoder: {type: incremental, increments_per_unit: 100}
+groups:
+  - name: gantry
+    axes: [x, y, z]
+    kinematics: {gantry: {axes: [x, y, z]}}
+    path: {velocity: 3000, acceleration: 30000, jerk: 1500000}
+belts:
+  - {name: infeed, axis: drive, source: actual_value}
+simulation:
+  servos:
+    - axis: drive
+      drive: {position_gain: 50, velocity_time_constant_s: 0.01, load_compensation_s: 0.05}
+      mechanics: {inertia: 0.001, coulomb_friction: 0.5, viscous_friction: 0.001}
+      encoder: {type: incremental, increments_per_unit: 100}
+"""
+
+
+@pytest.mark.parametrize("hertz", [0.0, 0.5, 1.0, 2.0])
+def test_placing_on_a_belt_that_changes_its_speed(hertz: float) -> None:
+    """PP-64, PP-51: 1 m/s +-10 %, by jumps of the speed every 50 ms, against where the belt truly is; at a constant
+    speed nothing shakes."""
+    with takt.Engine(PLACING) as session:
+        gantry, drive = session.group("gantry"), session.axis("drive")
+        gantry.power().wait()
+        gantry.enable().wait()
+        drive.power().wait()
+        drive.move_velocity(velocity=1000, acceleration=1000).wait(until="reached")
+        session.run(0.5)
+        worst, shaken, samples = 0.0, 0.0, 0
+        for _ in range(4):
+            latch, true_latch = drive.actual_position, drive.true_position
+            gantry.set_dyn_coord_transform(pcs=1, carrier="infeed", x=-100, recorded_position=latch).wait()
+            there = gantry.move_linear_absolute(x=0, y=0, z=5, coordinate_system="pcs", pcs=1)
+            told = None
+            for cycle in range(900):
+                if cycle % 50 == 0 and hertz > 0:
+                    way = 2 * math.pi * hertz
+                    drive.move_velocity(velocity=1000 + 100 * math.sin(way * session.now), acceleration=105 * way)
+                session.run(0.001)
+                if told is not None:  # where it was told to be by now
+                    worst = max(worst, abs(told - (drive.true_position - true_latch - 100)))
+                    samples += 1
+                told = gantry.x if there.done and gantry.track_state is TRACK.IN_SYNC else None
+                if told is not None:
+                    shaken = max(shaken, abs(session.belt("infeed").acceleration))
+            gantry.move_linear_absolute(x=0, y=0, z=50).wait()
+    assert samples > 1000
+    assert worst < (0.1 if hertz > 0 else 0.01)
+    assert hertz > 0 or shaken < 300
+
+
 @pytest.mark.parametrize("how", ["member", "group", "all", "emergency_stop"])
 def test_power_off_ends_a_track_that_waits(how: str) -> None:
     """AX-100: a tool whose tracking waits for its object does not set off when the power comes back."""

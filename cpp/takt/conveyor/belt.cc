@@ -14,9 +14,9 @@ KinematicState OfAxis(const Context& c) {
   return {ratio * (x.position + c.axis.origin), ratio * x.velocity, ratio * x.acceleration};
 }
 
-double Filter(const Context& c) {
+trajectory::TrackingFilter Filter(const Context& c) {
   const double increments = c.axis_params.encoder.increments_per_unit;
-  return FilterOf(c.params, increments > 0 ? std::abs(c.params.ratio) / increments : 0);
+  return FilterOf(c.params, increments > 0 ? std::abs(c.params.ratio) / increments : 0, c.cycle.period_s);
 }
 
 KinematicState Travelled(const Context& c, State& s) {
@@ -28,12 +28,11 @@ KinematicState Travelled(const Context& c, State& s) {
   }
   s.started = true;
   const KinematicState x = OfAxis(c);
-  const double filter = Filter(c);
-  // Measured is where the axis was when the cycle began.
-  const double dead_time = c.params.dead_time_s + (IsMeasured(c.params) ? period : 0);
-  if (IsMeasured(c.params) || filter > 0) {
-    return trajectory::Track(filter, dead_time, period, x.position, x.velocity, s.filter);
+  const trajectory::TrackingFilter filter = Filter(c);
+  if (IsMeasured(c.params) || filter.filter_s > 0) {
+    return trajectory::Track(filter, period, x.position, x.velocity, s.filter);
   }
+  const double dead_time = filter.dead_time_s;
   return {x.position + dead_time * (x.velocity + 0.5 * dead_time * x.acceleration),
           x.velocity + dead_time * x.acceleration, x.acceleration};
 }
@@ -69,7 +68,7 @@ double TravelAt(const Context& c, const State& s, double position) noexcept {
   if (const double turn = c.axis_params.turn(); turn > 0) {
     const double now = s.travel.position / ratio;
     // What the belt has come further than it is known yet is no turn ago.
-    const double ahead_s = Filter(c) + c.params.dead_time_s + 2 * c.cycle.period_s;
+    const double ahead_s = Filter(c).filter_s + c.params.dead_time_s + 2 * c.cycle.period_s;
     const double slack = std::abs(s.travel.velocity / ratio) * ahead_s + 1e-9 * turn;
     const bool upwards = (s.sense > 0) == (ratio > 0);
     const double turns = upwards ? std::floor((now + slack - there) / turn) : std::ceil((now - slack - there) / turn);

@@ -10,15 +10,26 @@ namespace takt::conveyor {
 namespace {
 
 constexpr double kMeasuredFilter = 0.005;  // s
-constexpr double kShaking = 200;           // mm/s² or deg/s², that steps of an encoder may amount to
+constexpr double kShaking = 300;           // mm/s² or deg/s², that steps of an encoder may amount to
+constexpr double kBand = 0.6;              // steps by which estimates differ while the speed is kept
+constexpr double kFaster = 5;              // of the fast estimate
+constexpr double kOfDeadTime = 0.4;        // no shorter: it is taken forward by that
 
 }  // namespace
 
-double FilterOf(const BeltParams& params, double step) noexcept {
-  if (!IsMeasured(params)) return params.filter_s.value_or(0);
-  // A step changes the measured velocity by step / T for one cycle T, which the filter (trajectory::Track) turns into
-  // an acceleration of 3 step / f².
-  return params.filter_s.value_or(std::max(kMeasuredFilter, std::sqrt(3 * step / kShaking)));
+trajectory::TrackingFilter FilterOf(const BeltParams& params, double step, double period_s) noexcept {
+  // Measured is where the axis was when the cycle began.
+  const double dead_time_s = params.dead_time_s + (IsMeasured(params) ? period_s : 0);
+  if (params.filter_s || !IsMeasured(params) || !(step > 0)) {
+    const double filter_s = params.filter_s.value_or(IsMeasured(params) ? kMeasuredFilter : 0);
+    return {.filter_s = filter_s, .dead_time_s = dead_time_s};
+  }
+  // Steps make accelerations of up to 7 step / f² (trajectory::Track).
+  const double filter_s = std::max(kMeasuredFilter, std::sqrt(7 * step / kShaking));
+  return {.filter_s = filter_s,
+          .fast_filter_s = std::max(filter_s / kFaster, kOfDeadTime * dead_time_s),
+          .band = kBand * step,
+          .dead_time_s = dead_time_s};
 }
 
 void describe(Enumeration<BeltKind>& e) {
@@ -42,9 +53,9 @@ void describe(Description<BeltParams>& d) {
                                "Where it ends; an object beyond it that nobody has taken is deleted. Unset: nowhere.");
   d.defaulted<&P::filter_s>(
       unit::s, between(0, 10),
-      "Time constant of the filter; a constant speed passes without lag. Unset: where the axis is measured 5 ms, or as "
-      "many as its encoder's steps need not to shake the tool, else 0. A set position is not filtered with 0, a "
-      "measured one as little as can be.");
+      "Time constant of the filter; a constant speed and acceleration pass without lag. Unset: where the axis is "
+      "measured 5 ms, or as many as its encoder's steps need not to shake the tool, and a fifth where the speed "
+      "changes; else 0. A set position is not filtered with 0, a measured one as little as can be.");
   d.defaulted<&P::dead_time_s>(unit::s, between(0, 1),
                                "The belt is taken to be so much further on than its axis says, at its speed and "
                                "acceleration. The cycle that passes anyway is made good without it.");

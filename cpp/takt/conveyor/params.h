@@ -9,6 +9,7 @@
 #include "takt/axis/commands/coupling.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/kinematics/frames.h"
+#include "takt/trajectory/tracking_filter.h"
 
 namespace takt::conveyor {
 
@@ -28,8 +29,8 @@ struct BeltParams {
   // The work range, seen from the origin; unset: none.
   std::optional<double> lower_limit{};  // mm or deg
   std::optional<double> upper_limit{};  // mm or deg; objects beyond it are lost
-  // s; unset: measured positions as their steps need, set positions 0, which is no filter. Measured
-  // positions always are filtered.
+  // s; unset: measured positions as their steps need, and fast where the speed changes; set positions 0, which is no
+  // filter. Measured positions always are filtered.
   std::optional<double> filter_s{};
   double dead_time_s = 0;                // s that what is measured is older than the cycle in which it comes
   std::optional<double> forget_after{};  // mm or deg of travel without a pose after a latch; unset: never
@@ -38,8 +39,8 @@ struct BeltParams {
 inline bool IsMeasured(const BeltParams& params) noexcept {
   return params.source == axis::MasterSource::kActualValue;
 }
-// The filter's time constant, for a position that is measured in steps of so many mm or deg.
-double FilterOf(const BeltParams& params, double step) noexcept;
+// For a position that is measured in steps of so many mm or deg (0: not known).
+trajectory::TrackingFilter FilterOf(const BeltParams& params, double step, double period_s) noexcept;
 
 void describe(Enumeration<BeltKind>&);
 void describe(Description<BeltParams>&);

@@ -35,8 +35,9 @@ KinematicState Filtered(const axis::Context& c, const KinematicState& raw, const
     return {raw.position + t * (raw.velocity + 0.5 * t * raw.acceleration), raw.velocity + t * raw.acceleration,
             raw.acceleration};
   }
-  return trajectory::Track(settings.master_filter_s, settings.master_dead_time_s, c.cycle.period_s, raw.position,
-                           raw.velocity, m.filter);
+  const trajectory::TrackingFilter filter{.filter_s = settings.master_filter_s,
+                                          .dead_time_s = settings.master_dead_time_s};
+  return trajectory::Track(filter, c.cycle.period_s, raw.position, raw.velocity, m.filter);
 }
 
 const axis::OutsideMaster* Outside(const axis::Context& c, std::uint32_t master) {

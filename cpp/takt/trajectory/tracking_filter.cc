@@ -1,8 +1,10 @@
 #include "takt/trajectory/tracking_filter.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "takt/core/describe.h"
+#include "takt/core/maths.h"
 
 namespace takt::trajectory {
 
@@ -10,34 +12,78 @@ namespace {
 
 // Cycles; with 2.2 it would no longer settle, since its jerk changes once a cycle only.
 constexpr double kFastest = 3;
+constexpr double kFollows = 3.5;  // times as fast as the slow one of two estimates
 
-KinematicState After(const KinematicState& x, double t) {
-  return {x.position + t * (x.velocity + 0.5 * t * x.acceleration), x.velocity + t * x.acceleration, x.acceleration};
+KinematicState After(const KinematicState& x, double jerk, double t) {
+  return {x.position + t * (x.velocity + t * (0.5 * x.acceleration + t * jerk / 6)),
+          x.velocity + t * (x.acceleration + 0.5 * t * jerk), x.acceleration + t * jerk};
+}
+
+TrackingEstimate Ahead(const TrackingEstimate& x, double t) {
+  return {After(x.state, x.jerk, t), x.jerk};
+}
+
+TrackingEstimate Between(const TrackingEstimate& from, const TrackingEstimate& to, double share) {
+  const KinematicState &a = from.state, &b = to.state;
+  return {{std::lerp(a.position, b.position, share), std::lerp(a.velocity, b.velocity, share),
+           std::lerp(a.acceleration, b.acceleration, share)},
+          std::lerp(from.jerk, to.jerk, share)};
+}
+
+// One cycle of t, with all poles of the error at one place.
+void Correct(double filter_s, double t, double position, TrackingEstimate& estimate) {
+  const double fresh = -maths::Expm1(-t / filter_s);
+  const double pole = 1 - fresh;
+  const double square = fresh * fresh;
+  estimate = Ahead(estimate, t);
+  KinematicState& x = estimate.state;
+  const double missed = position - x.position;
+  x.position += (1 - pole * pole * pole * pole) * missed;
+  x.velocity += square * (11 + pole * (14 + 11 * pole)) / (6 * t) * missed;
+  x.acceleration += 2 * square * fresh * (1 + pole) / (t * t) * missed;
+  estimate.jerk += square * square / (t * t * t) * missed;
 }
 
 }  // namespace
 
-// Three equal poles at w. A velocity fed forward takes the lag away that they would have.
-KinematicState Track(double filter_s, double dead_time_s, double period_s, double position, double velocity,
+KinematicState Track(const TrackingFilter& filter, double period_s, double position, double velocity,
                      TrackingFilterState& f) noexcept {
   const double t = period_s;
+  const bool two = filter.fast_filter_s > 0;
   if (!f.running) {
     f.running = true;
-    f.state = {position, velocity, 0};
-  } else {
-    const double w = 1 / std::max(filter_s, kFastest * t);
-    // What is measured now was there one cycle of the filter's motion after its state of the cycle before.
-    const KinematicState expected = After(f.state, t);
-    const double jerk = w * w * w * (position - expected.position) + 3 * w * w * (velocity - expected.velocity) -
-                        3 * w * expected.acceleration;
-    f.state = {expected.position + jerk * t * t * t / 6, expected.velocity + 0.5 * jerk * t * t,
-               expected.acceleration + jerk * t};
+    f.slow = f.fast = {{position, velocity, 0}, 0};
+    f.state = After(f.slow.state, 0, filter.dead_time_s);
+    return f.state;
   }
-  return After(f.state, dead_time_s);
+  const double fastest = kFastest * t;
+  Correct(std::max(filter.filter_s, fastest), t, position, f.slow);
+  TrackingEstimate measured = f.slow;
+  if (two) {
+    Correct(std::max(filter.fast_filter_s, fastest), t, position, f.fast);
+    const double gap = std::abs(f.fast.state.position - f.slow.state.position);
+    if (gap > filter.band) measured = Between(f.slow, f.fast, 1 - filter.band / gap);
+  }
+  const double w = 1 / std::max(filter.filter_s / (two ? kFollows : 1), fastest);
+  const KinematicState aim = After(measured.state, measured.jerk, filter.dead_time_s);
+  const KinematicState expected = After(f.state, measured.jerk, t);
+  const double jerk =
+      measured.jerk + w * (3 * (aim.acceleration - expected.acceleration) +
+                           w * (3 * (aim.velocity - expected.velocity) + w * (aim.position - expected.position)));
+  f.state = After(f.state, jerk, t);
+  return f.state;
+}
+
+void describe(Description<TrackingEstimate>& d) {
+  d.about("Where something was when it was measured.");
+  d.internal<&TrackingEstimate::state>("There.");
+  d.internal<&TrackingEstimate::jerk>("There.");
 }
 
 void describe(Description<TrackingFilterState>& d) {
   d.about("A filter for a measured position.");
+  d.internal<&TrackingFilterState::slow>("By the slow estimate, or the only one.");
+  d.internal<&TrackingFilterState::fast>("By the fast one.");
   d.internal<&TrackingFilterState::state>("Where it is.");
   d.internal<&TrackingFilterState::running>("It has seen a first value.");
 }

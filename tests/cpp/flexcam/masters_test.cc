@@ -35,7 +35,7 @@ TEST(Masters, MeasuredWithAFilterAndDeadTime) {
   m.axes[Bench::kWeb].encoder.increments_per_unit = 20;  // a coarse encoder
   Bench b(m);
   b.Web(360);
-  b.Run(500);
+  b.Run(1000);  // the filter finds the speed within some 15 time constants
   ASSERT_TRUE(b.Sync());
   Watch watch(b);
   double worst = 0;
