@@ -81,7 +81,8 @@ TEST(Travel, ChangingSpeedsAreWrongByLessThanTheDeadTimeAllows) {
   }
 }
 
-// CV-20, PP-64: a constant acceleration leaves nothing behind, though the velocity is measured as the mean over a cycle.
+// CV-20, PP-64: a constant acceleration leaves nothing behind, though the velocity is measured as the mean over a
+// cycle.
 TEST(Travel, AConstantAccelerationLeavesNothingBehind) {
   for (const double filter : {0.004, 0.01, 0.05}) {
     BeltParams p = Straight(kActual);
