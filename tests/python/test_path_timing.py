@@ -19,6 +19,7 @@ Points = list[tuple[float, float, float]]
 Disturb = Callable[[takt.Engine, takt.Group], None]
 LONG = os.environ.get("TAKT_LONG") == "1"
 PERIOD = 1e-3
+FASTER = "name: {}, unit: mm, limits: {{velocity: 1000, acceleration: 10000, jerk: 200000}}"
 WITHIN = 1 + 1e-6
 
 
@@ -337,6 +338,48 @@ def test_overrides_and_interrupts_cross_where_bends_leave_little(instant: int) -
             group.set_override(velocity_factor=1.0)
         done.wait(timeout=20)
         assert np.abs([session.axis(name).set_position for name in "xyz"]).max() <= 1e-6
+
+
+@pytest.mark.parametrize("choice", ["", ", planned_ahead: false"])
+@pytest.mark.parametrize(("waiting", "every", "least"), [(110, 1, 0.98), (110, 7, 0.75), (60, 1, 0.7)])
+def test_chords_that_come_one_by_one_are_passed_at_full_speed(
+    choice: str, waiting: int, every: int, least: float
+) -> None:
+    """GR-24: 1 mm chords of a circle, given as the queue empties, looked after every so many cycles."""
+    limits, radius, deviation, count = Limits(500, 5000, 100_000), 30.0, 0.01, 600
+    text = machine([(1.0, 0.0, 0.0)], limits, choice).split("paths:")[0]
+    for name in "xyz":
+        text = text.replace(f"name: {name}, unit: mm, limits: {values(limits)}", FASTER.format(name))
+    with takt.Engine(text) as session:
+        group = session.group("g")
+        group.power().wait()
+        group.enable().wait()
+        given: list[takt.Feedback] = []
+        with session.record("g", "x", "y") as recorder:
+            while not given or not given[-1].final:
+                while len(given) < count and sum(not one.final for one in given[-120:]) < waiting:
+                    angle = (len(given) + 1) / radius
+                    blend = {"transition_mode": "max_corner_deviation", "transition_parameter": deviation}
+                    given.append(
+                        group.move_linear_absolute(
+                            x=radius * np.cos(angle) - radius,
+                            y=radius * np.sin(angle),
+                            **({"buffer_mode": "blending_high", **blend} if given else {}),
+                        )
+                    )
+                session.run(every * PERIOD)
+                assert session.now < 20
+        recording = recorder.recording
+    assert all(one.done for one in given)
+    speed = recording["g"]["path_velocity"]
+    assert speed[len(speed) // 4 : 3 * len(speed) // 4].min() >= least * limits.velocity
+    x, y = recording["x"]["set_position"], recording["y"]["set_position"]
+    sagitta = radius - np.hypot(radius, 0.5) + 0.5**2 / radius  # of a chord
+    assert np.hypot(x + radius, y).max() <= radius + 1e-6
+    assert np.hypot(x + radius, y).min() >= radius - sagitta - deviation - 1e-3
+    for axis in (recording["x"], recording["y"]):
+        assert np.abs(axis["set_acceleration"]).max() <= WITHIN * 10_000
+        assert np.abs(np.diff(axis["set_position"], 3)).max() <= (1 + 1e-4) * 200_000 * PERIOD**3
 
 
 STOP_AT = 293  # cycles

@@ -35,10 +35,12 @@ constexpr int kMostPlaces = 64;
 // time to rehearse it.
 constexpr std::uint64_t kNodesAhead = 256;
 constexpr double kTimeAhead = 0.2;
-constexpr double kPlaceWay = 8;     // mm between two places at which a path is tried beforehand
-constexpr double kLeastTry = 1e-3;  // where it is uneven
-constexpr double kFreeBefore = 1;   // mm or deg: a jog ends so far before what would be met
-constexpr double kUneven = 0.25;    // mm or deg
+constexpr double kTrifle_s = 0.02;    // at the speed of the path; time within which a move may come, ...
+constexpr double kFarAhead_s = 0.05;  // ... and from what is waited for, at the present speed
+constexpr double kPlaceWay = 8;       // mm between two places at which a path is tried beforehand
+constexpr double kLeastTry = 1e-3;    // where it is uneven
+constexpr double kFreeBefore = 1;     // mm or deg: a jog ends so far before what would be met
+constexpr double kUneven = 0.25;      // mm or deg
 constexpr double kUnevenShare = 0.1;
 constexpr double kMostLoad = 0.8;         // share of a limit that carriers may take
 constexpr double kLatency_s = 0.004;      // from planning to motion
@@ -431,6 +433,17 @@ bool GoesFreely(const Context& c, const State& s) {
   return false;
 }
 
+// Whether a next move may come in time for the corner before the last stretch: the last one has just come, and what is
+// left out meanwhile is a trifle, far ahead.
+bool MayComeSoon(const Context& c, const State& s) {
+  const LookAhead& ahead = c.ahead;
+  const Stretch& last = ahead[ahead.end() - 1];
+  const double begin = ahead[ahead.end() - 2].begin;
+  return static_cast<double>(c.cycle.count - s.planning.joined) * c.cycle.period_s < kTrifle_s &&
+         last.end() - begin < kTrifle_s * last.limits.velocity &&
+         begin - s.pace.now.position > kFarAhead_s * s.pace.now.velocity;
+}
+
 bool IsTransition(const Stretch& stretch) {
   return stretch.from_ride != stretch.to_ride;
 }
@@ -448,7 +461,8 @@ std::uint64_t SampledTo(const Context& c, const State& s) {
     if (open < ahead.end()) return open;
   }
   if (!ahead.corner.open || ahead.count < 2) return ahead.end();
-  const bool waits = more ? s.planning.element > 0 || MoveAt(s, s.planning.move).blends() : s.begun && GoesFreely(c, s);
+  const bool waits = more ? s.planning.element > 0 || MoveAt(s, s.planning.move).blends()
+                          : s.begun && (GoesFreely(c, s) || MayComeSoon(c, s));
   return waits ? ahead.end() - 2 : ahead.end();
 }
 
@@ -591,6 +605,7 @@ void Plan(const Context& c, State& s) noexcept {
         break;
       case Stage::kJoin:
         budget -= Join(c, s);
+        s.planning.joined = c.cycle.count;
         NextElement(c, s);
         s.planning.stage = Stage::kSample;
         break;

@@ -32,6 +32,7 @@ void describe(Description<Planning>& d) {
   d.internal<&Planning::verified>("So far it is good.");
   d.internal<&Planning::step>("To the next place tried.");
   d.internal<&Planning::question>("Number of the last question about a path.");
+  d.internal<&Planning::joined>("Cycle in which the last stretch was joined.");
   d.internal<&Planning::nodes>("Nodes made so far.");
 }
 

@@ -42,6 +42,7 @@ struct Planning {
   double verified = 0;         // mm: the path is good so far ...
   double step = 0;             // ... and is tried so much further on next
   std::uint64_t question = 0;  // number of the last one about a path
+  std::uint64_t joined = 0;    // cycle in which the last stretch was joined
   std::uint64_t nodes = 0;     // so many were made: the window itself is no part of the state
 };
 
