@@ -23,7 +23,7 @@ FAILED = 1
 
 
 def _say(sentence: str) -> None:
-    print(sentence, file=sys.stderr, flush=True)
+    print(sentence + "\n", end="", file=sys.stderr, flush=True)  # in one piece: threads say things, too
 
 
 @click.command()
