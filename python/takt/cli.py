@@ -758,7 +758,7 @@ def bench(machine: Path | None, axes: int, cycles: int) -> None:
 
 def _say(sentence: str) -> None:
     """At once, whoever reads it."""
-    print(sentence + "\n", end="", flush=True)
+    click.echo(sentence)
 
 
 def _read(file: Path, start_number: int | None) -> Recording:

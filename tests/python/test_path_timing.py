@@ -374,7 +374,7 @@ def test_chords_that_come_one_by_one_are_passed_at_full_speed(
     speed = recording["g"]["path_velocity"]
     assert speed[len(speed) // 4 : 3 * len(speed) // 4].min() >= least * limits.velocity
     x, y = recording["x"]["set_position"], recording["y"]["set_position"]
-    sagitta = radius - np.hypot(radius, 0.5) + 0.5**2 / radius  # of a chord
+    sagitta = radius - np.sqrt(radius**2 - 0.5**2)  # of a chord
     assert np.hypot(x + radius, y).max() <= radius + 1e-6
     assert np.hypot(x + radius, y).min() >= radius - sagitta - deviation - 1e-3
     for axis in (recording["x"], recording["y"]):
@@ -481,6 +481,49 @@ def test_every_stop_brakes_within_limits_and_nothing_resumes(stop: str) -> None:
                 assert np.abs(recording[name]["set_acceleration"]).max() <= WITHIN * case.limits.acceleration
 
 
+@pytest.mark.parametrize("left", range(-20, 130, 3) if LONG else (-1, 1, 12, 60))
+@pytest.mark.parametrize("stop", STOPS)
+def test_a_plan_behind_a_stop_is_forgotten_by_every_stop(stop: str, left: int) -> None:
+    """GR-40, AX-100: nothing resumes behind it, and what is asked for anew keeps all limits and gets there."""
+    limits = Limits(400, 4000, 80_000)
+    with takt.Engine(machine([(1.0, 0.0, 0.0)], limits).split("paths:")[0]) as session:
+        group = session.group("g")
+        group.power().wait()
+        group.enable().wait()
+        with session.record("x", "y", "z") as recorder:
+            group.move_circular_absolute(circ_mode="border", aux_x=10, aux_y=10, aux_z=0, x=20, y=0, z=0)
+            group.move_circular_absolute(
+                circ_mode="border", aux_x=30, aux_y=-10, aux_z=0, x=20, y=-20, z=0, buffer_mode="buffered"
+            )
+            session.run((STOP_AT - left) * PERIOD)
+            given = STOPS[stop](session, group)
+            session.run(0.8)
+            stands = [session.axis(name).set_position for name in "xyz"]
+            session.run(0.4)
+            assert [session.axis(name).set_position for name in "xyz"] == pytest.approx(stands, abs=1e-9)
+        braking = recorder.recording
+        if stop == "emergency stop":
+            assert isinstance(given, takt.Feedback)
+            given.release()
+            session.run(0.01)
+        with session.record("x", "y", "z") as recorder:
+            group.set_override(velocity_factor=1.0)
+            if group.state == "GroupErrorStop":
+                group.reset().wait()
+            group.power().wait()
+            if group.state == "GroupDisabled":
+                group.enable().wait()
+            group.move_circular_absolute(circ_mode="border", aux_x=10, aux_y=-30, aux_z=0, x=0, y=-20, z=5).wait(10)
+        anew = recorder.recording
+    assert [anew[name]["set_position"][-1] for name in "xyz"] == pytest.approx([0, -20, 5], abs=1e-6)
+    for recording in (braking, anew):
+        for name in "xyz":
+            axis = recording[name]
+            assert np.abs(axis["set_acceleration"]).max() <= WITHIN * limits.acceleration
+            if recording is anew or stop not in OFF_PATH:
+                assert np.abs(np.diff(axis["set_position"], 3)).max() <= (1 + 1e-4) * limits.jerk * PERIOD**3
+
+
 @pytest.mark.parametrize("seed", range(200 if LONG else 6))
 def test_moves_that_come_late_keep_all_limits(seed: int) -> None:
     """GR-22, GR-40: each move is given while the one before it is in motion, from far ahead to too late to blend."""
@@ -522,6 +565,15 @@ def test_a_run_with_plans_is_reproduced(tmp_path: Path, pace: str) -> None:
         session.run(0.4)
         group.interrupt().wait_final()
         group.continue_path()
+        done.wait(timeout=30)
+        # Planned behind a stop, before it.
+        group.move_linear_absolute(x=0, y=0, z=0, buffer_mode="buffered")
+        group.move_circular_absolute(
+            circ_mode="border", aux_x=10, aux_y=10, aux_z=0, x=20, y=0, z=0, buffer_mode="buffered"
+        )
+        done = group.move_circular_absolute(
+            circ_mode="border", aux_x=30, aux_y=-10, aux_z=0, x=20, y=-20, z=0, buffer_mode="buffered"
+        )
         done.wait(timeout=30)
     assert any(event.verb == "path_planned" for event in open_log(file).runs[-1].journal)
     result = takt.replay(file)

@@ -102,7 +102,7 @@ void PathTiming::Begin(const PathPace& pace) noexcept {
   Take(Profile(pace.now), 1);
   behind_ = false;
   ready_ = planned;
-  next_.begin = tick_;
+  if (planned) next_.begin = tick_;
 }
 
 void PathTiming::Take(const Profile& profile, double factor) noexcept {

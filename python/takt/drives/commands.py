@@ -40,7 +40,7 @@ NONE_THERE = 1
 
 
 def _say(sentence: str) -> None:
-    print(sentence + "\n", end="", file=sys.stderr, flush=True)  # in one piece: threads say things, too
+    click.echo(sentence, err=True)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})

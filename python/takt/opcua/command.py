@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -23,7 +22,7 @@ FAILED = 1
 
 
 def _say(sentence: str) -> None:
-    print(sentence + "\n", end="", file=sys.stderr, flush=True)  # in one piece: threads say things, too
+    click.echo(sentence, err=True)
 
 
 @click.command()
