@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 
 namespace takt::trajectory {
 
@@ -18,12 +20,14 @@ constexpr int kAttempts = 6, kEasings = 4;
 constexpr double kEased = 0.97;  // share of a limit that the reference is to use at most at slow nodes
 constexpr double kHarder[] = {1,   1.01, 1.02, 1.04,
                               1.1, 1.25, 1.5,  2};  // shares of its limits, tried for the reference from a motion
+constexpr double kNoSlower = 0.9;                   // of the slower end: the least speed on the way of such a reference
 constexpr double kMostGrowth = 2.5;                 // from an interval to the next
 constexpr double kReferenceShare = 0.97;            // of the limits, used by the reference: a plan can start from it
 // Of the limits of coordinates: the second slopes are taken for parabolas between nodes.
 constexpr double kCoordinateShare = 0.98;
 constexpr double kNoLimitFrom = 1e11;
-constexpr double kHere = 1e-9;  // mm
+constexpr double kStillBrakes = 1.02;  // of the speed an interval later
+constexpr double kHere = 1e-9;         // mm
 
 double InfiniteIfNone(double limit) {
   return limit < kNoLimitFrom ? limit : std::numeric_limits<double>::infinity();
@@ -93,8 +97,10 @@ double UseOf(const PathWindow& window, std::uint64_t node, const KinematicState&
   return use;
 }
 
-PathCourse::PathCourse(std::size_t intervals, double period_s) : period_s_(period_s) {
+PathCourse::PathCourse(std::size_t intervals, double period_s) : period_s_(period_s), other_plan_(intervals) {
   steps_.reserve(intervals);
+  other_steps_.reserve(intervals);
+  followed_.reserve(intervals);
   lengths_.reserve(intervals);
   first_limits_.reserve(intervals);
   limits_.reserve(kPathCoordinates + 1);
@@ -248,25 +254,66 @@ bool PathCourse::Take(const PathWindow& window, std::uint64_t node, const Kinema
   for (std::uint64_t i = node; i <= std::min(end, node + kMostNodes - 1); ++i) nodes_.push_back(window[i]);
   coordinates_ = window.limits();
   begin_ = begin;
+  other_steps_.clear();
   factor_ = factor;
   return true;
 }
 
-bool PathCourse::Make(Planner& planner, double share) noexcept {
+void PathCourse::Follow(const PathCourse& other, const PathPlan& plan, double from_s) noexcept {
+  other_steps_ = other.steps_;  // there is room: neither allocates
+  other_plan_ = plan;
+  other_from_s_ = from_s;
+}
+
+// The knots of the plan of Follow, up to where it brakes to its end.
+void PathCourse::Sample() noexcept {
+  followed_.clear();
+  if (other_steps_.empty()) return;
+  const PathPlan& plan = other_plan_;
+  const auto state = [&](std::size_t k) { return At(other_steps_, plan.At(plan.knot_time(k))); };
+  std::size_t last = plan.intervals();
+  for (double behind = -1; last > 0 && plan.knot_time(last) > other_from_s_; --last) {
+    const double speed = state(last).velocity;
+    if (speed <= kStillBrakes * behind) break;
+    behind = speed;
+  }
+  double before_s = other_from_s_;
+  for (std::size_t k = 1; k <= last; ++k) {
+    const double at_s = plan.knot_time(k);
+    if (at_s < before_s + kShortest_s) continue;
+    followed_.push_back({at_s - before_s, state(k)});
+    before_s = at_s;
+  }
+}
+
+bool PathCourse::IsSlower(const PathPlan& plan, double share) const noexcept {
+  if (followed_.empty()) return false;
+  double until_s = 0;
+  for (const Followed& followed : followed_) until_s += share * followed.length_s;
+  return until_s < plan.duration() && At(plan.At(until_s)).position < followed_.back().state.position;
+}
+
+bool PathCourse::Make(Planner& planner, double share, bool follow) noexcept {
+  Sample();
+  joint_ = follow ? followed_.size() : 0;
   share_ = share;
   std::size_t end = nodes_.size() - 1;
   double of_build_up = kOfBuildUp;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     if (end == 0 || !(nodes_[end].at.s > begin_.position + kHere)) return false;
-    FindSlow(begin_, end);
+    FindSlow(Joint(), end);
     Laid laid = Laid::kWhole;
     for (int i = 0; i < kEasings; ++i) {
-      MakeReachable(begin_);
-      laid = Lay(begin_, of_build_up, planner);
+      MakeReachable(Joint());
+      laid = Lay(of_build_up, planner);
       if (laid != Laid::kWhole) break;
       Grade();
       SetLimits(end);
       if (!Ease()) break;
+    }
+    if (laid == Laid::kTooNear && joint_ > 0) {
+      joint_ /= 2;
+      continue;
     }
     if (laid == Laid::kTooNear) return false;
     if (laid == Laid::kWhole && steps_.size() >= 4) {
@@ -318,27 +365,43 @@ std::size_t PathCourse::NodeAt(std::size_t from, double place) const noexcept {
 }
 
 // The reference from slow place to slow place.
-PathCourse::Laid PathCourse::Lay(const KinematicState& begin, double of_build_up, Planner& planner) noexcept {
+PathCourse::Laid PathCourse::Lay(double of_build_up, Planner& planner) noexcept {
   steps_.clear();
-  KinematicState from = begin;
+  KinematicState from = begin_;
+  for (const Followed& followed : std::span(followed_).first(joint_)) {
+    if (steps_.size() == steps_.capacity()) return Laid::kNoRoom;
+    Add(from, followed.state, followed.length_s);
+    from = followed.state;
+  }
   for (std::size_t i = 1; i < slow_.size();) {
     const Slow to = slow_[i];
     const Limits usual_limits = Between(slow_[i - 1], to);
     Limits limits = usual_limits;
-    Profile profile{};
-    bool reaches = false;
-    // A motion in progress may brake harder than the reference does: it passes no slow place for that.
+    Profile profile{}, tried{};
+    double least = -std::numeric_limits<double>::infinity();  // speed of the profile
+    // A motion in progress may brake harder than the reference does: it passes no slow place for that, and is not
+    // slower on the way than there.
     for (const double share : kHarder) {
-      limits.acceleration = share * usual_limits.acceleration;
-      limits.deceleration = share * usual_limits.deceleration;
-      limits.jerk = share * usual_limits.jerk;
-      if (planner.ToPosition(from, to.place, to.speed, limits, profile).failed()) return Laid::kTooNear;
-      const Profile::Range places = profile.PositionRange();
+      Limits harder = usual_limits;
+      harder.acceleration *= share;
+      harder.deceleration *= share;
+      harder.jerk *= share;
+      if (planner.ToPosition(from, to.place, to.speed, harder, tried).failed()) return Laid::kTooNear;
+      const Profile::Range places = tried.PositionRange(), speeds = tried.VelocityRange();
       const double rounding = 1e-9 * (1 + std::abs(to.place));
-      const bool back = profile.VelocityRange().min < -1e-9 * limits.velocity;
-      reaches = !back && places.max <= to.place + rounding && places.min >= from.position - rounding;
-      if (reaches || i > 1) break;
+      const bool back = speeds.min < -1e-9 * harder.velocity;
+      const bool reaches = !back && places.max <= to.place + rounding && places.min >= from.position - rounding;
+      if (reaches && speeds.min > least) {
+        least = speeds.min;
+        limits = harder;
+        profile = tried;
+      }
+      if (i > 1 || (reaches && speeds.min >= kNoSlower * std::min(from.velocity, to.speed))) break;
     }
+    const bool reaches = std::isfinite(least);
+    // Rather by following a plan than by one that comes nearly to rest.
+    const bool slows = least < kNoSlower * std::min(from.velocity, to.speed);
+    if (i == 1 && slows && share_ == 1 && joint_ == 0 && follows()) return Laid::kTooNear;
     if (!reaches) {
       if (i + 1 == slow_.size()) return Laid::kTooNear;
       slow_.erase(slow_.begin() + static_cast<std::ptrdiff_t>(i));  // on to the next one
@@ -381,7 +444,7 @@ void PathCourse::Grade() noexcept {
 // were some.
 bool PathCourse::Ease() noexcept {
   bool eased = false;
-  std::size_t k = 0;
+  std::size_t k = joint_;
   for (std::size_t i = 1; i + 1 < slow_.size(); ++i) {
     const double until = 0.5 * (slow_[i].place + slow_[i + 1].place);
     double most = 0;
@@ -478,9 +541,13 @@ PathPlanRequest PathCourse::Request() const noexcept {
 }
 
 KinematicState PathCourse::At(const ReferenceState& reference) const noexcept {
-  const auto behind = std::upper_bound(steps_.begin(), steps_.end(), reference.time,
+  return At(steps_, reference);
+}
+
+KinematicState PathCourse::At(const std::vector<Step>& steps, const ReferenceState& reference) noexcept {
+  const auto behind = std::upper_bound(steps.begin(), steps.end(), reference.time,
                                        [](double t, const Step& s) { return t < s.begin_s; });
-  const Step& step = behind == steps_.begin() ? *behind : *(behind - 1);
+  const Step& step = behind == steps.begin() ? *behind : *(behind - 1);
   const KinematicState at = step.At(std::min(reference.time - step.begin_s, step.length));
   return {at.position, at.velocity * reference.rate,
           at.velocity * reference.acceleration + at.acceleration * reference.rate * reference.rate};

@@ -36,11 +36,18 @@ class PathCourse {
   // or before. `factor`: of the speed along the path, above 0. Returns false if there is no distance to it.
   bool Take(const PathWindow& window, std::uint64_t node, const KinematicState& begin, std::uint64_t end,
             double factor) noexcept;
+  // Copies a plan of another course, for the cycle, after Take: in it the motion is at `begin` at `from_s`. See Make.
+  void Follow(const PathCourse& other, const PathPlan& plan, double from_s) noexcept;
   // Computes the reference; in another thread than Take if that has returned. If the intervals do not suffice it ends
   // at rest at an earlier node. Returns false if there is none.
   // `share`: of the limits of acceleration and jerk, used by the reference, above 0 to 1. A plan from a motion is found
   // more often with a small one.
-  bool Make(Planner& planner, double share = 1) noexcept;
+  // `follow`: the reference is the plan of Follow at first, until that brakes to its end: it is within the limits.
+  bool Make(Planner& planner, double share = 1, bool follow = false) noexcept;
+  // Of the last Make: whether there is such a plan, and whether a plan of this course takes more than `share` of its
+  // time until it brakes to its end.
+  bool follows() const noexcept { return !followed_.empty(); }
+  bool IsSlower(const PathPlan& plan, double share) const noexcept;
 
   // Takes a plan of another course as the reference: near to the optimum intervals lie where they are needed. Returns
   // false if they do not suffice.
@@ -67,13 +74,21 @@ class PathCourse {
     double place = 0;
     double speed = 0;
   };
+  struct Followed {
+    double length_s = 0;  // of the interval before it
+    KinematicState state;
+  };
   enum class Laid : std::uint8_t { kWhole, kNoRoom, kTooNear };
 
   std::size_t NodeAt(std::size_t from, double place) const noexcept;
+  static KinematicState At(const std::vector<Step>& steps, const ReferenceState& reference) noexcept;
+  void Sample() noexcept;
+  // Where the reference leaves the plan of Follow, which is where it begins if there is none.
+  const KinematicState& Joint() const noexcept { return joint_ == 0 ? begin_ : followed_[joint_ - 1].state; }
   void FindSlow(const KinematicState& begin, std::size_t end) noexcept;
   void MakeReachable(const KinematicState& begin) noexcept;
   Limits Between(const Slow& from, const Slow& to) const noexcept;
-  Laid Lay(const KinematicState& begin, double of_build_up, Planner& planner) noexcept;
+  Laid Lay(double of_build_up, Planner& planner) noexcept;
   bool Cut(const Slow& from, const Slow& to, const Profile& profile, double longest_s) noexcept;
   void Add(const KinematicState& from, const KinematicState& to, double length_s) noexcept;
   void Grade() noexcept;
@@ -85,6 +100,11 @@ class PathCourse {
   std::vector<PathNode> nodes_;  // of the window
   CoordinateLimits coordinates_;
   KinematicState begin_;
+  std::vector<Step> other_steps_;  // of Follow; empty: none
+  PathPlan other_plan_;
+  double other_from_s_ = 0;
+  std::vector<Followed> followed_;  // the knots of that plan
+  std::size_t joint_ = 0;           // so many of them are knots of the reference
   double factor_ = 1;
   double share_ = 1;
   double end_place_ = 0;

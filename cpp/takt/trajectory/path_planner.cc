@@ -18,7 +18,7 @@ constexpr int kStubborn = 2;                   // rounds after which tightening 
 constexpr double kNearly = 1.5;                // use of a limit below which a plan is feasible at a lower rate
 constexpr double kLowerRounding = 1e-9;        // share of R
 constexpr double kBeginRounding = 1e-6;        // share of a limit, in the first interval after a given pace
-constexpr double kPrecision = 1e-3;            // of gap and residual
+constexpr double kPrecision = 3e-4;            // of gap and residual
 constexpr double kToBoundary = 0.99;           // of the step to where a slack or a multiplier is 0
 constexpr double kLeastLeft = 0.2;             // of an ordinate, after a step
 constexpr double kFarSlack = 0.1;              // initial slack of rows, share of their terms: from a uniform rate
@@ -35,7 +35,9 @@ constexpr double kSamePace = 1e-6;             // of R and its slope
 constexpr double kLost = 1e6;                  // of the duration: gap or residual of a diverged solution
 constexpr double kBetween = 0.2;               // of a second difference: more than a parabola rises (1/8)
 constexpr double kSmall = 1e-3;                // share of a limit that needs no rows; Verify looks at it all the same
-constexpr double kOfUniform = 0.7;             // of the fastest uniform R: where the steps begin
+constexpr std::uint64_t kAll = ~std::uint64_t{0};
+constexpr double kNear = 0.4;       // use of a limit from which it has rows, once a use is known
+constexpr double kOfUniform = 0.7;  // of the fastest uniform R: where the steps begin
 
 bool Above0(double number) {
   return number > 0 && std::isfinite(number);
@@ -49,6 +51,7 @@ PathPlanner::PathPlanner(std::size_t intervals, std::size_t coordinates)
       ends_(2 * intervals * coordinates),
       merged_(2 * intervals),
       apart_(2 * intervals),
+      near_(intervals),
       at_(coordinates),
       ordinates_(intervals),
       tighten_(intervals),
@@ -97,6 +100,7 @@ bool PathPlanner::Read() noexcept {
     };
     cruises_[k] = cruises(2 * k) && cruises(2 * k + 1) ? 1 : 0;
     held_[k] = 0;
+    near_[k] = kAll;
   }
   return true;
 }
@@ -220,12 +224,15 @@ void PathPlanner::MakeRows() noexcept {
       const Linear& a = shape.slope[e];
       const double root = 1 / std::sqrt(b.value);
       const double root_slope = -0.5 * root / b.value;
+      std::uint64_t near = near_[k];
+      if (e == 1 && k + 1 < n_) near |= near_[k + 1];
+      if (e == 0 && k > 0) near |= near_[k - 1];
       // What holds at a knot is asked for once; a given pace is as it is.
       const bool free_knot = e == 1 ? k + 1 < n_ || !request_->end : k == 0 && !request_->begin;
       double cap = std::numeric_limits<double>::infinity();
       for (std::size_t q = 0; q < count_; ++q) {
         const ReferenceRate& rate = ends_[(2 * k + e) * count_ + q];
-        if (q > 0 && (apart_[2 * k + e] >> q & 1) == 0) continue;
+        if (q > 0 && ((apart_[2 * k + e] & near) >> q & 1) == 0) continue;
         const RateLimits& l = q == 0 ? merged_[2 * k + e] : LimitsOf(k, q);
         const double speed = f[0] * rate.first;
         if (speed != 0) cap = std::min(cap, l.velocity * l.velocity / (speed * speed));
@@ -416,14 +423,15 @@ bool PathPlanner::Solve(double start_slack, int most) noexcept {
   return true;
 }
 
-// Returns the largest shares of the limits that an interval uses; infinite where R is not above 0 or something is not
-// finite.
+// Returns the largest shares of the limits that an interval uses, and marks the coordinates that are near one; infinite
+// where R is not above 0 or something is not finite.
 PathPlanner::Shares PathPlanner::UseOf(std::size_t k) noexcept {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   const Shape shape = ShapeOf(k);
   const double b = shape.square[0].value, a = shape.slope[0].value, bend = shape.bend.value;
   const std::size_t width = 3 * count_;
   Shares use{};
+  seen_ = over_ = 0;
   const auto shares = [&](int i) {
     const double share = static_cast<double>(i) / kSamples;
     const double way = share * request_->lengths[k];
@@ -445,7 +453,10 @@ PathPlanner::Shares PathPlanner::UseOf(std::size_t k) noexcept {
   const double slowest = std::min(b, shape.square[1].value);
   const double step_s = slowest > 0 ? request_->lengths[k] / kSamples / std::sqrt(slowest) : kInfinite;
   for (int i = 0; i <= kSamples; ++i) {
-    if (!shares(i)) return {kInfinite, kInfinite, kInfinite};
+    if (!shares(i)) {
+      seen_ = kAll;
+      return {kInfinite, kInfinite, kInfinite};
+    }
     if (i < 2) continue;
     for (std::size_t q = 0; q < count_; ++q) {
       const RateLimits& l = LimitsOf(k, q);
@@ -473,7 +484,10 @@ PathPlanner::Shares PathPlanner::UseOf(std::size_t k) noexcept {
         if (order == 0 && q == 0 && cruises_[k] != 0) continue;
         const double up = order == 1 ? l.acceleration : order == 0 ? l.velocity : l.jerk;
         const double down = order == 1 ? l.deceleration : up;
-        use[order] = std::max({use[order], high / up, -low / down});
+        const double own = std::max(high / up, -low / down);
+        if (own > kNear) seen_ |= std::uint64_t{1} << q;
+        if (own > 1) over_ |= std::uint64_t{1} << q;
+        use[order] = std::max(use[order], own);
       }
     }
   }
@@ -488,16 +502,28 @@ PathPlanner::Shares PathPlanner::UseOf(std::size_t k) noexcept {
   return use;
 }
 
+// From the last UseOf, of this interval: what is near a limit has rows. No row is lost but those of what was unknown.
+void PathPlanner::Mark(std::size_t k) noexcept {
+  near_[k] = known_ ? near_[k] | seen_ : seen_;
+}
+
 // True: all are within. Else the intervals where they are not are tightened, and their neighbours.
 bool PathPlanner::Verify(int round) noexcept {
   most_use_ = 0;
+  tightened_ = false;
   for (std::size_t k = 0; k < n_; ++k) {
     use_[k] = UseOf(k);
+    const std::uint64_t had_no_rows = (apart_[2 * k] | apart_[2 * k + 1]) & ~near_[k] & ~std::uint64_t{1};
     // A given pace may already use all of a limit.
     const double rounding = k == 0 && request_->begin ? kBeginRounding : 0;
     for (const double use : use_[k]) most_use_ = std::max(most_use_, use - rounding);
+    Mark(k);
+    // What had no rows gets them, before any is tightened.
+    if ((over_ & had_no_rows) != 0) use_[k].fill(1);
   }
+  known_ = true;
   if (most_use_ <= 1) return true;
+  if (round >= kStubborn) std::ranges::fill(near_, kAll);
   for (std::size_t k = 0; k < n_; ++k) {
     // Near a given pace only the kind of limit that is exceeded is tightened: the pace may use all of the others.
     // Elsewhere tightening all three kinds converges sooner.
@@ -510,7 +536,9 @@ bool PathPlanner::Verify(int round) noexcept {
       // Found again, it lies between the knots, where rows constrain it less.
       if (round >= kStubborn) use *= use;
       if (round >= 2 * kStubborn) use *= use;
-      if (use > 1) tighten_[k][order] *= kTighter * std::min(use, 2.0);
+      if (!(use > 1)) continue;
+      tighten_[k][order] *= kTighter * std::min(use, 2.0);
+      tightened_ = true;
     }
   }
   return false;
@@ -630,7 +658,7 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
   n_ = request.lengths.size();
   count_ = request.limits.size();
   steps_ = 0;
-  holds_ = false;
+  holds_ = known_ = false;
   most_use_ = 0;
   if (n_ > most_intervals_ || count_ > most_coordinates_ || out.knots_.size() < n_ + 1)
     return PathPlanStatus::kTooLarge;
@@ -647,8 +675,13 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
   SettleEnds();
   if (ordinates_[0] > 0 && ordinates_[n_ - 1] > 0) {
     double slack = kFarSlack;
+    for (std::size_t k = 0; k < n_ && request.begin; ++k) {
+      UseOf(k);
+      Mark(k);
+    }
+    known_ = request.begin.has_value();
     const int rounds = request.begin ? kRoundsFromMotion : kVerifyRounds;
-    for (int round = 0; round < rounds && steps_ < kMostSteps; ++round) {
+    for (int round = 0; round < rounds && steps_ < kMostSteps; round += tightened_ ? 1 : 0) {
       const bool converges = Solve(slack, kStepsPerRound);
       if (Verify(round)) {
         Publish(out);

@@ -131,6 +131,7 @@ class PathPlanner {
   bool Step(double centring, double start_slack, bool first) noexcept;
   bool SolveLinear() noexcept;
   Shares UseOf(std::size_t k) noexcept;
+  void Mark(std::size_t k) noexcept;
   bool Verify(int round) noexcept;
   double TimeOf() const noexcept;
   void Publish(PathPlan& out) const noexcept;
@@ -144,6 +145,8 @@ class PathPlanner {
   std::vector<ReferenceRate> ends_;    // of all coordinates at the beginning and at the end of each interval
   std::vector<RateLimits> merged_;     // of the first one there, those of coordinates that go like it included
   std::vector<std::uint64_t> apart_;   // coordinates that do not, a mask
+  std::vector<std::uint64_t> near_;    // coordinates near a limit in each interval: only they have rows, a mask
+  std::uint64_t seen_ = 0, over_ = 0;  // coordinates that UseOf saw near a limit, and over it
   std::vector<ReferenceRate> at_;      // of all coordinates
   std::vector<double> ordinates_;      // c: R's control ordinate above the middle of each interval
   std::vector<Shares> tighten_;        // factors of the rates of each interval
@@ -158,6 +161,8 @@ class PathPlanner {
   std::size_t row_count_ = 0;
   int steps_ = 0;
   bool holds_ = false;
+  bool tightened_ = false;  // by the last Verify
+  bool known_ = false;      // near_ is, from a use
   double most_use_ = 0;
   double gap_ = 0, residual_ = 0, infeasible_ = 0, primal_ = 0, dual_ = 0;  // of the last step
 };

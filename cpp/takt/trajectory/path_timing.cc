@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 namespace takt::trajectory {
 
@@ -15,6 +16,8 @@ constexpr std::uint64_t kMostLead = 400;  // cycles
 constexpr std::uint64_t kOrderAgain = 8;  // cycles after one that failed
 constexpr double kRenew_s = 0.4;          // before a law ends, if the path does not ...
 constexpr double kRenewShare = 0.75;      // ... and this share of its duration
+constexpr double kSlow_s = 0.04;          // from the order to the start: plans take so long that none is refined
+constexpr double kOfLead = 6;             // ... or so many times the time from an order to the start of its plan
 constexpr double kBehind_s = 0.1;         // before the end of a law the motion behind a stop there is planned
 constexpr double kAgainShare = 0.1;       // of the time before it ends: the wait after a plan that failed, at least
 constexpr int kRefinements = 3;           // of a plan, as long as ...
@@ -27,16 +30,25 @@ constexpr double kBrakeShares[] = {1,   0.8,  0.6,   0.45,   0.3,  0.2,
                                    0.1, 0.05, 0.025, 0.0125, 0.006};  // of limits, tried for braking
 constexpr double kBrakesWithin[] = {kWithin, 1.008, 1.018};  // of the limits of the window, 0.98 of the members'
 constexpr double kOfBrakes = 2;                              // of deceleration, times that of jerk
-constexpr double kLastResort = 0.1;                   // share of the limits that may be tried within more than kWithin
-constexpr std::uint64_t kMoreAfter = 10;              // cycles in which nothing was found within less
-constexpr std::uint64_t kBrakeAgain = 4;              // cycles after which a harder one is tried
-constexpr double kReferenceShares[] = {1, 0.8, 0.5};  // of limits, tried for the reference of a plan
-constexpr double kRoomForPlans = 0.97;                // of limits: a plan can start from such a motion
-constexpr double kSamePosition = 1e-9;                // mm
-constexpr double kCoordinatesShare = 0.979;           // of the coordinates' limits; plans use 0.98
-constexpr int kTails = 8;                             // starts tried for a tail
-constexpr double kTailShares[] = {1, 0.8, 0.5};       // of limits, tried for it
-constexpr double kStraight = 1e-12;                   // second slopes that are rounding
+constexpr double kLastResort = 0.1;       // share of the limits that may be tried within more than kWithin
+constexpr std::uint64_t kMoreAfter = 10;  // cycles in which nothing was found within less
+constexpr std::uint64_t kBrakeAgain = 4;  // cycles after which a harder one is tried
+// References of a plan, tried in turn.
+struct Reference {
+  double share;    // of limits
+  bool follow;     // the law in force at first
+  double slowest;  // time that the plan may take, of that of the law in force until it brakes to its end
+  bool urgent;     // only if that is near
+};
+constexpr double kAnyTime = std::numeric_limits<double>::infinity();
+constexpr Reference kReferences[] = {
+    {1, false, 1.03, false}, {1, true, 1.15, false}, {0.8, false, kAnyTime, true}, {0.5, false, kAnyTime, true}};
+constexpr double kRoomForPlans = 0.97;           // of limits: a plan can start from such a motion
+constexpr double kSamePosition = 1e-9;           // mm
+constexpr double kCoordinatesShare = 0.979;      // of the coordinates' limits; plans use 0.98
+constexpr int kTails = 8;                        // starts tried for a tail
+constexpr double kTailShares[] = {1, 0.8, 0.5};  // of limits, tried for it
+constexpr double kStraight = 1e-12;              // second slopes that are rounding
 constexpr double kUnlimitedAlong = std::numeric_limits<double>::max();
 constexpr double kGentle = 0.3;  // of the limits: a stop that kBrakeShares finds later may be so gentle
 
@@ -308,15 +320,28 @@ double PathTiming::BrakesTo(const PathWindow& window, const PathPace& pace) cons
   return std::min(window[StopBehind(window, pace.node)].at.s, StopPosition(pace.now, gentle));
 }
 
-bool PathTiming::Order(const PathWindow& window, double factor, const PathPace& pace) noexcept {
+// From the order of a plan to its start [ticks].
+std::uint64_t PathTiming::Lead() const noexcept {
   const auto least = static_cast<std::uint64_t>(std::ceil((current_.planned ? kLead_s : kFirstLead_s) / period_s_));
   const std::uint64_t lead = std::clamp(kOfLastPlan * took_, std::max(late_, least), std::max(kMostLead, least));
-  const KinematicState begin = StateAt(tick_ + lead);
+  // Rather at half of the way to a stop than there.
+  const std::uint64_t half = rest_cycles() / 2;
+  return lead > half && took_ < rest_cycles() && current_.planned ? std::max({half, took_, least}) : lead;
+}
+
+bool PathTiming::Order(const PathWindow& window, double factor, const PathPace& pace) noexcept {
+  const std::uint64_t lead = Lead();
+  next_.begin = tick_ + lead;
+  const KinematicState begin = StateAt(next_.begin);
   const std::uint64_t node = NodeAt(window, pace.node, begin.position);
   if (!OrderFrom(window, node, begin, factor)) return false;
+  const double from_s = period_s_ * static_cast<double>(next_.begin - current_.begin);
+  const bool follows = current_.planned && std::isinf(current_.tail_s) && current_.factor == factor;
+  if (follows && from_s < current_.plan.duration()) next_.course.Follow(current_.course, current_.plan, from_s);
   from_rest_ = IsAtRest(begin);
-  maker_->urgent = rest_s() < kUrgent_s;
-  next_.begin = tick_ + lead;
+  const double lead_s = period_s_ * static_cast<double>(lead);
+  maker_->urgent = rest_s() < std::max(kUrgent_s, kOfLead * lead_s);
+  maker_->refinements = lead_s < kSlow_s ? kRefinements : 0;
   reserved_ = no_plan_ = behind_ = false;
   maker_->order.store(OrderState::kOrdered, std::memory_order_release);
   return true;
@@ -348,6 +373,7 @@ void PathTiming::OrderBehind(const PathWindow& window, std::uint64_t stop, doubl
   }
   from_rest_ = false;  // not from that of the law in force
   maker_->urgent = false;
+  maker_->refinements = kRefinements;
   behind_ = true;
   maker_->order.store(OrderState::kOrdered, std::memory_order_release);
 }
@@ -362,8 +388,11 @@ void PathTiming::Ask(const PathWindow& window, double factor, const PathPace& pa
   }
   const std::uint64_t end = StopBehind(window, pace.node);
   const bool further = window[end].at.s > rest_place() + kSamePosition;
-  const bool wanted = (further && rest_s() < std::min(kRenew_s, kRenewShare * current_.Duration())) || braking_ ||
-                      (!current_.planned && !final_) || current_.factor != factor || (reserved_ && window[end].stop);
+  // Sooner where plans take long: they are to begin before the law in force brakes to its end.
+  const double renew_s = std::max(std::min(kRenew_s, kRenewShare * current_.Duration()),
+                                  kOfLead * period_s_ * static_cast<double>(Lead()));
+  const bool wanted = (further && rest_s() < renew_s) || braking_ || (!current_.planned && !final_) ||
+                      current_.factor != factor || (reserved_ && window[end].stop);
   if (tick_ < wait_until_) return;
   if (!wanted && !further && window[end].stop) OrderBehind(window, end, factor);
   if (!wanted || !(window[end].at.s > pace.now.position + kSamePosition)) return;
@@ -375,14 +404,17 @@ void PathTiming::Ask(const PathWindow& window, double factor, const PathPace& pa
 std::optional<std::uint64_t> PathTiming::MakePlan() noexcept {
   if (maker_->order.load(std::memory_order_acquire) != OrderState::kOrdered) return {};
   maker_->status = PathPlanStatus::kNoPlan;
-  for (const double share : kReferenceShares) {
-    if (maker_->status != PathPlanStatus::kNoPlan || (share < 1 && !maker_->urgent)) break;
-    if (!next_.course.Make(maker_->profiles, share)) break;
+  for (const Reference& reference : kReferences) {
+    if (maker_->status != PathPlanStatus::kNoPlan || (reference.urgent && !maker_->urgent)) break;
+    if (reference.follow && !next_.course.follows()) continue;
+    if (!next_.course.Make(maker_->profiles, reference.share, reference.follow)) continue;
     maker_->status = maker_->planner.Plan(next_.course.Request(), next_.plan);
+    const bool found = maker_->status == PathPlanStatus::kPlanned;
+    if (found && next_.course.IsSlower(next_.plan, reference.slowest)) maker_->status = PathPlanStatus::kNoPlan;
   }
   // With the plan as the reference once more: where its speed changes by orders of magnitude it is far from the
   // optimum.
-  for (int i = 0; i < kRefinements && maker_->status == PathPlanStatus::kPlanned; ++i) {
+  for (int i = 0; i < maker_->refinements && maker_->status == PathPlanStatus::kPlanned; ++i) {
     const double before_s = next_.plan.duration();
     const double most_s = maker_->planner.holds() ? kRefined * before_s : before_s;
     if (!maker_->course.Make(next_.course, next_.plan)) break;
@@ -412,7 +444,7 @@ void PathTiming::TakePlan(std::uint64_t number) noexcept {
   MakePlan();
   maker_->order.store(OrderState::kNone, std::memory_order_relaxed);
   planning_ = false;
-  took_ = tick_ - ordered_;
+  took_ = std::max(tick_ - ordered_, took_ - took_ / 4);  // one that fails may be there at once
   if (dropped_) return;
   const PathPlanStatus status = maker_->status;
   const bool found = status == PathPlanStatus::kPlanned || status == PathPlanStatus::kScaled;

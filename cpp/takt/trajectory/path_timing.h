@@ -83,6 +83,7 @@ class PathTiming {
   bool EndsSooner() const noexcept;
   void Take(const Profile& profile, double factor) noexcept;
   void Go(const PathWindow& window, PathPace& pace) noexcept;
+  std::uint64_t Lead() const noexcept;
   bool Order(const PathWindow& window, double factor, const PathPace& pace) noexcept;
   bool OrderFrom(const PathWindow& window, std::uint64_t node, const KinematicState& begin, double factor) noexcept;
   void OrderBehind(const PathWindow& window, std::uint64_t stop, double factor) noexcept;
@@ -101,6 +102,7 @@ class PathTiming {
     std::atomic<OrderState> order{OrderState::kNone};
     std::uint64_t number = 0;
     bool urgent = false;
+    int refinements = 0;
     PathPlanStatus status = PathPlanStatus::kNoPlan;
     PathCourse course;  // of a refinement
     PathPlan plan{kIntervals};
@@ -127,7 +129,7 @@ class PathTiming {
   double known_to_ = 0;           // arc length up to which the path is as it was when the plan was ordered [mm]
   std::uint64_t ordered_ = 0;     // tick
   std::uint64_t late_ = 0;        // lead of the next order [ticks], as the last plan came too late; 0: the usual one
-  std::uint64_t took_ = 0;        // ticks from the last order to its plan
+  std::uint64_t took_ = 0;        // ticks from an order to its plan: the longest lately
   std::uint64_t wait_until_ = 0;  // tick of the next order
 };
 
