@@ -202,6 +202,37 @@ def test_paths_that_stand_are_planned_ahead(choice: str, others: str, planned: b
     assert (took < 3.1) == planned, took
 
 
+# GR-41, of laws that take over in motion: at a corner that the first plan passes, one that begins a little before it does
+# not come nearly to rest.
+@pytest.mark.parametrize("instant", range(300, 800, 5) if LONG else range(340, 800, 120))
+def test_plans_that_begin_near_a_corner_pass_it(instant: int) -> None:
+    rng = np.random.default_rng(4)
+    x, y = 0.0, 0.0
+    points = []
+    for _ in range(60):
+        leg, angle = rng.uniform(2, 8), rng.uniform(-2.4, 2.4)
+        x, y = float(x + leg * np.cos(angle)), float(y + leg * np.sin(angle))
+        points.append((x, y, 0.0))
+    case = Case(points, Limits(300.0, 15e3, 1.5e6), 0.05)
+    stopped_s = 0.1
+
+    def interrupt(session: takt.Engine, group: takt.Group) -> None:
+        session.run(instant * PERIOD)
+        group.interrupt().wait()
+        session.run(stopped_s)
+        group.continue_path().wait()
+
+    free_s, free = go(case, rounded=True)
+    took_s, recording = go(case, rounded=True, disturb=interrupt)
+    ends = round(0.06 / PERIOD)
+    resumed = instant + round(0.23 / PERIOD)
+    least = free["g"]["velocity"][ends:-ends].min()
+    assert least > 1
+    assert recording["g"]["velocity"][resumed:-ends].min() > 0.2 * least
+    assert took_s < free_s + stopped_s + 0.04
+    check_limits(case, recording)
+
+
 def test_an_interrupt_is_answered_soon_and_goes_on_to_the_end() -> None:
     """GR-40: on a staircase, at every instant of one step."""
     case = stairs(25.4, 0.05, count=3)
