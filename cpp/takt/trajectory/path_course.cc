@@ -21,13 +21,14 @@ constexpr double kEased = 0.97;  // share of a limit that the reference is to us
 constexpr double kHarder[] = {1,   1.01, 1.02, 1.04,
                               1.1, 1.25, 1.5,  2};  // shares of its limits, tried for the reference from a motion
 constexpr double kNoSlower = 0.9;                   // of the slower end: the least speed on the way of such a reference
+constexpr double kNoSpeed = 1e-9;                   // share of the velocity that is rounding
 constexpr double kMostGrowth = 2.5;                 // from an interval to the next
 constexpr double kReferenceShare = 0.97;            // of the limits, used by the reference: a plan can start from it
 // Of the limits of coordinates: the second slopes are taken for parabolas between nodes.
 constexpr double kCoordinateShare = 0.98;
 constexpr double kNoLimitFrom = 1e11;
-constexpr double kStillBrakes = 1.02;  // of the speed an interval later
-constexpr double kHere = 1e-9;         // mm
+constexpr double kStillBrakes = 1 + 1e-6;  // of the speed an interval later
+constexpr double kHere = 1e-9;             // mm
 
 double InfiniteIfNone(double limit) {
   return limit < kNoLimitFrom ? limit : std::numeric_limits<double>::infinity();
@@ -379,6 +380,7 @@ PathCourse::Laid PathCourse::Lay(double of_build_up, Planner& planner) noexcept 
     Limits limits = usual_limits;
     Profile profile{}, tried{};
     double least = -std::numeric_limits<double>::infinity();  // speed of the profile
+    bool slows = false;
     // A motion in progress may brake harder than the reference does: it passes no slow place for that, and is not
     // slower on the way than there.
     for (const double share : kHarder) {
@@ -389,18 +391,21 @@ PathCourse::Laid PathCourse::Lay(double of_build_up, Planner& planner) noexcept 
       if (planner.ToPosition(from, to.place, to.speed, harder, tried).failed()) return Laid::kTooNear;
       const Profile::Range places = tried.PositionRange(), speeds = tried.VelocityRange();
       const double rounding = 1e-9 * (1 + std::abs(to.place));
-      const bool back = speeds.min < -1e-9 * harder.velocity;
+      const bool back = speeds.min < -kNoSpeed * harder.velocity;
       const bool reaches = !back && places.max <= to.place + rounding && places.min >= from.position - rounding;
       if (reaches && speeds.min > least) {
         least = speeds.min;
         limits = harder;
         profile = tried;
       }
-      if (i > 1 || (reaches && speeds.min >= kNoSlower * std::min(from.velocity, to.speed))) break;
+      // What a motion that brakes loses until it does not is lost in any case.
+      const double brakes = std::min(from.acceleration, 0.0);
+      const double unavoidable = from.velocity - brakes * brakes / (2 * harder.jerk);
+      slows = speeds.min < kNoSlower * std::min(unavoidable, to.speed) - kNoSpeed * harder.velocity;
+      if (i > 1 || (reaches && !slows)) break;
     }
     const bool reaches = std::isfinite(least);
     // Rather by following a plan than by one that comes nearly to rest.
-    const bool slows = least < kNoSlower * std::min(from.velocity, to.speed);
     if (i == 1 && slows && share_ == 1 && joint_ == 0 && follows()) return Laid::kTooNear;
     if (!reaches) {
       if (i + 1 == slow_.size()) return Laid::kTooNear;

@@ -31,6 +31,7 @@ constexpr std::size_t kRampSpace[] = {3, 12};  // intervals left free on both si
 constexpr double kNearlyAtSpeed = 0.97;        // of the squared velocity limit: such intervals are held at it
 constexpr double kAtSpeed = 1 - 1e-9;          // of R where the reference cruises
 constexpr double kCruises = 1e-9;              // share of a limit that is rounding
+constexpr double kNearlyCruises = 1e-7;        // ... that plans which follow one another lose
 constexpr double kSamePace = 1e-6;             // of R and its slope
 constexpr double kLost = 1e6;                  // of the duration: gap or residual of a diverged solution
 constexpr double kBetween = 0.2;               // of a second difference: more than a parabola rises (1/8)
@@ -95,7 +96,7 @@ bool PathPlanner::Read() noexcept {
     }
     const auto cruises = [&](std::size_t end) {
       const ReferenceRate& rate = ends_[end * count_];
-      return std::abs(std::abs(rate.first) - merged_[end].velocity) <= kCruises * merged_[end].velocity &&
+      return std::abs(std::abs(rate.first) - merged_[end].velocity) <= kNearlyCruises * merged_[end].velocity &&
              std::abs(rate.second) <= kCruises * merged_[end].acceleration;
     };
     cruises_[k] = cruises(2 * k) && cruises(2 * k + 1) ? 1 : 0;
@@ -491,13 +492,15 @@ PathPlanner::Shares PathPlanner::UseOf(std::size_t k) noexcept {
       }
     }
   }
-  if (cruises_[k] !=
-      0) {  // the velocity is proportional to sqrt(R), and R a parabola with its ordinate as control point
+  // Where it cruises the velocity is proportional to sqrt(R), and R a parabola with its ordinate as control point.
+  if (cruises_[k] != 0) {
     const double after = shape.square[1].value, control = b + a * request_->lengths[k];
+    const double bent = 2 * control - b - after;  // may be all rounding
     double square = std::max(b, after);
-    if (control > square) square = (control * control - b * after) / (2 * control - b - after);
-    const std::size_t end = 2 * k * count_;
-    use[0] = std::max(use[0], std::sqrt(square) * std::abs(ends_[end].first) / LimitsOf(k, 0).velocity);
+    if (control > square) {
+      square = bent > 0 ? std::clamp((control * control - b * after) / bent, square, control) : control;
+    }
+    use[0] = std::max(use[0], std::sqrt(square) * std::abs(ends_[2 * k * count_].first) / LimitsOf(k, 0).velocity);
   }
   return use;
 }
@@ -572,6 +575,12 @@ bool PathPlanner::Hold(std::size_t space) noexcept {
   const auto goes_on = [](const std::optional<ReferencePace>& pace) {
     return pace && std::abs(pace->square - 1) <= kSamePace && std::abs(pace->slope) <= kSamePace;
   };
+  const auto at_speed = [&](std::size_t k) {
+    const double before = merged_[2 * k].velocity / std::abs(ends_[2 * k * count_].first);
+    const double after = merged_[2 * k + 1].velocity / std::abs(ends_[(2 * k + 1) * count_].first);
+    const double rate = std::min(before, after);
+    return kAtSpeed * rate * rate;
+  };
   bool any = false;
   for (std::size_t first = 0, behind = 0; first < n_; first = behind + 1) {
     for (behind = first; behind < n_ && cruises_[behind] != 0;) ++behind;
@@ -589,7 +598,7 @@ bool PathPlanner::Hold(std::size_t space) noexcept {
       const double out = static_cast<double>(behind - k) / static_cast<double>(after + 1);
       const double x = std::min({in, out, 1.0});
       held_[k] = k >= first + before && k + after < behind ? 1 : 0;
-      ordinates_[k] = std::lerp(ordinates_[k], kAtSpeed, x * x * (3 - 2 * x));
+      ordinates_[k] = std::lerp(ordinates_[k], at_speed(k), x * x * (3 - 2 * x));
     }
   }
   return any;
@@ -675,11 +684,6 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
   SettleEnds();
   if (ordinates_[0] > 0 && ordinates_[n_ - 1] > 0) {
     double slack = kFarSlack;
-    for (std::size_t k = 0; k < n_ && request.begin; ++k) {
-      UseOf(k);
-      Mark(k);
-    }
-    known_ = request.begin.has_value();
     const int rounds = request.begin ? kRoundsFromMotion : kVerifyRounds;
     for (int round = 0; round < rounds && steps_ < kMostSteps; round += tightened_ ? 1 : 0) {
       const bool converges = Solve(slack, kStepsPerRound);

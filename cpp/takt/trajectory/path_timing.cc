@@ -17,7 +17,7 @@ constexpr std::uint64_t kOrderAgain = 8;  // cycles after one that failed
 constexpr double kRenew_s = 0.4;          // before a law ends, if the path does not ...
 constexpr double kRenewShare = 0.75;      // ... and this share of its duration
 constexpr double kSlow_s = 0.04;          // from the order to the start: plans take so long that none is refined
-constexpr double kOfLead = 6;             // ... or so many times the time from an order to the start of its plan
+constexpr double kOfTime = 12;            // ... or so many times the time that plans take
 constexpr double kBehind_s = 0.1;         // before the end of a law the motion behind a stop there is planned
 constexpr double kAgainShare = 0.1;       // of the time before it ends: the wait after a plan that failed, at least
 constexpr int kRefinements = 3;           // of a plan, as long as ...
@@ -340,7 +340,7 @@ bool PathTiming::Order(const PathWindow& window, double factor, const PathPace& 
   if (follows && from_s < current_.plan.duration()) next_.course.Follow(current_.course, current_.plan, from_s);
   from_rest_ = IsAtRest(begin);
   const double lead_s = period_s_ * static_cast<double>(lead);
-  maker_->urgent = rest_s() < std::max(kUrgent_s, kOfLead * lead_s);
+  maker_->urgent = rest_s() < std::max(kUrgent_s, kOfTime * period_s_ * static_cast<double>(took_));
   maker_->refinements = lead_s < kSlow_s ? kRefinements : 0;
   reserved_ = no_plan_ = behind_ = false;
   maker_->order.store(OrderState::kOrdered, std::memory_order_release);
@@ -389,8 +389,8 @@ void PathTiming::Ask(const PathWindow& window, double factor, const PathPace& pa
   const std::uint64_t end = StopBehind(window, pace.node);
   const bool further = window[end].at.s > rest_place() + kSamePosition;
   // Sooner where plans take long: they are to begin before the law in force brakes to its end.
-  const double renew_s = std::max(std::min(kRenew_s, kRenewShare * current_.Duration()),
-                                  kOfLead * period_s_ * static_cast<double>(Lead()));
+  const double renew_s =
+      std::max(std::min(kRenew_s, kRenewShare * current_.Duration()), kOfTime * period_s_ * static_cast<double>(took_));
   const bool wanted = (further && rest_s() < renew_s) || braking_ || (!current_.planned && !final_) ||
                       current_.factor != factor || (reserved_ && window[end].stop);
   if (tick_ < wait_until_) return;
