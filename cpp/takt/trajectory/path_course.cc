@@ -28,6 +28,8 @@ constexpr double kReferenceShare = 0.97;            // of the limits, used by th
 constexpr double kCoordinateShare = 0.98;
 constexpr double kNoLimitFrom = 1e11;
 constexpr double kStillBrakes = 1 + 1e-6;  // of the speed an interval later
+constexpr double kAtLimit = 1 - 1e-6;      // of the velocity limit
+constexpr double kNoAcceleration = 1e-6;   // share of the limit
 constexpr double kHere = 1e-9;             // mm
 
 double InfiniteIfNone(double limit) {
@@ -287,6 +289,23 @@ void PathCourse::Sample() noexcept {
   }
 }
 
+// So many knots of that plan are followed: until it brakes to its end, or the first time to where it ends to cruise. From
+// there the reference is as fast, and the plan may not be: before it brakes its speed may vary by a percent.
+std::size_t PathCourse::FindJoint() const noexcept {
+  std::size_t node = 0;
+  bool cruised = false;
+  for (std::size_t k = 0; k < followed_.size(); ++k) {
+    const KinematicState& at = followed_[k].state;
+    node = NodeAt(node, at.position);
+    const PathNode& here = nodes_[node];
+    const bool cruises = at.velocity >= kAtLimit * factor_ * here.at.limits.velocity &&
+                         std::abs(at.acceleration) <= kNoAcceleration * here.at.limits.acceleration;
+    if (cruised && !cruises) return k;
+    cruised = cruises;
+  }
+  return followed_.size();
+}
+
 bool PathCourse::IsSlower(const PathPlan& plan, double share) const noexcept {
   if (followed_.empty()) return false;
   double until_s = 0;
@@ -296,7 +315,7 @@ bool PathCourse::IsSlower(const PathPlan& plan, double share) const noexcept {
 
 bool PathCourse::Make(Planner& planner, double share, bool follow) noexcept {
   Sample();
-  joint_ = follow ? followed_.size() : 0;
+  joint_ = follow ? FindJoint() : 0;
   share_ = share;
   std::size_t end = nodes_.size() - 1;
   double of_build_up = kOfBuildUp;

@@ -83,6 +83,7 @@ class PathCourse {
   std::size_t NodeAt(std::size_t from, double place) const noexcept;
   static KinematicState At(const std::vector<Step>& steps, const ReferenceState& reference) noexcept;
   void Sample() noexcept;
+  std::size_t FindJoint() const noexcept;
   // Where the reference leaves the plan of Follow, which is where it begins if there is none.
   const KinematicState& Joint() const noexcept { return joint_ == 0 ? begin_ : followed_[joint_ - 1].state; }
   void FindSlow(const KinematicState& begin, std::size_t end) noexcept;
