@@ -289,8 +289,8 @@ void PathCourse::Sample() noexcept {
   }
 }
 
-// So many knots of that plan are followed: until it brakes to its end, or the first time to where it ends to cruise. From
-// there the reference is as fast, and the plan may not be: before it brakes its speed may vary by a percent.
+// So many knots of that plan are followed: until it brakes to its end, or the first time to where it ends to cruise.
+// From there the reference is as fast, and the plan may not be: before it brakes its speed may vary by a percent.
 std::size_t PathCourse::FindJoint() const noexcept {
   std::size_t node = 0;
   bool cruised = false;

@@ -9,16 +9,17 @@ namespace takt::trajectory {
 
 namespace {
 
-constexpr double kPlanShare = 0.99;        // of each limit, used by the rows: the rest is for values between knots
-constexpr std::size_t kFadeIntervals = 8;  // after a given pace, which may use all of a limit, down to that share
-constexpr int kVerifyRounds = 8;           // of verifying and tightening
-constexpr int kRoundsFromMotion = 6;       // with a given pace; after more the law in force is usually faster
-constexpr double kTighter = 1.002;         // factor of the use that was found
-constexpr int kStubborn = 2;               // rounds after which tightening is squared
-constexpr double kNearly = 1.5;            // use of a limit below which a plan is feasible at a lower rate
-constexpr double kLowerRounding = 1e-9;    // share of R
-constexpr double kBeginRounding = 1e-6;    // share of a limit, in the first interval after a given pace
-constexpr double kPrecision = 1e-3;         // of gap and residual
+constexpr double kPlanShare = 0.99;            // of each limit, used by the rows: the rest is for values between knots
+constexpr std::size_t kFadeIntervals = 8;      // after a given pace, which may use all of a limit, down to that share
+constexpr int kVerifyRounds = 8;               // of verifying and tightening
+constexpr int kRoundsFromMotion = 6;           // with a given pace; after more the law in force is usually faster
+constexpr double kTighter = 1.002;             // factor of the use that was found
+constexpr int kStubborn = 2;                   // rounds after which tightening is squared
+constexpr double kNearly = 1.5;                // use of a limit below which a plan is feasible at a lower rate
+constexpr double kLowerRounding = 1e-9;        // share of R
+constexpr double kBeginRounding = 1e-6;        // share of a limit, in the first interval after a given pace
+constexpr double kPrecision = 3e-4;            // of gap and residual, from rest
+constexpr double kPrecisionFromMotion = 1e-3;  // a plan from a motion is to be there in time
 constexpr double kToBoundary = 0.99;           // of the step to where a slack or a multiplier is 0
 constexpr double kLeastLeft = 0.2;             // of an ordinate, after a step
 constexpr double kFarSlack = 0.1;              // initial slack of rows, share of their terms: from a uniform rate
@@ -28,14 +29,14 @@ constexpr int kStepsPerRound = 80;             // Newton steps
 constexpr int kHoldingSteps = 30;              // Newton steps
 constexpr int kHoldingRounds = 4;              // of verifying and tightening
 constexpr std::size_t kRampSpace[] = {3, 6, 12};  // intervals left free on both sides of a held run, tried in turn
-constexpr double kNearlyAtSpeed = 0.97;        // of the squared velocity limit: such intervals are held at it
-constexpr double kAtSpeed = 1 - 1e-9;          // of R where the reference cruises
-constexpr double kCruises = 1e-9;              // share of a limit that is rounding
-constexpr double kNearlyCruises = 1e-7;        // ... that plans which follow one another lose
-constexpr double kSamePace = 1e-6;             // of R and its slope
-constexpr double kLost = 1e6;                  // of the duration: gap or residual of a diverged solution
-constexpr double kBetween = 0.2;               // of a second difference: more than a parabola rises (1/8)
-constexpr double kSmall = 1e-3;                // share of a limit that needs no rows; Verify looks at it all the same
+constexpr double kNearlyAtSpeed = 0.97;           // of the squared velocity limit: such intervals are held at it
+constexpr double kAtSpeed = 1 - 1e-9;             // of R where the reference cruises
+constexpr double kCruises = 1e-9;                 // share of a limit that is rounding
+constexpr double kNearlyCruises = 1e-7;           // ... that plans which follow one another lose
+constexpr double kSamePace = 1e-6;                // of R and its slope
+constexpr double kLost = 1e6;                     // of the duration: gap or residual of a diverged solution
+constexpr double kBetween = 0.2;                  // of a second difference: more than a parabola rises (1/8)
+constexpr double kSmall = 1e-3;  // share of a limit that needs no rows; Verify looks at it all the same
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 constexpr double kNear = 0.4;       // use of a limit from which it has rows, once a use is known
 constexpr double kOfUniform = 0.7;  // of the fastest uniform R: where the steps begin
@@ -412,12 +413,13 @@ bool PathPlanner::Step(double centring, double start_slack, bool first) noexcept
 
 // Towards the least time from where the ordinates are, as far as steps lead. False: they diverge.
 bool PathPlanner::Solve(double start_slack, int most) noexcept {
+  const double precision = request_->begin ? kPrecisionFromMotion : kPrecision;
   double centring = 0.2;
   for (int i = 0; i < most && steps_ < kMostSteps; ++i) {
     ++steps_;
     if (!Step(centring, start_slack, i == 0)) return false;
     if (!(gap_ < kLost && residual_ < kLost)) return false;
-    if (gap_ < kPrecision && residual_ < kPrecision && infeasible_ < 1e-6) return true;
+    if (gap_ < precision && residual_ < precision && infeasible_ < 1e-6) return true;
     const double share = std::min(primal_, dual_);
     centring = share > 0.9 ? 0.1 : share > 0.5 ? 0.25 : share > 0.2 ? 0.5 : 0.8;
   }
