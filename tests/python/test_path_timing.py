@@ -372,12 +372,15 @@ def test_overrides_and_interrupts_cross_where_bends_leave_little(instant: int) -
 
 
 @pytest.mark.parametrize("choice", ["", ", planned_ahead: false"])
-@pytest.mark.parametrize(("waiting", "every", "least"), [(110, 1, 0.98), (110, 7, 0.75), (60, 1, 0.7)])
+@pytest.mark.parametrize(
+    ("velocity", "waiting", "every", "least"),
+    [(500, 110, 1, 0.98), (500, 110, 7, 0.75), (500, 60, 1, 0.7), (300, 90, 2, 0.99), (300, 60, 4, 0.98)],
+)
 def test_chords_that_come_one_by_one_are_passed_at_full_speed(
-    choice: str, waiting: int, every: int, least: float
+    choice: str, velocity: float, waiting: int, every: int, least: float
 ) -> None:
     """GR-24: 1 mm chords of a circle, given as the queue empties, looked after every so many cycles."""
-    limits, radius, deviation, count = Limits(500, 5000, 100_000), 30.0, 0.01, 600
+    limits, radius, deviation, count = Limits(velocity, 5000, 100_000), 30.0, 0.01, 600
     text = machine([(1.0, 0.0, 0.0)], limits, choice).split("paths:")[0]
     for name in "xyz":
         text = text.replace(f"name: {name}, unit: mm, limits: {values(limits)}", FASTER.format(name))

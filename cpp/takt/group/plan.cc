@@ -422,7 +422,11 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
 
 // Whether the motion goes for a while as if the end that is known were no stop.
 bool GoesFreely(const Context& c, const State& s) {
-  if (c.ahead.timing.active()) return c.ahead.timing.rest_s() > kTimeAhead;
+  if (const trajectory::PathTiming& timing = c.ahead.timing; timing.active()) {
+    const Stretch& blend = c.ahead[c.ahead.end() - 2];
+    const double way = blend.begin - timing.BrakesTo(c.ahead.window, s.pace);
+    return timing.rest_s() > kTimeAhead || way > kFarAhead_s * blend.limits.velocity;
+  }
   const trajectory::PathWindow& window = c.ahead.window;
   const std::uint64_t end = std::min(window.known(), s.pace.node + kNodesAhead);
   const double far = s.pace.raw.position + kTimeAhead * s.pace.raw.velocity;

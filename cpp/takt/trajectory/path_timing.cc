@@ -16,6 +16,8 @@ constexpr std::uint64_t kMostLead = 400;  // cycles
 constexpr std::uint64_t kOrderAgain = 8;  // cycles after one that failed
 constexpr double kRenew_s = 0.4;          // before a law ends, if the path does not ...
 constexpr double kRenewShare = 0.75;      // ... and this share of its duration
+constexpr double kBrakesSoon_s = 0.1;     // ... and where it brakes to its end within that time
+constexpr double kShort_s = 0.15;         // laws as short as this are those from rest: the motion still accelerates
 constexpr double kSlow_s = 0.04;          // from the order to the start: plans take so long that none is refined
 constexpr double kOfTime = 12;            // ... or so many times the time that plans take
 constexpr double kBehind_s = 0.1;         // before the end of a law the motion behind a stop there is planned
@@ -391,8 +393,13 @@ void PathTiming::Ask(const PathWindow& window, double factor, const PathPace& pa
   // Sooner where plans take long: they are to begin before the law in force brakes to its end.
   const double renew_s =
       std::max(std::min(kRenew_s, kRenewShare * current_.Duration()), kOfTime * period_s_ * static_cast<double>(took_));
-  const bool wanted = (further && rest_s() < renew_s) || braking_ || (!current_.planned && !final_) ||
-                      current_.factor != factor || (reserved_ && window[end].stop);
+  const AlongPath& along = window[pace.node].at.limits;
+  const Limits usual{along.velocity, along.acceleration, along.deceleration, along.jerk};
+  const double way = rest_place() - StopPosition(pace.now, usual);
+  const bool ends = rest_s() < renew_s ||
+                    (rest_s() < kRenew_s && current_.Duration() > kShort_s && way < kBrakesSoon_s * pace.now.velocity);
+  const bool wanted = (further && ends) || braking_ || (!current_.planned && !final_) || current_.factor != factor ||
+                      (reserved_ && window[end].stop);
   if (tick_ < wait_until_) return;
   if (!wanted && !further && window[end].stop) OrderBehind(window, end, factor);
   if (!wanted || !(window[end].at.s > pace.now.position + kSamePosition)) return;
