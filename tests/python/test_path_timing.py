@@ -202,10 +202,9 @@ def test_paths_that_stand_are_planned_ahead(choice: str, others: str, planned: b
     assert (took < 3.1) == planned, took
 
 
-# GR-41, of laws that take over in motion: at a corner that the first plan passes, one that begins a little before it
-# does not come nearly to rest.
 @pytest.mark.parametrize("instant", range(300, 800, 5) if LONG else range(340, 800, 120))
 def test_plans_that_begin_near_a_corner_pass_it(instant: int) -> None:
+    """GR-41: at a corner that the first plan passes, one that begins a little before it does not come to rest."""
     rng = np.random.default_rng(4)
     x, y = 0.0, 0.0
     points = []

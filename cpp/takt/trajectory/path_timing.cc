@@ -393,13 +393,14 @@ void PathTiming::Ask(const PathWindow& window, double factor, const PathPace& pa
   // Sooner where plans take long: they are to begin before the law in force brakes to its end.
   const double renew_s =
       std::max(std::min(kRenew_s, kRenewShare * current_.Duration()), kOfTime * period_s_ * static_cast<double>(took_));
-  const AlongPath& along = window[pace.node].at.limits;
-  const Limits usual{along.velocity, along.acceleration, along.deceleration, along.jerk};
-  const double way = rest_place() - StopPosition(pace.now, usual);
-  const bool ends = rest_s() < renew_s ||
-                    (rest_s() < kRenew_s && current_.Duration() > kShort_s && way < kBrakesSoon_s * pace.now.velocity);
-  const bool wanted = (further && ends) || braking_ || (!current_.planned && !final_) || current_.factor != factor ||
-                      (reserved_ && window[end].stop);
+  const auto brakes_soon = [&] {
+    if (rest_s() >= kRenew_s || current_.Duration() <= kShort_s) return false;
+    const AlongPath& along = window[pace.node].at.limits;
+    const Limits usual{along.velocity, along.acceleration, along.deceleration, along.jerk};
+    return rest_place() - StopPosition(pace.now, usual) < kBrakesSoon_s * pace.now.velocity;
+  };
+  const bool wanted = (further && (rest_s() < renew_s || brakes_soon())) || braking_ ||
+                      (!current_.planned && !final_) || current_.factor != factor || (reserved_ && window[end].stop);
   if (tick_ < wait_until_) return;
   if (!wanted && !further && window[end].stop) OrderBehind(window, end, factor);
   if (!wanted || !(window[end].at.s > pace.now.position + kSamePosition)) return;
