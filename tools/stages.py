@@ -15,6 +15,8 @@ from typing import TextIO
 Command = Sequence["str | Path"]
 Environment = Mapping[str, str]
 
+BYTECODE = Path(__file__).resolve().parents[1] / "build" / "bytecode"
+
 TTY = sys.stdout.isatty()
 WIDTH = shutil.get_terminal_size((120, 24)).columns - 1
 
@@ -24,9 +26,17 @@ class StageError(Exception):
 
 
 def environment(more: Environment | None = None) -> dict[str, str]:
-    """The system's tools go before those of the same names that a Python environment puts on the PATH."""
+    """The system's tools go before those of the same names that a Python environment puts on the PATH. Python's
+    bytecode is kept in build/, whatever the caller's environment says: without, each start of takt compiles it all."""
     path = "/usr/sbin:/usr/bin:/sbin:/bin:" + os.environ.get("PATH", "")
-    return {**os.environ, "PATH": path, "PIP_DISABLE_PIP_VERSION_CHECK": "1", **(more or {})}
+    kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    return {
+        **kept,
+        "PATH": path,
+        "PIP_DISABLE_PIP_VERSION_CHECK": "1",
+        "PYTHONPYCACHEPREFIX": str(BYTECODE),
+        **(more or {}),
+    }
 
 
 def output_of(*command: str | Path) -> str:
