@@ -24,14 +24,10 @@ from takt.sweep import sweep
 from takt.view.server import serving
 
 from tools import page_blocks
+from tools.browser import CHROMIUM, FLAGS
 
 ROOT = Path(__file__).resolve().parents[1]
 SIZE = {"width": 1400, "height": 820}
-FLAGS = (
-    "--headless --no-sandbox --disable-gpu --disable-background-networking --disable-component-update --disable-sync "
-    "--no-first-run"
-).split()
-
 COMMANDED = "+commands"  # the example with a page that may command
 
 # Name of the picture: example, or page and the folder of its files, dark, what the address says, s of engine time from
@@ -168,7 +164,7 @@ def playing(folder: Path, url: str) -> Iterator[None]:
 def take(name: str, target: Path) -> None:
     example, dark, hash_, seconds, before = PICTURES[name]
     with machine_of(example) as folder, running(folder) as (url, address), sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         page: Page = browser.new_page(viewport=SIZE, color_scheme="dark" if dark else "light")  # type: ignore[arg-type]
         page.goto(f"{address}#{hash_}")
         page.wait_for_selector("body.ready", timeout=60_000)
@@ -190,7 +186,7 @@ def take_report(name: str, target: Path) -> None:
     dark, before = REPORTS.get(name, (False, SHOWN if name == COMPARISON else ""))
     with tempfile.TemporaryDirectory() as directory, sync_playwright() as playwright:
         report = {COMPARISON: two_runs, SWEEP: swept}.get(name, failed)(Path(directory))
-        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         page: Page = browser.new_page(viewport=SIZE, color_scheme="dark" if dark else "light")  # type: ignore[arg-type]
         page.goto(report.as_uri())
         page.wait_for_selector("body.ready", timeout=60_000)

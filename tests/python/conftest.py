@@ -14,8 +14,9 @@ if TYPE_CHECKING:
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     """One for all tests of a file; ask for it where `pages.needs_chromium` holds."""
-    from pages import CHROMIUM, FLAGS
     from playwright.sync_api import sync_playwright
+
+    from tools.browser import CHROMIUM, FLAGS
 
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)

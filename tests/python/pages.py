@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import re
-import shutil
 import signal
 import socket
 import struct
@@ -20,11 +19,8 @@ import pytest
 from playwright.sync_api import Browser, Page
 from websockets.sync.client import connect as connect_socket
 
-CHROMIUM = shutil.which("chromium")
-FLAGS = (
-    "--headless --no-sandbox --disable-gpu --disable-background-networking --disable-component-update --disable-sync "
-    "--no-first-run"
-).split()
+from tools.browser import CHROMIUM
+
 PATIENCE_S = 60.0  # for things that take a moment; nothing is judged by how long they take
 
 # A mover, another one before it, and a loop for both.
@@ -38,7 +34,7 @@ movers:
   - {name: two, initial: {x: 700, y: 0}, gap: 200, xy: {maximum: {velocity: 1000, acceleration: 5000, jerk: 100000}}}
 """
 
-needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="chromium-headless-shell is not installed")
 
 
 def free_port() -> int:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import pytest
@@ -10,10 +9,9 @@ import takt
 from takt import reference
 from takt.scenario import load_scenario, run_scenario
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT))
+from tools import command_pages
 
-from tools import command_pages  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 FIGURES = {file.stem: file for file in command_pages.figures(ROOT / "docs" / "commands" / "flex_cam.py")}
 

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import re
-import sys
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT))
+from tools.lock_packages import LOCKS, lists
 
-from tools.lock_packages import LOCKS, lists  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def entries(name: str) -> list[str]:

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import re
-import sys
 from pathlib import Path
 
 import pytest
 from takt import reference
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT))
+from tools import command_pages, page_blocks
+from tools.doc_strings import to_rst
+from tools.page_blocks import PageError
+from tools.state_diagrams import arrows, dot
 
-from tools import command_pages, page_blocks  # noqa: E402
-from tools.doc_strings import to_rst  # noqa: E402
-from tools.page_blocks import PageError  # noqa: E402
-from tools.state_diagrams import arrows, dot  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 PAGES = sorted((ROOT / "docs").glob("*.md"))
 COMPONENTS = (

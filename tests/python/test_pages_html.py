@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import re
-import sys
 from pathlib import Path
 
 import pytest
 from takt import reference
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT))
+from tools import docs_pages
 
-from tools import docs_pages  # noqa: E402
+ROOT = Path(__file__).resolve().parents[2]
 
 # Nothing runs here (test_pages.py and test_command_pages.py see to that), so the pictures of runs are missing.
 WITHOUT_PICTURES = ("-D", "suppress_warnings=image.not_readable")
