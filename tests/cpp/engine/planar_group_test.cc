@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "../core/trials.h"
 #include "takt/core/describe.h"
 #include "takt/engine/engine.h"
 #include "takt/engine/load.h"
@@ -437,7 +438,7 @@ TEST(PlanarGroupMachine, NothingEverTouches) {
   int done = 0, faults = 0, rides = 0, justified = 0, waited = 0, after_waiting = 0;
   for (unsigned seed = 1; seed <= 4 && !HasFailure(); ++seed) {
     Hall hall(seed, seed == 4);
-    for (int i = 0; i < 20'000 && !HasFailure(); ++i) hall.Step();
+    for (int i = 0; i < Trials(20'000, 10) && !HasFailure(); ++i) hall.Step();
     hall.Settle();
     for (const auto& [kind, count] : hall.refused) refused[kind] += count;
     done += hall.done;
@@ -447,15 +448,15 @@ TEST(PlanarGroupMachine, NothingEverTouches) {
     waited += hall.waited;
     after_waiting += hall.after_waiting;
   }
-  EXPECT_GT(refused[ObjectKind::kMover], 200);
-  EXPECT_GT(refused[ObjectKind::kTrack], 20);
-  EXPECT_GT(refused[ObjectKind::kEnvironment], 200);
-  EXPECT_GT(done, 1000);
-  EXPECT_GT(faults, 20);
-  EXPECT_GT(rides, 1000);
-  EXPECT_GT(justified, 100);
-  EXPECT_GT(waited, 1000);
-  EXPECT_GT(after_waiting, 20);
+  EXPECT_GT(refused[ObjectKind::kMover], Trials(200, 10));
+  EXPECT_GT(refused[ObjectKind::kTrack], Trials(20, 10));
+  EXPECT_GT(refused[ObjectKind::kEnvironment], Trials(200, 10));
+  EXPECT_GT(done, Trials(1000, 10));
+  EXPECT_GT(faults, Trials(20, 10));
+  EXPECT_GT(rides, Trials(1000, 10));
+  EXPECT_GT(justified, Trials(100, 10));
+  EXPECT_GT(waited, Trials(1000, 10));
+  EXPECT_GT(after_waiting, Trials(20, 10));
 }
 
 }  // namespace

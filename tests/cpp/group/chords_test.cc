@@ -1,6 +1,7 @@
 // GR-24: tool paths of short chords run as the curve would that they stand for.
 #include <random>
 
+#include "../core/trials.h"
 #include "machines.h"
 #include "watch.h"
 
@@ -178,7 +179,7 @@ TEST(ChordPaths, OnCircles) {
 // GR-22, GR-24: any chords, any deviation, coming at any time, interrupted: within the deviation, and smooth.
 TEST(ChordPaths, PropertyStayWithinTheDeviation) {
   double most_off_path = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(Trials(60, 10)); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const double mean = std::exp(Uniform(random, std::log(0.2), std::log(5)));
@@ -232,7 +233,7 @@ TEST(ChordPaths, PropertyStayWithinTheDeviation) {
 
 // GR-22: what is further from all corners than the corner distance lies on the chords.
 TEST(ChordPaths, PropertyKeepTheCornerDistance) {
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(Trials(40, 10)); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const double distance = Uniform(random, 0.3, 1.5);

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "../core/allocations.h"
+#include "../core/trials.h"
 #include "belts.h"
 
 namespace takt::group {
@@ -139,7 +140,7 @@ TEST_P(RidingWalk, PropertyKeepsLimitsAndCanAlwaysBeStopped) {
   const Kind& kind = *std::ranges::find(kinds, GetParam(), &Kind::name);
   std::uint64_t rode = 0, in_sync = 0;
   int lost = 0;
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(Trials(40, 10)); ++seed) {
     SCOPED_TRACE(seed);
     Walk walk(seed, kind);
     Rig& rig = walk.rig;
@@ -177,10 +178,10 @@ TEST_P(RidingWalk, PropertyKeepsLimitsAndCanAlwaysBeStopped) {
     ExpectSmooth(rig);
   }
   std::cout << kind.name << ": " << rode << " cycles on rides, " << in_sync << " in step, lost " << lost << "\n";
-  EXPECT_GT(in_sync, 10000u);
+  EXPECT_GT(in_sync, static_cast<std::uint64_t>(Trials(10000, 10)));
   // At the rim of an arm's reach a path may have to be braked where it cannot be gone any more: then each axis brakes
   // by itself, within its limits.
-  EXPECT_LE(lost, kind.name == "gantry" ? 0 : 6);
+  EXPECT_LE(lost, kind.name == "gantry" ? 0 : Trials(6, 10));
 }
 
 INSTANTIATE_TEST_SUITE_P(Group, RidingWalk, ::testing::Values("gantry", "Delta", "SCARA"),
