@@ -320,6 +320,7 @@ void Step(const Context& c, State& s) noexcept {
   }
   if (s.task == Task::kPower) WatchPower(c, s);
   if (s.state == GroupState::kHoming && s.task != Task::kPower) WatchHoming(c, s);
+  WatchCarriers(c, s);
   const bool plans = s.state == GroupState::kStandby || s.state == GroupState::kMoving;
   if (plans && !Streams(s)) {
     if (!s.interrupted) StepTracking(c, s);

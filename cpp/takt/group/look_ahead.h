@@ -35,6 +35,12 @@ struct Ride {
   double speed = 0;  // of what carries, when it was planned
 };
 
+// How strongly a carrier's speed has changed lately.
+struct Unsteady {
+  std::uint32_t carrier = 0;
+  double acceleration = 0;  // mm/s² or rad/s²
+};
+
 // A piece of path in the still world.
 struct Stretch {
   path::Segment segment;
@@ -88,12 +94,13 @@ struct LookAhead {
   std::uint64_t count = 0;
 
   OpenCorner corner;
-  std::array<Ride, kRides> rides{};  // a ring
-  std::uint64_t end_ride = 0;        // of the last stretch
-  std::uint64_t from_ride = 0;       // from which the move that is planned goes over
-  std::uint64_t rides_end = 1;       // behind the newest one
-  double end_eta = 0;                // when the tool is expected there
-  double next_time_s = 0;            // how long the next stretch is expected to take; 0: not known yet
+  std::array<Ride, kRides> rides{};                  // a ring
+  std::array<Unsteady, kProductSystems> unsteady{};  // carriers of product coordinate systems
+  std::uint64_t end_ride = 0;                        // of the last stretch
+  std::uint64_t from_ride = 0;                       // from which the move that is planned goes over
+  std::uint64_t rides_end = 1;                       // behind the newest one
+  double end_eta = 0;                                // when the tool is expected there
+  double next_time_s = 0;                            // how long the next stretch is expected to take; 0: not known yet
 
   // The stretch being planned: not yet joined to the others.
   Stretch next;

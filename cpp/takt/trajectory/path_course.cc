@@ -75,8 +75,8 @@ AlongPath LimitsAt(const PathPoint& point, const CoordinateLimits& limits, doubl
   AlongPath least = point.limits;
   for (std::size_t k = 0; k < limits.count; ++k) {
     const double slope = std::abs(point.slopes.first[k]);
-    const double a = share * point.left * limits.of[k].acceleration;
-    const double j = share * point.left * limits.of[k].jerk;
+    const double a = share * limits.of[k].acceleration;
+    const double j = share * limits.of[k].jerk;
     if (slope * least.acceleration > a) least.acceleration = a / slope;
     if (slope * least.deceleration > a) least.deceleration = a / slope;
     if (slope * least.jerk > j) least.jerk = j / slope;
@@ -89,13 +89,12 @@ double UseOf(const PathWindow& window, std::uint64_t node, const KinematicState&
   const CoordinateLimits& limits = window.limits();
   const double v = along.velocity, a = along.acceleration;
   double use = v / before.at.limits.velocity;
-  const double left = std::min(before.at.left, after.at.left);
   for (std::size_t k = 0; k < limits.count; ++k) {
     const CoordinateLimits::One& of = limits.of[k];
     const Slopes q = SlopesAt(before, after, along.position, k);
-    use = std::max({use, std::abs(q.first * v) / (left * of.velocity),
-                    std::abs(q.first * a + q.second * v * v) / (left * of.acceleration),
-                    std::abs(q.first * jerk + 3 * q.second * v * a + q.third * v * v * v) / (left * of.jerk)});
+    use =
+        std::max({use, std::abs(q.first * v) / of.velocity, std::abs(q.first * a + q.second * v * v) / of.acceleration,
+                  std::abs(q.first * jerk + 3 * q.second * v * a + q.third * v * v * v) / of.jerk});
   }
   return use;
 }
@@ -492,14 +491,12 @@ bool PathCourse::Ease() noexcept {
 void PathCourse::SetLimits(std::size_t end) noexcept {
   limits_.assign(1, {});
   of_.clear();
-  double left = 1;
-  for (std::size_t i = 0; i <= end; ++i) left = std::min(left, nodes_[i].at.left);
   for (std::size_t k = 0; k < coordinates_.count; ++k) {
     const CoordinateLimits::One& of = coordinates_.of[k];
     bool moves = false;
     for (std::size_t i = 0; i <= end && !moves; ++i) moves = nodes_[i].at.slopes.first[k] != 0;
     if (!moves || !(std::isfinite(of.velocity) || std::isfinite(of.acceleration) || std::isfinite(of.jerk))) continue;
-    const double share = kCoordinateShare * left;
+    const double share = kCoordinateShare;
     limits_.push_back({share * of.velocity, share * of.acceleration, share * of.acceleration, share * of.jerk});
     of_.push_back(k);
   }

@@ -43,14 +43,16 @@ double AccelerationBounds::Most(double square) const noexcept {
   return most;
 }
 
-AccelerationBounds BoundsAt(const PathSlopes& slopes, const AlongPath& along, const CoordinateLimits& limits,
-                            double build_up_s, double share) noexcept {
+AccelerationBounds BoundsAt(const PathPoint& point, const CoordinateLimits& limits, double build_up_s,
+                            double share) noexcept {
+  const PathSlopes& slopes = point.slopes;
+  const AlongPath& along = point.limits;
   AccelerationBounds bounds;
   bounds.acceleration = std::min(along.acceleration, along.jerk * build_up_s);
   bounds.deceleration = std::min(along.deceleration, along.jerk * build_up_s);
   const double largest = std::max(bounds.acceleration, bounds.deceleration);
   for (std::size_t k = 0; k < limits.count; ++k) {
-    const double own = share * limits.of[k].acceleration;
+    const double own = share * point.left[k].acceleration * limits.of[k].acceleration;
     // Where a coordinate hardly moves with the way, only the square of the speed counts (SquareAt).
     if (own == CoordinateLimits::kNone || std::abs(slopes.first[k]) * largest <= 1e-6 * own) continue;
     const double inverse = 1 / slopes.first[k];
@@ -67,9 +69,9 @@ double SquareAt(const PathPoint& point, const CoordinateLimits& limits, double s
     const double slope = std::abs(point.slopes.first[k]);
     const double bend = std::abs(point.slopes.second[k]);
     const CoordinateLimits::One& own = limits.of[k];
-    const double velocity = point.left * own.velocity;
+    const double velocity = point.left[k].velocity * own.velocity;
     if (slope * slope * square > velocity * velocity) square = velocity * velocity / (slope * slope);
-    const double acceleration = share * point.left * own.acceleration;
+    const double acceleration = share * point.left[k].acceleration * own.acceleration;
     if (bend * square > acceleration) square = acceleration / bend;
   }
   return square;
@@ -81,7 +83,7 @@ Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordi
     double most = CoordinateLimits::kNone;
     for (std::size_t k = 0; k < limits.count; ++k) {
       // The bends' own part is hardly ever largest where the others are: as if at right angles.
-      const double own = (together ? kGentleJerkShare : kJerkShare) * point.left * limits.of[k].jerk;
+      const double own = (together ? kGentleJerkShare : kJerkShare) * point.left[k].jerk * limits.of[k].jerk;
       const double bends = std::min(third[k] * v * v * v, (together ? 0.8 : 0.99) * own);
       const double left = together ? own - bends : std::sqrt(own * own - bends * bends);
       const double asked = 3 * std::abs(point.slopes.second[k]) * v + std::abs(point.slopes.first[k]) / build_up_s;
@@ -92,7 +94,7 @@ Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordi
   // Without bends there is nothing to hope for.
   double straight = CoordinateLimits::kNone;
   for (std::size_t k = 0; k < limits.count; ++k) {
-    const double own = kGentleJerkShare * point.left * limits.of[k].jerk * build_up_s;
+    const double own = kGentleJerkShare * point.left[k].jerk * limits.of[k].jerk * build_up_s;
     const double slope = std::abs(point.slopes.first[k]);
     if (slope * straight > own) straight = own / slope;
   }

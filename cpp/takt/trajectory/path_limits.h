@@ -45,11 +45,18 @@ struct PathSlopes {
   std::array<double, kPathCoordinates> second{};
 };
 
+// Of a coordinate's limits, what a motion along the path may use: the rest is taken by what moves the path itself.
+struct Left {
+  double velocity = 1;
+  double acceleration = 1;
+  double jerk = 1;
+};
+
 struct PathPoint {
   double s = 0;  // along the way
   PathSlopes slopes;
   AlongPath limits;
-  double left = 1;  // of the coordinates' limits: the rest is taken by what moves the path itself
+  std::array<Left, kPathCoordinates> left{};
   // The second slopes halfway from the point before; without them they are taken for even.
   std::array<double, kPathCoordinates> middle{};
   bool has_middle = false;
@@ -88,8 +95,8 @@ struct AccelerationBounds {
 };
 
 // With `share` of each coordinate's acceleration; along the way no more than its jerk builds up within `build_up_s`.
-AccelerationBounds BoundsAt(const PathSlopes& slopes, const AlongPath& along, const CoordinateLimits& limits,
-                            double build_up_s, double share) noexcept;
+AccelerationBounds BoundsAt(const PathPoint& point, const CoordinateLimits& limits, double build_up_s,
+                            double share) noexcept;
 
 // The largest square of the speed at this place: for velocities, and so that there is an acceleration within the
 // bounds, with `share` of the coordinates' own.

@@ -119,7 +119,6 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
   const double length = next.at.s - node.at.s;
   const double x = mean.position - node.at.s;
   const double part = length > 0 ? std::clamp(x / length, 0.0, 1.0) : 0;
-  const double left = std::lerp(node.at.left, next.at.left, part);
   const double jerk = (mean.acceleration - before.acceleration) / period_s;
   PathShares shares;
   PathCoordinateValues velocities, accelerations;
@@ -135,9 +134,10 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
     const double acceleration = probed ? accelerations[k] : by_way;
     const double total = std::abs(acceleration - here_.accelerations[k]) / period_s;
     here_.accelerations[k] = acceleration;
-    const double share = probed ? 1 : left;
-    const double over = std::abs(acceleration) / (share * limits.of[k].acceleration);
-    const double most = share * limits.of[k].jerk;
+    const Left &here = node.at.left[k], &there = next.at.left[k];
+    const double left = probed ? 1 : std::lerp(here.acceleration, there.acceleration, part);
+    const double over = std::abs(acceleration) / (left * limits.of[k].acceleration);
+    const double most = (probed ? 1 : std::lerp(here.jerk, there.jerk, part)) * limits.of[k].jerk;
     if (probed && std::abs(velocities[k]) > limits.of[k].velocity) {
       const double speed = limits.of[k].velocity / std::abs(velocities[k]);
       shares.square = std::min(shares.square, speed * speed);

@@ -34,7 +34,7 @@ inline double AccelerationAt(const PathPoint& point, const CoordinateLimits& lim
   double acceleration = std::max(point.limits.acceleration, point.limits.deceleration);
   for (std::size_t k = 0; k < limits.count; ++k) {
     const double slope = std::abs(point.slopes.first[k]);
-    const double own = point.left * limits.of[k].acceleration;
+    const double own = point.left[k].acceleration * limits.of[k].acceleration;
     if (slope * acceleration > own) acceleration = own / slope;
   }
   return acceleration;
@@ -48,7 +48,7 @@ class BuildUp {
     double jerk = point.limits.jerk;
     for (std::size_t k = 0; k < limits.count; ++k) {
       const double slope = std::abs(point.slopes.first[k]);
-      const double own = point.left * limits.of[k].jerk;
+      const double own = point.left[k].jerk * limits.of[k].jerk;
       if (slope * jerk > own) jerk = own / slope;
     }
     ++count_;

@@ -27,10 +27,10 @@ Third ThirdBetween(const PathPoint& before, const PathPoint& after, const Coordi
   return third;
 }
 
-double DriftSquare(const Third& third, const CoordinateLimits& limits, double left) {
+double DriftSquare(const Third& third, const CoordinateLimits& limits, const PathPoint& from, const PathPoint& to) {
   double cube = CoordinateLimits::kNone;
   for (std::size_t k = 0; k < limits.count; ++k) {
-    const double jerk = kDriftShare * left * limits.of[k].jerk;
+    const double jerk = kDriftShare * std::min(from.left[k].jerk, to.left[k].jerk) * limits.of[k].jerk;
     if (third[k] * cube > jerk) cube = jerk / third[k];
   }
   const double v = maths::Cbrt(cube);
@@ -54,13 +54,13 @@ void PathWindow::Append(const PathPoint& point, bool stop) noexcept {
   node.at = point;
   node.stop = stop;
   node.build_up_s = build_up_s_;
-  node.bounds = BoundsAt(point.slopes, point.limits, limits_, build_up_s_, kShare * point.left);
+  node.bounds = BoundsAt(point, limits_, build_up_s_, kShare);
   node.own = SquareAt(point, limits_, kShare);
   Third third{};
   if (!IsFirst(end_)) {
     PathNode& before = Node(end_ - 1);
     third = ThirdBetween(before.at, point, limits_);
-    const double square = DriftSquare(third, limits_, std::min(before.at.left, point.left));
+    const double square = DriftSquare(third, limits_, before.at, point);
     node.own = std::min(node.own, square);
     before.own = std::min(before.own, square);
     before.cap = std::min(before.cap, square);

@@ -11,7 +11,7 @@ namespace takt::group {
 namespace {
 
 constexpr double kSame = 0.02;  // u
-const int kTrips = Trials(50, 10);
+const int kTrips = Trials(50, 1);
 
 // After the move before, or rounding its end.
 MoveLinearAbsolute Then(double x, double y, double z, std::uint32_t pcs, double radius = 0) {
@@ -145,8 +145,8 @@ Sum Go(const std::string& name, bool interrupted) {
 TEST_P(Late, PropertyOverridesAndBeltsThatSwing) {
   const Sum sum = Go(GetParam(), false);
   const bool scara = GetParam() == "SCARA";
-  EXPECT_LE(sum.late, scara ? Trials(2, 10) : 0);
-  EXPECT_GE(sum.done, scara ? Trials(40, 10) : kTrips);
+  EXPECT_LE(sum.late, scara ? Trials(2, 1) : 0);
+  EXPECT_GE(sum.done, scara ? Trials(40, 1) : kTrips);
 }
 
 // As fast as the axes can, between belts that change their speed.
@@ -163,16 +163,16 @@ TEST_P(Late, PropertyDirectMoves) {
       EXPECT_LE(trip.off(), kOnObject);
     }
   }
-  EXPECT_LE(late, GetParam() == "SCARA" ? Trials(2, 10) : 0);
+  EXPECT_LE(late, GetParam() == "SCARA" ? Trials(2, 1) : 0);
 }
 
 // At the instant of an interrupt a path may use all that the axes can, and its carriers are to be braked, too.
 TEST_P(Late, PropertyInterrupts) {
   const Sum sum = Go(GetParam(), true);
   const bool scara = GetParam() == "SCARA";
-  EXPECT_LE(sum.late, Trials(scara ? 8 : 2, 10));
-  EXPECT_LE(sum.worst, 10);
-  EXPECT_GE(sum.done, Trials(scara ? 15 : 25, 10));
+  EXPECT_LE(sum.late, Trials(scara ? 6 : 2, 1));
+  EXPECT_LE(sum.worst, scara ? 15 : 10);
+  EXPECT_GE(sum.done, Trials(scara ? 15 : 25, 1));
 }
 
 // The way over may be short, or nothing at all: then it takes its time.
