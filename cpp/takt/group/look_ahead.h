@@ -35,10 +35,10 @@ struct Ride {
   double speed = 0;  // of what carries, when it was planned
 };
 
-// How strongly a carrier's speed has changed lately.
+// A carrier that may have changed its speed lately.
 struct Unsteady {
   std::uint32_t carrier = 0;
-  double acceleration = 0;  // mm/s² or rad/s²
+  double left_s = 0;  // until it counts as steady
 };
 
 // A piece of path in the still world.

@@ -258,8 +258,7 @@ kinematics::Reason AxesOn(const Context& c, const State& s, const Stretch& stret
   }
   const KinematicState along = {way, 1, 0};
   const bool carried = IsCarried(c.ahead, stretch);
-  const path::MovingFrame tool =
-      carried ? ToolThen(c, stretch, along, CarriersThen::kStand) : path::At(stretch.segment, way);
+  const path::MovingFrame tool = carried ? ToolThen(c, stretch, along, true) : path::At(stretch.segment, way);
   return AxesFor(c, s, stretch, tool, along, near, motion);
 }
 
@@ -271,8 +270,7 @@ std::uint64_t FailuresOn(const Context& c, const State& s, const Stretch& stretc
   for (std::size_t k = c.kinematics->count; k < kMaxAxes; ++k) from[k] = behind[k - c.kinematics->count];
   const KinematicState along = {way, 1, 0};
   const bool carried = IsCarried(c.ahead, stretch);
-  const path::MovingFrame tool =
-      carried ? ToolThen(c, stretch, along, CarriersThen::kStand) : path::At(stretch.segment, way);
+  const path::MovingFrame tool = carried ? ToolThen(c, stretch, along, true) : path::At(stretch.segment, way);
   return FailuresAt(c, s, tool.GetFrame(), reason, from).Detail(c.number);
 }
 
@@ -322,26 +320,27 @@ trajectory::PathSlopes SlopesOf(const Context& c, const kinematics::JointMotion&
 }
 
 // What is left of the limits for each quantity: carriers take their part, q = q_s v + q_t, and in the accelerations
-// 2 q_st v + q_tt besides what the path asks for; `changes` is what they take more when their speed changes.
+// 2 q_st v + q_tt besides what the path asks for. Unsteady carriers may be braked together with the path: then all axes
+// and quantities keep as much as the one that carriers take most of.
 void Reserve(const Context& c, const trajectory::PathSlopes& moving, const trajectory::PathSlopes& resting,
-             const trajectory::PathCoordinateValues& changes, trajectory::PathPoint& point) {
+             bool unsteady, trajectory::PathPoint& point) {
   const trajectory::CoordinateLimits& limits = c.ahead.window.limits();
   const auto left = [](double taken) { return 1 - std::min(taken, kMostReserve); };
   for (int round = 0; round < kReserveRounds; ++round) {
     const double speed = std::sqrt(trajectory::SquareAt(point, limits, 1));
-    double fastest = 0;
+    double most = 0;
     for (std::size_t k = 0; k < limits.count; ++k) {
       const trajectory::CoordinateLimits::One& of = limits.of[k];
       const double cross = 0.5 * (moving.second[k] - point.slopes.second[k] - resting.second[k]);
       const double velocity = kBeltChange * std::abs(resting.first[k]) / of.velocity;
       const double bend = kBeltChange * (2 * std::abs(cross) * speed + std::abs(resting.second[k])) / of.acceleration;
-      const double change = kBeltChange * changes[k] / of.acceleration + kBegins * velocity;
       // The jerk of an axis that bends what carries is not known.
-      const double unknown = bend > kBends ? std::max(velocity, bend) : 0;
-      point.left[k] = {left(velocity), left(bend + change), left(change + unknown)};
-      fastest = std::max(fastest, velocity);
+      const double jerk = bend > kBends ? std::max(velocity, bend) : kBegins * velocity;
+      point.left[k] = {left(velocity), left(bend + kBegins * velocity), left(jerk)};
+      most = std::max({most, velocity, bend});
+      c.ahead.load = std::max(c.ahead.load, velocity);
     }
-    c.ahead.load = std::max(c.ahead.load, fastest);
+    if (unsteady) point.left.fill({left(most), left(most), left(most)});
   }
 }
 
@@ -359,24 +358,18 @@ kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& str
   }
   const bool carried = IsCarried(c.ahead, stretch);
   const KinematicState along = {way, 1, 0}, resting = {way, 0, 0};
-  point.slopes =
-      SlopesOf(c, motion, carried ? ToolThen(c, stretch, along, CarriersThen::kStand) : path::At(stretch.segment, way));
+  point.slopes = SlopesOf(c, motion, carried ? ToolThen(c, stretch, along, true) : path::At(stretch.segment, way));
   if (!carried) return reason;
-  std::array<trajectory::PathSlopes, 3> with;
-  const auto take = [&](std::size_t i, const KinematicState& one, CarriersThen carriers) {
-    const path::MovingFrame tool = ToolThen(c, stretch, one, carriers);
+  std::array<trajectory::PathSlopes, 2> with;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const KinematicState& one = i == 0 ? along : resting;
+    const path::MovingFrame tool = ToolThen(c, stretch, one, false);
     kinematics::JointMotion moved;
     reason = AxesFor(c, s, stretch, tool, one, motion.position, moved);
-    if (reason == kinematics::Reason::kNone) with[i] = SlopesOf(c, moved, tool);
-    return reason == kinematics::Reason::kNone;
-  };
-  trajectory::PathCoordinateValues changes{};
-  if (!take(0, along, CarriersThen::kGoOn) || !take(1, resting, CarriersThen::kGoOn)) return reason;
-  if (IsUnsteady(c, stretch)) {
-    if (!take(2, resting, CarriersThen::kSpeedUp)) return reason;
-    for (std::size_t k = 0; k < changes.size(); ++k) changes[k] = std::abs(with[2].second[k] - with[1].second[k]);
+    if (reason != kinematics::Reason::kNone) return reason;
+    with[i] = SlopesOf(c, moved, tool);
   }
-  Reserve(c, with[0], with[1], changes, point);
+  Reserve(c, with[0], with[1], IsUnsteady(c, stretch), point);
   return reason;
 }
 

@@ -267,8 +267,8 @@ bool IsClosed(const Context& c, const Stretch& stretch, double way, const trajec
   if (stretch.joints) {
     s.refused = TakenOf(closed, s, velocity, nullptr, kTowardsAlong);
   } else {
-    const path::MovingFrame tool = IsCarried(c.ahead, stretch) ? ToolThen(c, stretch, {way, 1, 0}, CarriersThen::kStand)
-                                                               : path::At(stretch.segment, way);
+    const path::MovingFrame tool =
+        IsCarried(c.ahead, stretch) ? ToolThen(c, stretch, {way, 1, 0}, true) : path::At(stretch.segment, way);
     s.refused = TakenOf(closed, s, velocity, &tool, kTowardsAlong);
   }
   return s.refused.any();

@@ -14,8 +14,8 @@ namespace {
 // has no effect yet, or all of it.
 constexpr double kOfPlace = 1e-14;
 constexpr double kLeastRounded = 1e5;  // mm
-constexpr double kForgets_s = 1.5;     // how a carrier's speed changed
-constexpr double kSteady = 1e-3;       // mm/s² or rad/s²
+constexpr double kUnsteady_s = 3;      // after a carrier has changed its speed
+constexpr double kSteady = 1e-3;       // mm/s² or rad/s²; a change that is less is none
 
 // A motion over the way, as one over time.
 MovingFrame InTime(const MovingFrame& over_way, const KinematicState& way) {
@@ -77,21 +77,6 @@ MovingFrame Displaced(const Ride& ride, const kinematics::Carrier& carrier) {
   return kinematics::PoseOn(carrier, ride.cargo.from, kinematics::ToFrame(ride.cargo.lies)) * ride.reference_inverse;
 }
 
-// Of the carrier's speed, lately.
-double AccelerationOf(const Context& c, const Ride& ride) {
-  double most = 0;
-  for (const Unsteady& one : c.ahead.unsteady) {
-    if (ride.cargo.carrier != 0 && one.carrier == ride.cargo.carrier) most = std::max(most, one.acceleration);
-  }
-  return most;
-}
-
-void SpeedUp(double acceleration, kinematics::Carrier& carrier) {
-  carrier.travel.acceleration += acceleration;
-  const double speed = carrier.pose.p.v.Norm();
-  if (speed > 0) carrier.pose.p.dv += carrier.pose.p.v * (acceleration / speed);
-}
-
 template <typename Displacement>
 MovingFrame ToolOn(const LookAhead& ahead, const Stretch& stretch, const KinematicState& way,
                    const Displacement& displacement) {
@@ -136,14 +121,17 @@ void WatchCarriers(const Context& c, const State& s) noexcept {
     if (one.carrier == 0) continue;
     const kinematics::Carrier carrier = c.carriers.At(one.carrier);
     const bool free = carrier.kind == kinematics::CarrierKind::kFree;
-    const double now = free ? carrier.pose.p.dv.Norm() : std::abs(carrier.travel.acceleration);
-    one.acceleration = std::max(now, one.acceleration * (1 - std::min(1.0, c.cycle.period_s / kForgets_s)));
+    const double change = free ? carrier.pose.p.dv.Norm() : std::abs(carrier.travel.acceleration);
+    one.left_s = change > kSteady ? kUnsteady_s : std::max(0.0, one.left_s - c.cycle.period_s);
   }
 }
 
 bool IsUnsteady(const Context& c, const Stretch& stretch) noexcept {
-  return std::max(AccelerationOf(c, RideAt(c.ahead, stretch.from_ride)),
-                  AccelerationOf(c, RideAt(c.ahead, stretch.to_ride))) > kSteady;
+  const std::uint32_t from = RideAt(c.ahead, stretch.from_ride).cargo.carrier;
+  const std::uint32_t to = RideAt(c.ahead, stretch.to_ride).cargo.carrier;
+  return std::ranges::any_of(c.ahead.unsteady, [&](const Unsteady& one) {
+    return one.left_s > 0 && (one.carrier == from || one.carrier == to);
+  });
 }
 
 Frame ReferenceOf(const Ride& ride) noexcept {
@@ -196,17 +184,13 @@ MovingFrame ToolNow(const Context& c, const State& s, const Stretch& stretch, co
   });
 }
 
-MovingFrame ToolThen(const Context& c, const Stretch& stretch, const KinematicState& way,
-                     CarriersThen carriers) noexcept {
+MovingFrame ToolThen(const Context& c, const Stretch& stretch, const KinematicState& way, bool still) noexcept {
   const double length = stretch.to - stretch.from;
   const double x = length > 0 ? std::clamp((way.position - stretch.from) / length, 0.0, 1.0) : 1;
   const double then = std::lerp(stretch.eta_begin, stretch.eta_end, x) - Now(c);
   return ToolOn(c.ahead, stretch, way, [&](std::uint64_t number) {
-    const Ride& ride = RideAt(c.ahead, number);
-    kinematics::Carrier carrier = CarrierOf(c, ride.cargo, std::max(then, 1e-9));
-    if (carriers == CarriersThen::kSpeedUp) SpeedUp(AccelerationOf(c, ride), carrier);
-    const MovingFrame displacement = Displaced(ride, carrier);
-    return carriers == CarriersThen::kStand ? Still(displacement) : displacement;
+    const MovingFrame displacement = DisplacementOf(c, RideAt(c.ahead, number), std::max(then, 1e-9));
+    return still ? Still(displacement) : displacement;
   });
 }
 

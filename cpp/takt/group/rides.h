@@ -42,12 +42,9 @@ MovingFrame DisplacementOf(const Context& c, const Ride& ride, double ahead_s) n
 KinematicState ShareAt(const LookAhead& ahead, const Stretch& stretch, double way) noexcept;
 // The tool on a stretch for a motion along its segment, with what carries it as it is now; clutches included.
 MovingFrame ToolNow(const Context& c, const State& s, const Stretch& stretch, const KinematicState& way) noexcept;
-// The same as it is expected when the tool gets there, if carriers stand then, go on as they do now, or speed up as
-// strongly as they lately did.
-enum class CarriersThen { kStand, kGoOn, kSpeedUp };
-MovingFrame ToolThen(const Context& c, const Stretch& stretch, const KinematicState& way,
-                     CarriersThen carriers) noexcept;
-// Looks how carriers change their speed; in each cycle.
+// The same as it is expected when the tool gets there. `still`: as if carriers stood.
+MovingFrame ToolThen(const Context& c, const Stretch& stretch, const KinematicState& way, bool still) noexcept;
+// Looks whether carriers change their speed; in each cycle.
 void WatchCarriers(const Context& c, const State& s) noexcept;
 // One of those that carry the tool on a stretch has lately changed its speed.
 bool IsUnsteady(const Context& c, const Stretch& stretch) noexcept;

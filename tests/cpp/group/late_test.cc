@@ -171,7 +171,7 @@ TEST_P(Late, PropertyInterrupts) {
   const Sum sum = Go(GetParam(), true);
   const bool scara = GetParam() == "SCARA";
   EXPECT_LE(sum.late, Trials(scara ? 6 : 2, 1));
-  EXPECT_LE(sum.worst, scara ? 15 : 10);
+  EXPECT_LE(sum.worst, 10);
   EXPECT_GE(sum.done, Trials(scara ? 15 : 25, 1));
 }
 
