@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-sys.path.insert(0, str(Path(__file__).parents[1]))  # tools
+sys.path.insert(0, str(Path(__file__).parent.parent))  # tools
 sys.path.insert(0, str(Path(__file__).parent))
 from starved import Host
 

@@ -64,7 +64,7 @@ def run_beside_a_busy_program(folder: Path, probe: str, priority: int) -> str:
         shutil.copy("/bin/sleep", folder / program)
     (folder / "test_probe.py").write_text(probe)
     (folder / "conftest.py").write_text(
-        (TESTS / "conftest.py").read_text().replace("Path(__file__).parent", repr(str(TESTS)))
+        (TESTS / "conftest.py").read_text().replace("Path(__file__).parent", f"Path({str(TESTS)!r})")
     )
 
     busy = subprocess.Popen([sys.executable, "-c", BUSY, str(priority)], preexec_fn=use_one_processor)
