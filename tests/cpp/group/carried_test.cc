@@ -57,7 +57,7 @@ TEST(Carried, TakesAsLongAsAtRest) {
         std::cout << robot.name << ", " << name << " at " << speed << " mm/s: " << time / rest
                   << " of the time at rest\n";
         const bool fast = robot.name == "gantry" && std::abs(speed) == 1000 && (name == "along" || name == "back");
-        EXPECT_LE(time, (fast ? 1.2 : 1.02) * rest);
+        EXPECT_LE(time, (fast ? 1.2 : places.size() > 1 ? 1.03 : 1.02) * rest);
       }
     }
   }
