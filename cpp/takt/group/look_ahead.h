@@ -35,10 +35,10 @@ struct Ride {
   double speed = 0;  // of what carries, when it was planned
 };
 
-// A carrier that may have changed its speed lately.
+// A carrier of a product coordinate system, and whether its speed has changed in the last seconds.
 struct Unsteady {
   std::uint32_t carrier = 0;
-  double left_s = 0;  // until it counts as steady
+  double left_s = 0;  // until it counts as steady; 0: it does
 };
 
 // A piece of path in the still world.
@@ -97,7 +97,7 @@ struct LookAhead {
   std::array<Ride, kRides> rides{};                  // a ring
   std::array<Unsteady, kProductSystems> unsteady{};  // carriers of product coordinate systems
   std::uint64_t end_ride = 0;                        // of the last stretch
-  std::uint64_t from_ride = 0;                       // from which the move that is planned goes over
+  std::uint64_t from_ride = 0;                       // of the start of the move being planned
   std::uint64_t rides_end = 1;                       // behind the newest one
   double end_eta = 0;                                // when the tool is expected there
   double next_time_s = 0;                            // how long the next stretch is expected to take; 0: not known yet

@@ -17,8 +17,9 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kBeltChange = 1.1;
 constexpr double kMostReserve = 0.9;  // of a limit
 constexpr int kReserveRounds = 3;
-constexpr double kBegins = 0.1;  // of the share of the velocity: carriers that go on evenly may begin to change it
-constexpr double kBends = 1e-6;  // of an acceleration: less is rounding
+constexpr double kBegins =
+    0.1;  // of the velocity share, kept of acceleration and jerk for a steady carrier that begins to change its speed
+constexpr double kBends = 1e-6;  // of the acceleration limit: less is rounding
 
 bool Given(double number) {
   return !std::isnan(number);
@@ -319,9 +320,9 @@ trajectory::PathSlopes SlopesOf(const Context& c, const kinematics::JointMotion&
   return slopes;
 }
 
-// What is left of the limits for each quantity: carriers take their part, q = q_s v + q_t, and in the accelerations
-// 2 q_st v + q_tt besides what the path asks for. Unsteady carriers may be braked together with the path: then all axes
-// and quantities keep as much as the one that carriers take most of.
+// Computes the share of each limit that the path may use: carriers use q_t of the velocity, q = q_s v + q_t, and
+// 2 q_st v + q_tt of the acceleration. An unsteady carrier may have to be braked together with the path: then the least
+// share over all axes and quantities holds for every one of them.
 void Reserve(const Context& c, const trajectory::PathSlopes& moving, const trajectory::PathSlopes& resting,
              bool unsteady, trajectory::PathPoint& point) {
   const trajectory::CoordinateLimits& limits = c.ahead.window.limits();
@@ -334,7 +335,7 @@ void Reserve(const Context& c, const trajectory::PathSlopes& moving, const traje
       const double cross = 0.5 * (moving.second[k] - point.slopes.second[k] - resting.second[k]);
       const double velocity = kBeltChange * std::abs(resting.first[k]) / of.velocity;
       const double bend = kBeltChange * (2 * std::abs(cross) * speed + std::abs(resting.second[k])) / of.acceleration;
-      // The jerk of an axis that bends what carries is not known.
+      // Where the axes are not linear in the travel of the carrier, its part of the jerk is not known.
       const double jerk = bend > kBends ? std::max(velocity, bend) : kBegins * velocity;
       point.left[k] = {left(velocity), left(bend + kBegins * velocity), left(jerk)};
       most = std::max({most, velocity, bend});

@@ -14,8 +14,8 @@ namespace {
 // has no effect yet, or all of it.
 constexpr double kOfPlace = 1e-14;
 constexpr double kLeastRounded = 1e5;  // mm
-constexpr double kUnsteady_s = 3;      // after a carrier has changed its speed
-constexpr double kSteady = 1e-3;       // mm/s² or rad/s²; a change that is less is none
+constexpr double kUnsteady_s = 3;      // after a change of speed a carrier counts as unsteady
+constexpr double kSteady = 1e-3;       // mm/s² or rad/s²: less is rounding
 
 // A motion over the way, as one over time.
 MovingFrame InTime(const MovingFrame& over_way, const KinematicState& way) {

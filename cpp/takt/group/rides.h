@@ -44,9 +44,9 @@ KinematicState ShareAt(const LookAhead& ahead, const Stretch& stretch, double wa
 MovingFrame ToolNow(const Context& c, const State& s, const Stretch& stretch, const KinematicState& way) noexcept;
 // The same as it is expected when the tool gets there. `still`: as if carriers stood.
 MovingFrame ToolThen(const Context& c, const Stretch& stretch, const KinematicState& way, bool still) noexcept;
-// Looks whether carriers change their speed; in each cycle.
+// Updates LookAhead::unsteady; once per cycle.
 void WatchCarriers(const Context& c, const State& s) noexcept;
-// One of those that carry the tool on a stretch has lately changed its speed.
+// Returns whether a carrier of the stretch has changed its speed within the last seconds.
 bool IsUnsteady(const Context& c, const Stretch& stretch) noexcept;
 
 // The same after so much time.

@@ -496,8 +496,8 @@ void PathCourse::SetLimits(std::size_t end) noexcept {
     bool moves = false;
     for (std::size_t i = 0; i <= end && !moves; ++i) moves = nodes_[i].at.slopes.first[k] != 0;
     if (!moves || !(std::isfinite(of.velocity) || std::isfinite(of.acceleration) || std::isfinite(of.jerk))) continue;
-    const double share = kCoordinateShare;
-    limits_.push_back({share * of.velocity, share * of.acceleration, share * of.acceleration, share * of.jerk});
+    const double a = kCoordinateShare * of.acceleration;
+    limits_.push_back({kCoordinateShare * of.velocity, a, a, kCoordinateShare * of.jerk});
     of_.push_back(k);
   }
   rates_.resize(limits_.size());

@@ -45,7 +45,7 @@ struct PathSlopes {
   std::array<double, kPathCoordinates> second{};
 };
 
-// Of a coordinate's limits, what a motion along the path may use: the rest is taken by what moves the path itself.
+// Shares of a coordinate's limits that the motion along the path may use; carriers of the path use the rest.
 struct Left {
   double velocity = 1;
   double acceleration = 1;
