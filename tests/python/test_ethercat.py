@@ -8,6 +8,7 @@ import random
 import signal
 import struct
 import subprocess
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -76,6 +77,22 @@ def test_axes_move_over_ethercat_as_they_should(tmp_path: Path) -> None:
         x1.power(enable=False).wait()
         x1.power().wait()
         x1.move_absolute(position=0.0).wait()
+
+
+def test_an_engine_starts_while_frames_get_lost(tmp_path: Path) -> None:
+    """AX-87: in simulated time emulated drives are told whose clock is theirs; a busy wire delays that, no more."""
+    url = new_url()
+    text = machine(url, 1)
+    with emulated(text, tmp_path) as emulation, run(text, url):
+        tell(emulation, "lose 100")
+        mended = threading.Timer(0.4, tell, (emulation, "lose 0"))
+        mended.start()
+        with takt.Engine(text) as engine:
+            x1 = engine.axis("x1")
+            x1.power().wait()
+            x1.move_absolute(position=1.0).wait()
+            assert x1.error == 0
+        mended.join()
 
 
 def test_cables_supply_and_lost_frames_in_motion(tmp_path: Path) -> None:

@@ -43,6 +43,7 @@ from takt.errors import TaktError
 SIGNS_MISSING: Final = 3  # of heartbeat_s: the watchdog of a slave's outputs
 OPERATIONAL_WITHIN_S: Final = 5.0
 STATE_WITHIN_S: Final = 2.0
+CLOCK_WITHIN_S: Final = 5.0  # emulated slaves may share a busy host
 REGISTERS_US: Final = 3000  # how long the frame of a register may be under way
 LOOK_AGAIN_S: Final = 0.05  # at slaves that are not in operation
 RING_CYCLES: Final = 20  # that a ring is broken, before it is said
@@ -622,7 +623,7 @@ class EthercatBus(FieldBus):
         with self._wire.lock:
             for one in self._slaves:
                 if one.emulated and one.operational:
-                    one.sdo.write(*CLOCK, CLOCK_IS_SYNC if simulated else 0, 8)
+                    one.sdo.patience(CLOCK_WITHIN_S).write(*CLOCK, CLOCK_IS_SYNC if simulated else 0, 8)
             self._simulated = simulated  # the watcher, which waits for the lock, goes by it
 
     def exchange(self, told: Mapping[str, drive.SetPoint], *, real_time: bool) -> Mapping[str, drive.Measured | None]:

@@ -11,6 +11,7 @@ import socket
 import stat
 import struct
 import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
@@ -242,9 +243,16 @@ class Sdo(Objects):
     """Objects of the slave at a position, from 1."""
 
     def __init__(self, wire: Wire, slave: Any, position: int) -> None:
-        self._pysoem, self._slave = wire.pysoem, slave
+        self._wire, self._slave = wire, slave
         self.position = position
         self.called = f"slave {position}"
+        self._within_s = 0.0
+
+    def patience(self, timeout_s: float) -> Sdo:
+        """A question without an answer is put again for so long."""
+        patient = Sdo(self._wire, self._slave, self.position)
+        patient._within_s = timeout_s
+        return patient
 
     def upload(self, what: str, index: int, subindex: int) -> bytes:
         return bytes(self._asked(what, lambda: self._slave.sdo_read(index, subindex)))
@@ -253,8 +261,11 @@ class Sdo(Objects):
         self._asked(what, lambda: self._slave.sdo_write(index, subindex, data))
 
     def _asked(self, what: str, question: Callable[[], Any]) -> Any:
-        pysoem = self._pysoem
-        for _ in range(QUESTIONS):
+        pysoem = self._wire.pysoem
+        end_s = time.monotonic() + self._within_s
+        asked = 0
+        while asked < QUESTIONS or time.monotonic() < end_s:
+            asked += 1
             try:
                 return question()
             except pysoem.SdoError as error:

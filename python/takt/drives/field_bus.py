@@ -15,7 +15,7 @@ from takt.drives.cia402 import MODE_NAMES, Mode
 from takt.drives.homing import DriveHoming, watch_of
 from takt.drives.probe import ProbeLatch, latches
 from takt.drives.scaling import Scaling
-from takt.drives.sdo import Objects
+from takt.drives.sdo import Objects, SdoError
 from takt.errors import TaktError
 
 ANSWERS_WITHIN: Final = 0.9  # of a period, in real time
@@ -103,7 +103,10 @@ class FieldBus(drive.Bus):
                 f"{metal[0].named} is no emulated drive and has a clock of its own, but the engine runs in simulated "
                 f"time; run taktd --pace real"
             )
-        self._tell_clock(not real_time)
+        try:
+            self._tell_clock(not real_time)
+        except SdoError as error:
+            raise TaktError(f"{self.bus_name}: {error}") from None
         self._simulated = not real_time
 
     def _answers_within_s(self, real_time: bool) -> float:
