@@ -71,20 +71,23 @@ struct ProbeState {
   std::array<Capture, kCaptures> waiting;  // in the order in which they were given
 };
 
-// sense, once the position is known: looks for the edge and captures. Where between its two samples the axis was at the
-// edge follows from the edge's time, along the curve of the set point.
+// Stage sense, after the position: finds edges and captures. The position at an edge is interpolated between two
+// samples at its time stamp, with the acceleration of the set point; extrapolated by the actual velocity where the
+// samples are not one cycle apart.
 void SenseProbe(const Context& context, const ServoInputs& inputs, State& state) noexcept;
 
-// The sample before is too long ago: edges since then are not looked for.
+// Discards the previous sample after a gap: edges since then are ignored.
 void ForgetSample(const ServoInputs& inputs, ProbeState& probe) noexcept;
 
-// move, before the set point: lets a GT_Touch take control, or slows down.
+// Stage move, before the set point: gives control to a GT_Touch once its edge has come, and reports the errors of its
+// motion; lowers the velocity of a motion in progress, or restores it.
 void FollowProbe(const Context& context, State& state) noexcept;
 
 // Ends the command with this ticket that waits for the probe, as aborted. False: there is none.
 bool EndProbing(const Context& context, Ticket ticket, State& state) noexcept;
 
-// Errors: kPowerOff, kErrorStop (GT_Touch), kBufferFull (MC_TouchProbe).
+// Errors. TouchProbe: kBufferFull where kCaptures commands wait. Touch, in capture mode only: kErrorStop, kPowerOff,
+// kState (the axis follows another one).
 Status CarryOut(const Context& context, Ticket ticket, const TouchProbe& command, State& state) noexcept;
 Status CarryOut(const Context& context, Ticket ticket, const AbortTrigger& command, State& state) noexcept;
 Status CarryOut(const Context& context, Ticket ticket, const Touch& command, State& state) noexcept;

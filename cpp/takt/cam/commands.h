@@ -42,12 +42,12 @@ struct DropCam {  // made at run time
   Name cam;
 };
 
-// The builder's result; given by the engine alone.
 struct ReadCam {                          // publishes a CamPiece; done with the number of points or segments in all
   Name cam{};                             // empty: by number
   std::optional<std::uint64_t> number{};  // of the cam
   std::uint32_t first = 0;                // of its points or segments, from 0
 };
+// Result of the builder, which works off the cycle; issued by the engine only, never by a client.
 struct CamBuilt {
   std::uint64_t number = 0;  // of the draft
   bool good = false;
@@ -74,8 +74,8 @@ enum class MakingProblem : std::uint8_t {
   kFaulty,           // Build found errors
   kNoDraft,          // no draft has this name
   kBusy,             // all drafts are being built
-  kTooManyPoints,    //
-  kTooManySegments,  //
+  kTooManyPoints,    // more than kMaxPoints in the draft
+  kTooManySegments,  // more than kMaxSegments in the draft
   kMixed,            // points and segments in one draft
   kOutOfOrder,       // `first` is not the number of those in the draft
   kIncomplete,       // a piece was refused
@@ -88,7 +88,7 @@ enum class MakingProblem : std::uint8_t {
 // What a refused command reports as its value: the problem, and what was expected and found where both are numbers.
 double CodeOf(MakingProblem problem, std::size_t expected = 0, std::size_t found = 0) noexcept;
 MakingProblem ProblemOf(double code) noexcept;
-// For people; empty: nothing is wrong. Not for the cycle.
+// Returns the message for a user; empty for kNone. Not for the cycle.
 std::string SentenceOf(double code);
 
 void describe(Description<BeginCam>&);

@@ -93,7 +93,6 @@ bool MustWait(const Conversion& c, double factor) {
 }
 
 ScalingMode ModeOf(const ConversionTarget& target) {
-  if (target.at_once) return ScalingMode::kAbsolute;
   return target.with_master && target.scaling_mode == ScalingMode::kAbsolute ? ScalingMode::kRampAbsolute
                                                                              : target.scaling_mode;
 }
@@ -159,9 +158,7 @@ void Approach(const ConversionTarget& target, const Cycle& cycle, const Conversi
               trajectory::Planner& planner, Conversion& c) noexcept {
   if (target.factor != c.factor) TakeFactor(target, cycle, in, planner, c);
   if (target.offset == c.offset) return;
-  if (target.at_once) {
-    c.offset = target.offset;
-  } else if (target.offset_mode != OffsetMode::kXZero) {
+  if (target.offset_mode != OffsetMode::kXZero) {
     TakeOffset(target, cycle, in, target.with_master || target.offset_mode == OffsetMode::kRampIn, planner, c);
   }
 }

@@ -1,5 +1,4 @@
-// Scaling and offset, on the way from the master to X and from Y to the slave (the manual's 3.17 and 3.18): pure, but
-// for the ramps it plans.
+// Scaling and offset from the master to X and from Y to the slave (Flex Cam manual, 3.17 and 3.18).
 //
 //   out = factor * (in - in_zero) + out_zero + offset + ramp
 #pragma once
@@ -21,12 +20,12 @@ struct Conversion {
   double in_zero = 0;
   double out_zero = 0;
   Ramp ramp;
-  // What the ramp takes over: at its begin so much more was in force than is set. What is left of an earlier ramp is
-  // part of it.
+  // At its start the ramp made up for these differences, value in force minus value set; what was left of an earlier
+  // ramp is included.
   double offset_left = 0;
   double factor_left = 0;
-  bool by_speed = false;  // the ramp is one of the speed
-  double ramp_begin = 0;  // its shift then, or the speed of that
+  bool by_speed = false;  // the ramp blends the velocity only, else the position
+  double ramp_begin = 0;  // position shift of the ramp at its start, or its velocity if by_speed
 };
 
 // What is wanted of it, and how it gets there.
@@ -37,35 +36,36 @@ struct ConversionTarget {
   OffsetMode offset_mode = OffsetMode::kXZero;
   trajectory::Limits ramps;  // of the output
   bool with_master = false;  // the output never moves against the input: what would step is ramped, too
-  bool at_once = false;      // nothing follows the output: no modes, no ramps
   double absolute_zero = 0;  // input that absolute scaling counts from
 };
 
+// Returns the output for `in`, ramp included.
 KinematicState Convert(const Conversion& conversion, const Cycle& cycle, const KinematicState& in) noexcept;
-// The input at which the output is `out`, while no ramp is in progress.
+// Returns the input whose output is `out`; in_zero if the factor is 0. Requires: no ramp in progress.
 double InverseOf(const Conversion& conversion, double out) noexcept;
-// Counts from another input; the output stays what it is.
+// Moves the reference point of the input to `in_zero` without changing the output.
 void CountFrom(double in_zero, Conversion& conversion) noexcept;
 
-// The inputs that a conversion's ramps go by: of the cycle before and this one. `ride`: the same, with the sense of the
-// master where the input has another one.
+// The input of a conversion in the previous cycle, for planning ramps. `ride_before`: the same; on the slave's side
+// with velocity and acceleration negated where Y moves against X, so that they have the sense of X.
 struct ConversionInputs {
   KinematicState before;
   KinematicState ride_before;
 };
 
-// Each cycle, before Approach: a ramp that is over is gone. One with the master would come back with it else.
+// Each cycle, before Approach: drops a finished ramp; a master running backwards would otherwise reverse it.
 void EndRamp(const Cycle& cycle, Conversion& conversion) noexcept;
-// Each cycle: takes over what has changed and may be taken over anywhere, from the input of the cycle before on.
+// Each cycle: applies changes of factor and offset whose mode is not kXZero, or starts the ramp to them, from the
+// input of the previous cycle on.
 void Approach(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in,
               trajectory::Planner& planner, Conversion& conversion) noexcept;
-// Where the cam begins or ends, at the input `at`: takes over what waits for that (x_zero).
+// Where the cam begins or ends, at the input `at`: applies the changes whose mode is kXZero.
 void ApproachAtZero(const ConversionTarget& target, double at, const Cycle& cycle, const ConversionInputs& in,
                     trajectory::Planner& planner, Conversion& conversion) noexcept;
 
-// What is in force in this cycle, ramps included, never beyond the value before a ramp and the one that is set for a
-// factor. An offset ramped by itself: the sum. A factor ramped by itself: what the output has of the input (of a ramped
-// speed: its velocity of the input's velocity). Both in one ramp: each has the share of its change that is left of it.
+// Offset and factor in force in this cycle. Only the offset ramped: its setting plus the shift. Only the factor ramped:
+// output by input about in_zero (by_speed: of the velocities), limited to between the old and the new factor. Both:
+// each keeps of its change the share of the ramp that is left.
 double OffsetInForce(const Conversion& conversion, const Cycle& cycle) noexcept;
 double FactorInForce(const Conversion& conversion, const Cycle& cycle, const KinematicState& in) noexcept;
 

@@ -13,16 +13,16 @@
 
 namespace takt::group {
 
-// Along the path; what a move does not say itself.
+// Default limits along the path, for moves that give none of their own; all > 0.
 struct PathLimits {
   double velocity = 0;                   // mm/s
   double acceleration = 0;               // mm/s²
   std::optional<double> deceleration{};  // mm/s²; unset: as acceleration
   double jerk = 0;                       // mm/s³
-  bool planned_ahead = true;             // by laws that are known to rest (trajectory/path_timing.h)
+  bool planned_ahead = true;             // with a stop that is always known (trajectory/path_timing.h)
 };
 
-// Of the tool along X, Y and Z and about them, seen from the world; unset: none but those of the axes.
+// Limits of the TCP along and about each of X, Y and Z of the world frame; unset: only those of the axes apply.
 struct ToolLimits {
   std::optional<double> velocity{};              // mm/s
   std::optional<double> acceleration{};          // mm/s²
@@ -34,22 +34,24 @@ struct ToolLimits {
 
 // The most that jogs may ask for; faster ones are held to it.
 struct JogLimits {
-  // Of the tool centre point, and of its turn, also where axes are jogged; unset: as moves.
+  // Speed of the TCP and angular speed of the tool, also for jogs of axes; unset: the limits of moves.
   std::optional<double> velocity{};          // mm/s
   std::optional<double> angular_velocity{};  // deg/s
-  double axis_factor = 1;                    // of the velocity limits of axes that are jogged themselves
+  double axis_factor = 1;                    // 1e-3 to 1, of the velocity limits of axes that are jogged
 };
 
-// Once in step with what moves: go along whatever it does, or keep the limits of the group and fall out of step.
+// Once in sync with a moving object. kStay: keeps in sync, with the limits of the axes only; kLimited: keeps the limits
+// of the group, and may lose it.
 enum class AfterSync : std::uint8_t { kStay, kLimited };
 
 // How the group follows objects on belts.
 struct TrackingParams {
   AfterSync after_sync = AfterSync::kStay;
-  double tolerance = 0;           // mm (tables: rad) from the object that count as in step; 0: exactly there
-  double tolerance_time_s = 0;    // s, for so long
-  bool override_in_sync = false;  // the override slows down getting into step, too
-  double zones_ahead_s = 0.5;     // s: so long beforehand a zone is taken that the tool is carried into
+  // Largest lag that counts as in sync: along the belt [mm] or table [rad], and of each axis [u] (at least 1e-3 u).
+  double tolerance = 0;
+  double tolerance_time_s = 0;    // for which the lag has to be within that
+  bool override_in_sync = false;  // the override scales getting into sync, too
+  double zones_ahead_s = 0.5;     // 0 to 10: so long before the tool is carried into a zone, it is taken
 };
 
 struct GroupParams {
@@ -78,7 +80,7 @@ struct PathElement {
   ElementShape shape = ElementShape::kLine;
   std::optional<PathPose> to{};                     // where it ends; splines: see points
   std::optional<double> via_x{}, via_y{}, via_z{};  // arc: a point that it goes through
-  std::vector<PathPose> points;                     // spline: what it goes through, the last one is its end
+  std::vector<PathPose> points;                     // spline: from its start (first element) to its end
   std::optional<double> velocity{};                 // mm/s, on this element; unset: that of the command
 };
 

@@ -19,13 +19,14 @@ namespace takt::group {
 
 using kinematics::MovingFrame;
 
-// What carries it, seen from the machine coordinate system; `ahead_s` later, if it goes on as it does now.
+// Returns the carrier of `cargo` relative to the MCS, extrapolated by `ahead_s` [s] as it moves now.
 kinematics::Carrier CarrierOf(const Context& c, const Cargo& cargo, double ahead_s = 0) noexcept;
-// Where the object is, seen from there.
+// Returns the pose of the object in the MCS, extrapolated likewise.
 MovingFrame PlaceOf(const Context& c, const Cargo& cargo, double ahead_s = 0) noexcept;
 
-// The ride that a move to this object, or to a place that stands, begins: another one than that on which the plan
-// ends, in which case it is put behind those that are in use. `arrival_s`: from now, when the tool is expected there.
+// Returns the number of the ride for a move onto `cargo` (carrier 0: at rest in the MCS): end_ride if that is the same,
+// else a new one, prepared in slot rides_end and not in use before the move is joined. `arrival_s`: time until the tool
+// is expected there [s].
 std::uint64_t RideTo(const Context& c, const Cargo& cargo, double arrival_s) noexcept;
 // Where its object lies in the still world.
 Frame ReferenceOf(const Ride& ride) noexcept;
@@ -33,29 +34,31 @@ Frame ReferenceOf(const Ride& ride) noexcept;
 // A stretch whose tool is not simply where its segment says.
 bool IsCarried(const LookAhead& ahead, const Stretch& stretch) noexcept;
 bool Moves(const Ride& ride) noexcept;
-// How fast what carries it travels now, mm/s or rad/s; 0: nothing does.
+// Returns the present velocity of the carrier: of belts [mm/s] and tables [rad/s] signed, of free carriers the norm
+// [mm/s]; 0 without one.
 double SpeedOf(const Context& c, const Cargo& cargo) noexcept;
 // From a place of the still world to where it is, for a stretch that is on one ride only.
 MovingFrame DisplacementOf(const Context& c, const Ride& ride, double ahead_s) noexcept;
 
-// How far a stretch has gone over from its first ride to its second one, with its derivatives by the way.
+// Returns the weight w of the second ride (0 to 1) at the arc length `way` [mm] of the segment, with its first and
+// second derivative by arc length.
 KinematicState ShareAt(const LookAhead& ahead, const Stretch& stretch, double way) noexcept;
 // The tool on a stretch for a motion along its segment, with what carries it as it is now; clutches included.
 MovingFrame ToolNow(const Context& c, const State& s, const Stretch& stretch, const KinematicState& way) noexcept;
-// The same as it is expected when the tool gets there. `still`: as if carriers stood.
+// The same with carriers extrapolated to the expected arrival at `way.position`. `still`: their velocities set to 0.
 MovingFrame ToolThen(const Context& c, const Stretch& stretch, const KinematicState& way, bool still) noexcept;
 // Updates LookAhead::unsteady; once per cycle.
 void WatchCarriers(const Context& c, const State& s) noexcept;
-// Returns whether a carrier of the stretch has changed its speed within the last seconds.
+// Returns whether a carrier of the stretch has accelerated within the last 3 s (WatchCarriers).
 bool IsUnsteady(const Context& c, const Stretch& stretch) noexcept;
 
-// The same after so much time.
+// The same with carriers extrapolated by `ahead_s` [s].
 MovingFrame ToolIn(const Context& c, const Stretch& stretch, const KinematicState& way, double ahead_s) noexcept;
 
 using SeeCarrier = kinematics::Carrier (*)(const void* owner, std::uint64_t ride, const kinematics::Carrier& carrier);
 MovingFrame ToolSeen(const Context& c, const Stretch& stretch, const KinematicState& way, SeeCarrier see,
                      const void* owner) noexcept;
-// The same with carriers as somebody else sees them.
+// The same with each carrier replaced by see(ride, carrier).
 template <typename See>
 MovingFrame ToolWith(const Context& c, const Stretch& stretch, const KinematicState& way, const See& see) noexcept {
   const auto seen = [](const void* owner, std::uint64_t ride, const kinematics::Carrier& carrier) {
@@ -64,9 +67,10 @@ MovingFrame ToolWith(const Context& c, const Stretch& stretch, const KinematicSt
   return ToolSeen(c, stretch, way, seen, &see);
 }
 
-// Expected times, s from the start of the engine.
+// Returns the time since the start of the engine [s], as in eta_begin and eta_end.
 double Now(const Context& c) noexcept;
-// How long a motion from rest to rest takes, about.
+// Returns how long a motion from rest to rest over `length` takes without regard to bends [s]; 0 if it cannot be
+// planned.
 double TimeFor(const Context& c, double length, const trajectory::AlongPath& limits) noexcept;
 
 }  // namespace takt::group

@@ -1,13 +1,13 @@
 // Drives in other processes over LCM (EN-26, AX-87): takes the engine's set points to them and brings back what they
 // measured. Sockets are touched by threads of its own, or between the cycles of simulated time; never by the cycle.
 //
-// Real time: two threads. The newest set point of each drive goes out, what comes in waits for the next cycle; the
-// engine goes by how old it is.
+// Real time: two threads. The newest set point of each drive is sent; feedback is queued for the next cycle, where the
+// engine judges its age.
 //
-// Simulated time: a lock step, so that a run comes out the same each time. No thread; who calls the cycle asks Ready
-// before each. Set points whose answer is missing are sent again after a while, so that messages lost on the way and
-// plants that start later do no harm. A cycle is waited for as long as the machine file says, then it goes on without
-// the answer; once a drive is lost for that, it is waited for no more until something comes from it.
+// Simulated time: in lock step, so that runs are reproducible. No thread; the caller of the cycle calls Ready before
+// each. Unanswered set points are sent again, so that lost messages and plants that start later do no harm. A cycle
+// waits external.answer_within_s, then runs without the answer; a drive that is lost for that is not waited for until
+// it answers again.
 #pragma once
 
 #include <atomic>
@@ -49,8 +49,8 @@ class Drives {
   // Simulated time, between two cycles. False: not all drives have answered yet; it has waited a little.
   bool Ready();
 
-  // Real time: how much later [ns] the cycles ought to begin for the clock of a bus, as the newest answer says; each is
-  // told once, 0: nothing new. The first drive that says anything speaks for all.
+  // Real time: returns and clears by how much later the cycles should begin for the clock of a bus [ns], +-1e9; 0:
+  // nothing new. From the newest answer; only the first drive that sends a value other than 0 counts.
   std::int64_t TakeLaterNs();
 
  private:

@@ -50,12 +50,12 @@ class Publisher {
   void Run();
   // True if anything was there.
   bool Drain();
-  // Whatever a component published: all of it to the log, what is due to the network.
+  // Takes the published states of all components: every one to the log, those that are due to the network.
   template <typename... Outputs>
   bool DrainStates(const std::tuple<Outputs...>* kinds);
   template <typename Outputs>
   bool DrainStatesOf(std::vector<Channel>& channels);
-  // Puts them to those of its track; once all are there, sends them.
+  // Appends points to the shape of their track; sends it once it is complete.
   void AddPlaces(const engine::TrackPlaces& places);
   void PublishReplies();
   void PublishMachine();
@@ -82,12 +82,12 @@ class Publisher {
   const Authentication* const authentication_;
 
   std::vector<std::vector<Channel>> state_channels_;  // by kind, by component
-  std::size_t first_kind_ = 0;                        // that has its turn first
+  std::size_t first_kind_ = 0;                        // round robin: the kind drained first
   std::vector<Channel> object_channels_;              // by belt
   std::vector<Channel> trail_channels_;               // by mover
   std::vector<Channel> shape_channels_;               // by track
-  std::vector<msgs::track_shape> shapes_;             // whole ones, for who comes later
-  std::vector<msgs::track_shape> coming_;             // of which some places are there
+  std::vector<msgs::track_shape> shapes_;             // complete, by track; sent again for later subscribers
+  std::vector<msgs::track_shape> coming_;             // incomplete, by track
   Channel engine_channel_, machine_channel_, feedback_channel_, cam_channel_;
   std::int64_t next_machine_ns_ = 0;
   std::int64_t next_flush_ns_ = 0;  // of the log

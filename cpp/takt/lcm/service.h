@@ -30,9 +30,9 @@ struct ServiceOptions {
 
 class Service {
  public:
-  // Works from now on; the engine must outlive it, and its cycle must have ended before it goes. Null, and `problem`
-  // says in one line why, when the network cannot be joined or the log cannot be written,
-  // or is a file that is no log.
+  // Serves from now on. Requires: the engine outlives it, and its cycle has ended before this is destroyed. Null, and
+  // `problem` says in one line why, when the network cannot be joined or the log cannot be written, or is a file that
+  // is no log.
   static std::unique_ptr<Service> Open(engine::Engine& engine, const ServiceOptions& options, std::string& problem);
 
   // Publishes what is still queued and closes the log. Takes as long as the log takes to be written.

@@ -1,5 +1,5 @@
-// Movers on a surface made of parts (planar/parts.h): coordinates with a reference, the part under a mover, and that it
-// goes nowhere else. Without parts there is nothing to hinder it.
+// Movers on a surface made of parts (planar/parts.h): coordinates with a reference, the part under a mover, and the
+// check that a mover stays on enabled stators. Without parts every check passes.
 #pragma once
 
 #include <array>
@@ -24,57 +24,58 @@ struct Cover {
 
   std::span<const planar::Area> all() const noexcept { return {areas.data(), count}; }
 };
-// From now on: it stands there or goes on as planned, or stops at once where set points come from outside.
+// From now on: along the planned motion; with set points from outside, along a stop with maximum dynamics.
 Cover CoverOf(const Context& c, const State& s) noexcept;
-// If it had to stop from a set point, as after a fault.
+// Along a stop with maximum dynamics from the set point `at`, as after a fault; empty without parts.
 Cover CoverOfStop(const Context& c, const SetPoint& at) noexcept;
-// On a track, and by so much off its place there at the end of this cycle: between these places its middle stays until
-// it rests, and on its way back to the track.
+// Of a mover displaced from its track by `off` [mm] at the end of this cycle: the hull of its centre until it rests,
+// its way back onto the track included.
 struct PlacesOff {
   std::array<planar::Place, 4> places;
   double margin = 0;  // mm, round these
 };
 PlacesOff PlacesOffTrack(const Context& c, const PlaneState& off) noexcept;
 Cover CoverOf(const Context& c, const State& s, const PlacesOff& places) noexcept;
-// If X and Y went so, and C so.
+// Along a planned motion of X and Y with a rotation of C.
 Cover CoverOf(const Context& c, const PlaneMove& move, const CoordinateMove& turn) noexcept;
 
-// What a mover covers (`kind`: an area without places) while it goes so, from a time (s) on.
+// What a mover covers (`kind`: an area without places) along a motion, from the time t [s] on.
 Cover CoverOf(const planar::Area& kind, const PlaneMotion& motion, double t) noexcept;
 
-// Why the mover must not cover that: kOffStators, kPartDisabled.
+// Returns kOffStators or kPartDisabled where the cover, that of planets of its formation included, leaves the stators
+// or touches a part that is neither enabled nor about to be; else kNone.
 ErrorId WhyNotOn(const Context& c, const State& s, const Cover& cover) noexcept;
 
-// The same of the way of a mover along its tracks, turned as it is and as `turn` has it: to its target, or to where it
-// stops; of one that goes along with a master, anywhere on its route.
+// The same for the route of a mover on tracks (planar::WayOf), with its present angle and those of `turn`.
 ErrorId WhyNotAlong(const Context& c, const State& s, const planar::Rider& rider, const CoordinateMove& turn) noexcept;
-// Whether that way leads over a part.
+// Returns whether the route of a mover on a track leads over the part; off tracks false.
 bool LeadsOver(const Context& c, const State& s, std::uint32_t part) noexcept;
 
-// The part below it cannot take part in anything: it is on its way.
+// Returns whether the part under the mover is changing its position; without a part false.
 bool IsAway(const Context& c, const State& s) noexcept;
 bool IsPartReady(const Context& c, const State& s) noexcept;  // enabled, or there are no parts
 bool IsPartSound(const Context& c, const State& s) noexcept;  // without a fault
 bool CanPartBeReady(const Context& c, const State& s) noexcept;
 
-// Nothing of it moves, or is going to; and its track does not lead it on.
+// Returns whether the mover rests, has no pending move and is not joining or leaving a track.
 bool IsStill(const Context& c, const State& s) noexcept;
-// Parts in its coordinate system are enabled for it: until it is disabled, or has a fault that leads there.
+// Returns whether the parts in the coordinate system of the mover must be enabled: not while it is Disabled, or has a
+// fault that leads there.
 bool NeedsParts(const State& s) noexcept;
 
 // After each step: which part it is on.
 void Locate(const Context& c, State& s) noexcept;
 
-// Its part has gone so far, or the mover is set there; it rests.
+// Shifts set and actual position from one spot to the other, as the part under the mover has. Requires: at rest.
 void Carry(const Context& c, const planar::Spot& from, const planar::Spot& to, Inputs& inputs, State& s) noexcept;
 
-// What a mover covers that stands there, turned so (deg).
+// Returns the area of a mover at `place` [mm] with the angle `c` [deg].
 planar::Area AreaAt(const MoverParams& params, const planar::Place& place, double c) noexcept;
-// Where the mover is when it stands so, with this reference: the coordinate system and the place in that. Why it must
-// not: kReference, kOffStators.
+// Resolves a pose given relative to `reference` into the coordinate system and the place in that. Returns kNone,
+// kReference (unknown, or on its way) or kOffStators.
 ErrorId FindSpot(const MoverParams& params, const planar::Parts& parts, std::string_view reference,
                  const planar::Pose& pose, planar::Spot& out) noexcept;
-// It stands there.
+// Sets the mover at rest at this spot.
 void PutAt(const planar::Spot& at, State& s) noexcept;
 
 }  // namespace takt::mover

@@ -1,7 +1,7 @@
 // Lines and arcs.
 //
-// The orientation turns along the great arc, the share of it grows evenly with s; so do auxiliary axes. Every maker
-// answers with a reason, and then leaves `out` alone, or makes a segment.
+// The orientation is interpolated about one fixed axis (SLERP; MakeTwist: by the given vector), linearly in s, as are
+// auxiliary axes. MakeLine, MakeTwist and MakeArc return kNone and write `out`, or return the problem and leave it.
 #pragma once
 
 #include <cstdint>
@@ -63,8 +63,8 @@ struct Circle {
   CircMode mode = CircMode::kBorder;
   Triple auxiliary_point{};  // mm: border point, centre, or the vector of radius mode
   PathChoice choice = PathChoice::kCounterclockwise;
-  Triple normal{};  // of center mode, of any length
-  double turns = 0;
+  Triple normal{};   // of center mode, of any length
+  double turns = 0;  // whole turns on top: a whole number from 0 to kMostTurns, else Problem::kTurns
 };
 
 inline constexpr double kCircleSlack = 1e-3;

@@ -14,8 +14,8 @@
 
 namespace takt::pickplace {
 
-// The inputs of the manual's 3.6.2; "T&P:" in the doc strings is the name there. Those of its 3.6.3 are commands of the
-// belts.
+// The inputs of the Track Pick & Place manual, 3.6.2; "T&P:" in the doc strings gives their names there. Those of its
+// 3.6.3 are commands of the belts.
 template <template <typename> class Of>
 struct InputsOf {
   Of<bool> enable = Preset<Of>(true);
@@ -41,10 +41,11 @@ struct InputsOf {
 };
 using Inputs = InputsOf<Plain>;
 
-// Changes inputs. Where it starts a profile, homing or the way back to the path, it is done when that is.
+// Changes inputs. Done at once; where a rising edge starts a profile, homing or the return to the path, done when that
+// ends.
 using Control = InputsOf<std::optional>;
 
-// Level-sensitive: give it again to change the levels, both false (or a release) to let go.
+// Level-sensitive: repeat to change the levels; both false, or a release, ends the jog.
 struct Jog {
   bool positive = false;
   bool negative = false;

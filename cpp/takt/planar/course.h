@@ -1,4 +1,4 @@
-// What a mover covers from now on if it brakes with its greatest dynamics until it rests: its course. The guard
+// Course: the swept area of a mover that brakes with its maximum dynamics from now on until it rests. The guard
 // (guard.h) compares the courses of movers. Fit for the cycle.
 #pragma once
 
@@ -21,7 +21,7 @@ inline constexpr double kCourseSlack = 0.25;  // mm
 struct Course {
   std::array<Area, kCourseAreas> areas{};
   std::uint32_t count = 0;
-  Extent extent{};  // of all areas; the mover in it may be turned as it likes
+  Extent extent{};  // of all areas, for any angle of the mover
 
   std::span<const Area> all() const noexcept { return {areas.data(), count}; }
 };
@@ -29,9 +29,9 @@ struct Course {
 // Appends an area. A full course grows around it instead.
 void Add(const Area& area, Course& out) noexcept;
 
-// Calls `look` with areas that together are what a mover covers while its middle goes along a track from one arc length
-// to another, in no more than so many strides, and at most kCourseSlack mm more if these are enough. `kind`: its sides
-// and angles; its places, 3 at most, are how far its middle may be off its place on the track, none: not at all.
+// Calls `look` with areas whose union contains what a mover covers while its centre moves along a track from arc length
+// `from` to `to` [mm], by at most `most_strides` chords; it exceeds that by at most kCourseSlack if these suffice.
+// `kind`: sides and angles of the mover; its places (0 to 3) are offsets of the centre from the track [mm].
 template <typename Look>
 void EachArea(const Track& track, const Place& origin, double from, double to, const Area& kind, int most_strides,
               const Look& look) {
@@ -75,13 +75,14 @@ void EachArea(const Track& track, const Place& origin, double from, double to, c
   show();
 }
 
-// Appends what a mover (`kind`, as above) covers while its middle goes along a track from one arc length
-// to another, 0 <= from <= to <= length; at most kCourseSlack mm more. `origin`: of the coordinates of the track.
+// Appends areas that contain what a mover (`kind`, as for EachArea) covers while its centre moves along a track from
+// arc length `from` to `to` [mm]. Requires: 0 <= from <= to <= length. They exceed that by at most kCourseSlack while
+// 24 chords suffice and the course has room. `origin`: of the coordinates of the track [mm].
 void AddStretch(const Track& track, const Place& origin, double from, double to, const Area& kind,
                 Course& out) noexcept;
 
-// Calls `look` with each track of a route and the arc lengths on it that lie between two positions; positions count
-// from the start of the first track. Of a closed track: a whole turn at most, in two pieces if it passes the start.
+// Calls look(track, begin, end) for each track of a route that [from, to] meets: positions from the start of the first
+// track, arc lengths on each track [mm]. Of a closed track: one turn at most, in two pieces across its start.
 template <typename Look>
 void EachStretch(const Network& network, const Route& route, double from, double to, const Look& look) {
   const double first = network[route.first()].length;
@@ -104,30 +105,31 @@ void EachStretch(const Network& network, const Route& route, double from, double
   }
 }
 
-// The positions between which a mover stays on its route: on the way to its target, or until it stops; of one that goes
-// along with a master, all of them.
+// The range of positions that a mover may take on its route: to its target, or until it stops; the whole route if it
+// follows a master.
 struct Interval {
   double from = 0, to = 0;  // mm, from the start of its first track
 };
 Interval WayOf(const Network& network, const Rider& rider) noexcept;
 
-// The course along its route of a mover whose middle stays between two positions.
+// Returns the course along its route of a mover whose centre stays between two positions [mm].
 Course CourseOn(const Network& network, const Rider& rider, double from, double to, const Area& kind) noexcept;
 
-// Whether two movers that brake at once, one behind the other on the route of the one behind, are kept apart by their
-// distance along it, however the route bends: `apart` is added to the positions of the one ahead. False: not known.
-// Schur's comparison: the chord of an arc of length g with a curvature up to k is no shorter than that of a circle,
-// 2/k sin(k g/2), as long as k g <= pi.
+// Returns true if their distance along the route alone keeps two movers apart that both brake from now on, however the
+// route bends; false if that is not proven. One is ahead of the other on the other's route; `apart` [mm] is added to
+// its positions. Schur's comparison theorem: the chord of an arc of length g with a curvature up to k is no shorter
+// than that of a circle, 2/k sin(k g/2), as long as k g <= pi.
 bool ApartByOrder(const Network& network, const Rider& behind, const Braking& behind_brakes, const Area& behind_kind,
                   const Braking& ahead_brakes, const Area& ahead_kind, double apart) noexcept;
 
-// Whether two movers on tracks that brake at once never overlap: in each cycle, as exactly as it takes. False: they do,
-// or it takes too long to say.
+// A braking mover on a track.
 struct Rolling {
   const Rider& rider;
   const Braking& braking;
   const Area& kind;
 };
+// Returns true if two braking movers never overlap, checked by conservative advancement in whole cycles; false if they
+// do, or if the instants that it looks at do not suffice.
 bool ApartInTime(const Network& network, const Rolling& a, const Rolling& b, double period_s) noexcept;
 
 }  // namespace takt::planar
