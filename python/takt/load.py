@@ -13,27 +13,27 @@ import numpy as np
 
 from takt.recording import Array, Recording, RecordingError
 
-LEAST = 100  # samples
-FULL_AT = 1.0  # u/s: as the default of torque_offset.full_at
-HALF = 8  # samples to either side over which is averaged
-LATE = np.arange(-2, 5.1, 0.25)  # samples by which torques may be late
-INDEPENDENT = 0.02  # of what is identified from one another
+LEAST = 100  # samples that a fit needs
+FULL_AT = 1.0  # u/s: default of torque_offset.full_at
+HALF = 8  # half width of the triangular filter, samples
+LATE = np.arange(-2, 5.1, 0.25)  # delays of the torque against the position that are tried, samples
+INDEPENDENT = 0.02  # least ratio of the smallest to the largest singular value of the regressors
 
 
 @dataclass(frozen=True)
 class Load:
-    """Of one axis, in Nm or N and its unit u."""
+    """Identified load of an axis. Torques are in Nm, or N of a linear motor; u is the unit of the axis."""
 
     axis: str
     inertia: float  # torque per u/s2
     coulomb_friction: float
     viscous_friction: float  # torque per u/s
     load_torque: float
-    left: float  # rms of what is not explained
-    of: float  # rms of the torque
+    left: float  # RMS of the residual torque
+    of: float  # RMS of the reported torque
 
     def machine_file(self) -> str:
-        """As it stands in the machine file."""
+        """Returns the line `drive: torque_offset` for the machine file."""
         return (
             f"drive: {{torque_offset: {{inertia: {self.inertia:.4g}, coulomb_friction: {self.coulomb_friction:.4g}, "
             f"viscous_friction: {self.viscous_friction:.4g}, load_torque: {self.load_torque:.4g}}}}}"
@@ -47,10 +47,12 @@ def _averaged(values: Array) -> Array:
 
 
 def identify(recording: Recording, axis: str, *, full_at: float = FULL_AT) -> Load:
-    """Fits the torque that the drive reported to what the encoder says, by least squares. The recording needs
-    motion both ways, with acceleration and at more than one speed. Raises RecordingError where it says too little.
+    """Returns inertia, friction and load torque of an axis: a least-squares fit of the reported torque to acceleration,
+    velocity and direction of motion while the loop is closed. Requires equidistant samples with motion both ways, with
+    acceleration and at more than one speed. Raises RecordingError where the samples do not determine the values.
 
-    full_at: u/s; slower samples are left out, in which friction is not whole; as in the machine file.
+    full_at: speed [u/s]; slower samples are left out, in which Coulomb friction is not fully developed; as in the
+    machine file.
     """
     table = recording[axis]
     period = float(np.median(np.diff(table["time_s"]))) if len(table) > 1 else 1.0
@@ -60,17 +62,26 @@ def identify(recording: Recording, axis: str, *, full_at: float = FULL_AT) -> Lo
     position = np.cumsum(np.asarray(table["actual_velocity"], float)[inside]) * period
     torque = np.asarray(table["torque_nm"], float)[inside]
     if len(torque) > 2 * HALF:
-        # Of positions alone, all averaged in the same way: the second difference weighs accelerations like a triangle.
+        # The central second difference over HALF samples is the acceleration filtered by a triangle of that half width;
+        # torque and velocity get the same filter, so that all three have the same delay.
         torque = _averaged(torque)[HALF:-HALF]
         acceleration = (position[2 * HALF :] - 2 * position[HALF:-HALF] + position[: -2 * HALF]) / (HALF * period) ** 2
         velocity = _averaged(np.gradient(position, period))[HALF:-HALF]
+        whole = np.convolve(closed[inside], np.ones(2 * HALF + 1), "valid") > 2 * HALF  # the loop was closed throughout
     else:
         acceleration = velocity = torque = np.empty(0)
-    if len(torque) < LEAST:
-        raise RecordingError(f"axis '{axis}': {len(rows)} samples with a closed loop, at least {LEAST} are needed")
-    moves = np.abs(velocity) >= full_at  # at rest friction holds with any torque up to its own
-    if not np.any(np.asarray(table["set_velocity"])[inside]) or moves.sum() < LEAST:
+        whole = np.empty(0, bool)
+    if whole.sum() < LEAST:
+        least = LEAST + 2 * HALF
+        raise RecordingError(f"axis '{axis}': {len(rows)} samples with a closed loop, at least {least} are needed")
+    moves = whole & (np.abs(velocity) >= full_at)  # at rest friction holds with any torque up to its own
+    if not np.any(np.asarray(table["set_velocity"])[inside]):
         raise RecordingError(f"axis '{axis}': it does not move in this recording")
+    if moves.sum() < LEAST:
+        raise RecordingError(
+            f"axis '{axis}': it does not move for long enough in this recording: {moves.sum()} samples at {full_at:g} "
+            f"u/s or faster, at least {LEAST} are needed"
+        )
     parts = np.stack([acceleration, np.sign(velocity), velocity, np.ones_like(velocity)], axis=1)[moves]
     sizes = np.maximum(np.abs(parts).max(axis=0), 1e-30)
     values = np.linalg.svd(parts / sizes, compute_uv=False)
@@ -79,7 +90,7 @@ def identify(recording: Recording, axis: str, *, full_at: float = FULL_AT) -> Lo
             f"axis '{axis}': its friction cannot be told from its load in this recording: it needs motion both "
             "ways and at more than one speed"
         )
-    # Torques are of a time somewhat before or behind that of the position: that at which most is explained.
+    # The torque is delayed against the position by an unknown part of cycles: that with the least residual is taken.
     at = np.flatnonzero(moves).astype(float)
     best, found, left, torque_told = math.inf, np.zeros(4), torque, torque
     for late in LATE:

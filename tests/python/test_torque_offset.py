@@ -76,6 +76,19 @@ def test_the_load_of_a_servo_is_identified_and_told_to_its_drive() -> None:
     assert again.inertia == pytest.approx(found.inertia, rel=0.05)
 
 
+def test_where_the_loop_is_open_nothing_is_fitted() -> None:
+    """A torque of 0 while the axis coasts, its power off in the middle of a recording, says nothing of its load."""
+    table = up_and_down(SERVO, "z")["z"].copy()
+    moving = np.flatnonzero(np.abs(table["set_velocity"]) > 100)
+    coasts = moving[len(moving) // 4 : len(moving) // 2]
+    table["torque_nm"][coasts] = 0
+    table["loop_closed"][coasts] = False
+    found = identify(takt.Recording({"z": table}), "z")
+    assert found.inertia == pytest.approx(0.002, rel=0.1)
+    assert found.coulomb_friction == pytest.approx(1.5, rel=0.15)
+    assert found.load_torque == pytest.approx(4, rel=0.05)
+
+
 def test_the_load_of_an_axis_in_mujoco_is_identified() -> None:
     """A lift of 5 kg with friction, which a physics that is not ours moves."""
     pytest.importorskip("mujoco")
@@ -198,9 +211,9 @@ def test_what_does_not_fit() -> None:
         engine.axis("z").move_velocity(velocity=100)
         engine.run(0.5)
         one_way = record.stop().slice(0.6, 1.0)
-    with pytest.raises(takt.RecordingError, match="0 samples with a closed loop, at least 100"):
+    with pytest.raises(takt.RecordingError, match="0 samples with a closed loop, at least 116"):
         identify(short, "z")
-    with pytest.raises(takt.RecordingError, match="it does not move"):
+    with pytest.raises(takt.RecordingError, match="it does not move in this recording"):
         identify(still, "z")
     with pytest.raises(takt.RecordingError, match=r"it does not move|both ways"):
         identify(one_way, "z")
