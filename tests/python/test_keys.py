@@ -557,6 +557,22 @@ def test_the_live_page_shows_without_the_key_and_commands_with_it(which: str, tm
         assert ("has another key" in feed.trouble) == (which == "other")
 
 
+def test_another_engine_with_a_key_does_not_keep_the_page_from_commanding(key: Path) -> None:
+    """EN-31: descriptions of an engine that the page leaves out change nothing."""
+    url = new_url()
+    feed, bystander, other = Feed(url), Bystander(url), Sender(key_bytes(key))
+    description = msgs.machine_description()
+    description.run_id, description.period_s, description.text = 1, 0.001, machine_with("{}")
+    bystander.say("takt/machine", description.encode())
+    eventually(lambda: feed.tick() or feed.machine)
+    assert feed.may_command
+    description.run_id = 2
+    bystander.say("takt/machine", other.tag("takt/machine", description.encode()))
+    eventually(lambda: feed.tick() or feed.trouble)
+    assert "another engine" in feed.trouble
+    assert feed.may_command
+
+
 def test_a_page_with_the_key_commands(tmp_path: Path, key: Path) -> None:
     """EN-31: what the live page gives is tagged, too."""
     url, told = new_url(), list[Any]()

@@ -151,16 +151,17 @@ def test_what_is_lost_on_the_way_is_counted() -> None:  # EN-20
     impossible = msgs.axis_state.decode(state(400, 126))
     impossible.time_ns += 10_000_000
     tap.take("", impossible.encode())
-    tap.take("", state(10**12, 127))  # later than can be
+    tap.take("", state(10**12, 127))  # later than can be: those behind it count
+    tap.take("", state(252, 126))
     tap.drain(1000)
     assert (tap.lost, tap.malformed) == (8, 3)
     piece = tap.ring.since(0, ("set_position",), 1000)
-    expected = [*range(100, 110), *range(113, 120), 125]
+    expected = [*range(100, 110), *range(113, 120), 125, 126]
     np.testing.assert_array_equal(piece.cycles, np.array(expected) * 2)
-    np.testing.assert_array_equal(piece.columns[0], np.array(expected) / 10)
+    np.testing.assert_array_equal(piece.columns[0], np.array([*expected[:-1], 0]) / 10)
     tap.take("", state(260, 130))  # and on from the last one of before
     tap.drain()
-    assert tap.lost == 12
+    assert tap.lost == 11
 
 
 # --- words ---

@@ -32,7 +32,7 @@ from takt.view.shapes import Shapes
 
 QUEUE = 200_000  # messages that wait for the next tick, of all that must not get lost
 AT_ONCE = 2000  # messages of one tick, besides states
-LONELY_S = 3.0  # without a message of the engine: it is gone
+LONELY_S = 3.0  # silence after which the engine counts as gone
 TAKEN_OVER_S = 1.5  # without one, and another engine is heard: that one took its place
 KEPT_S = 30.0  # how long signals are kept that nobody looks at, for a page that comes back
 
@@ -55,7 +55,8 @@ class Tap:
         self._pending.append(data)
 
     def drain(self, latest_cycle: float = math.inf) -> int:
-        """Takes what has come into the ring, but for messages of cycles that cannot be yet. How many messages."""
+        """Appends pending messages to the ring; malformed, repeated and implausible ones are left out. Returns the
+        number of messages handled."""
         if not self._pending:
             return 0
         pending, self._pending = self._pending, []
@@ -66,7 +67,7 @@ class Tap:
         rows = self.source.layout.rows(good)
         cycles, sequence = rows["cycle"].astype(np.int64), rows["sequence"].astype(np.int64)
         possible = (np.abs(rows["time_ns"] - cycles * self._period_ns) <= cycles) & (cycles <= latest_cycle)
-        latest = np.maximum.accumulate(np.concatenate(([self._cycle], cycles)))
+        latest = np.maximum.accumulate(np.concatenate(([self._cycle], np.where(possible, cycles, -1))))
         new = (cycles > latest[:-1]) & possible
         self.malformed += int(np.sum(~possible))
         if not np.any(new):
@@ -82,7 +83,7 @@ class Tap:
 
 class Feed:
     def __init__(self, url: str, key: Key | None = None, file: Path | None = None) -> None:
-        """file: of the machine that is thought to run there."""
+        """file: machine file on this host; if the machine that runs equals it, the meshes that it names are drawn."""
         self.url = url
         self._file = file
         self.machine: Machine | None = None
@@ -180,10 +181,10 @@ class Feed:
         message = _decoded(msgs.machine_description, data)
         if message is None or not message.period_s > 0:
             return
-        self.may_command = self._key is not None or not _core.has_tag(data)
         now = time.monotonic()
         if self.machine is not None and message.run_id == self.machine.run_id:
             self._heard = now
+            self.may_command = self._may_command(data)
             if now - self._other_heard > LONELY_S:
                 self.trouble = ""
             return
@@ -193,9 +194,13 @@ class Feed:
             return
         try:
             self._begin(Machine(message, file=self._file))
+            self.may_command = self._may_command(data)
             self.trouble = ""
         except ConfigError as error:
             self.trouble = f"the machine {message.name} cannot be read here: {error.problems[0]}"
+
+    def _may_command(self, description: bytes) -> bool:
+        return self._key is not None or not _core.has_tag(description)
 
     def _on_refused(self, channel: str, state: _core.TagState) -> None:
         if channel == "takt/machine" and self.gone and self._key is not None:
