@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import shutil
 from pathlib import Path
@@ -118,6 +119,30 @@ def test_what_goes_wrong_with_products_is_judged_and_said() -> None:
         engine.run(0.3)
         assert cargo.here == (number,)
         assert [fell for fell, _ in cargo.fallen] == [other]
+
+
+@pytest.mark.parametrize("then", ["taken out", "gripped again", "left alone"])
+def test_only_a_product_that_lies_where_it_was_put_is_judged(then: str) -> None:
+    """What is taken out or gripped again, before it has come to rest, did not move on its belt."""
+    with powered(MACHINE.replace("force: 20", "force: 20, acts_s: 0.005")) as engine:
+        assert isinstance(engine.plant, Twin)
+        cargo, robot = engine.plant.cargo, engine.group("robot")
+        assert cargo is not None
+        number, gripper = cargo.put("line"), cargo.grippers["robot"]
+        robot.move_linear_absolute(x=0, z=-100, coordinate_system="mcs").wait()
+        gripper.close()
+        engine.wait(lambda: gripper.holds == number)
+        gripper.open()
+        engine.wait(lambda: gripper.holds is None)
+        if then == "taken out":
+            cargo.take(number)
+        elif then == "gripped again":
+            gripper.close()
+            engine.wait(lambda: gripper.holds == number)
+            robot.move_linear_absolute(x=0, z=-60, coordinate_system="mcs").wait()
+        engine.run(0.1)
+        put = next(one for one in cargo.handled if one.number == number)
+        assert (put.lost, math.isnan(put.moved)) == ("", then != "left alone")
 
 
 def test_what_of_belts_and_products_the_loader_refuses(tmp_path: Path) -> None:

@@ -46,11 +46,11 @@ class Handled:
     number: int
     gripper: str  # the group's name
     gripped: int  # cycle
-    offset: Array  # (3,), mm: from the tool to the middle of its top when it was gripped
+    offset: Array  # (3,), mm in the world: from the tool to the centre of its top when it was gripped
     put: int | None = None  # cycle in which the gripper let go
     belt: str | None = None  # on which it lies then, None: on none
     moved: float = math.nan  # mm along the belt's surface, from where it was let go to where it came to rest
-    turned: float = math.nan  # deg between its top and the belt's, at rest
+    turned: float = math.nan  # deg between its vertical axis and the belt's normal, at rest
     lost: str = ""  # why it is not where it should be
 
 
@@ -148,6 +148,7 @@ class Gripper:
                 near, best = one, off
         if near is None:
             return
+        cargo._forget(near)
         near.held, self.holds, self._product = self, near.number, near
         offset = (cargo._top(near) - place) * PER_M
         cargo.handled.append(Handled(near.number, self.group, cycle, offset))
@@ -249,8 +250,9 @@ class Cargo:
         return tuple(sorted(one.number for one in self._there()))
 
     def put(self, belt: str, x: float = 0.0, y: float = 0.0, c: float = 0.0) -> int:
-        """Puts a product onto a belt, its middle there, mm and deg in the belt's frame, as fast as the belt is. Returns
-        its number. Raises TaktError where all products are in use, or the place is not on the belt."""
+        """Puts a product onto a belt with its centre at x, y [mm] and the angle c about Z [deg], all in the belt's
+        frame, and with the belt's velocity. Returns its number. Raises TaktError if there is no such belt, x, y is not
+        on it, or all products are in use."""
         on = self._belt(belt)
         if not (on.from_m <= x / PER_M <= on.to_m and abs(y) / PER_M <= on.half_width):
             raise TaktError(f"belt '{belt}': X {x:g}, Y {y:g} mm is not on it")
@@ -266,23 +268,25 @@ class Cargo:
         return free.number
 
     def move(self, number: int, dx: float = 0.0, dy: float = 0.0) -> None:
-        """Shifts a product that lies on a belt, in mm of the world, as somebody who pushes it would."""
+        """Displaces a product by dx, dy [mm] in the world frame. Raises TaktError if there is no such product."""
         at = self._numbered(number).qpos
         self._data.qpos[at : at + 2] += np.array([dx, dy]) / PER_M
 
     def take(self, number: int) -> None:
-        """Takes a product out of the machine."""
+        """Removes a product from the machine. Raises TaktError if there is no such product or a gripper holds it."""
         product = self._numbered(number)
         if product.held is not None:
             raise TaktError(f"product {number} cannot be taken: the gripper of {product.held.group} holds it")
+        self._forget(product)
         self._wait(product)
 
     def position(self, number: int) -> Array:
-        """(3,), mm: of the middle of its top, in the world."""
+        """Returns the centre of a product's top, (3,) [mm] in the world frame. Raises TaktError if there is none."""
         return np.asarray(self._top(self._numbered(number)) * PER_M)
 
     def camera(self, belt: str, begin: float = -math.inf, end: float = math.inf) -> list[ProductSeen]:
-        """The products that lie on a belt between two places along it, mm, as they lie now."""
+        """Returns the products that lie on a belt with X in begin..end [mm, belt frame], the largest X first; held ones
+        are left out. Raises TaktError if there is no such belt."""
         on = self._belt(belt)
         seen = []
         for one in self._there():
@@ -296,7 +300,7 @@ class Cargo:
     # --- for the twin ---
 
     def before(self, cycle: int) -> None:
-        """Ahead of the steps of a cycle."""
+        """Prepares a cycle, before its physics steps: belts keep their shapes, waiting products stay parked."""
         if cycle % LOOK:
             return
         qpos, qvel = self._data.qpos, self._data.qvel
@@ -309,7 +313,7 @@ class Cargo:
                 qvel[one.qvel : one.qvel + 6] = 0
 
     def after(self, cycle: int, measured: Rows) -> None:
-        """Behind them."""
+        """Finishes a cycle, after its physics steps: grippers, products at rest or at an end, light barriers."""
         self.cycle = cycle
         for gripper in self.grippers.values():
             gripper._step(cycle)
@@ -369,7 +373,7 @@ class Cargo:
         data.qvel[one.qvel : one.qvel + 3] = belt.origin[:3, 0] * data.qvel[belt.dof]
 
     def _wait(self, one: _Product) -> None:
-        """Beside the machine, where nobody sees it."""
+        """Parks a product beside the machine, invisible and at rest."""
         one.number = 0
         self._model.geom_rgba[one.geom, 3] = 0
         self._data.qpos[one.qpos : one.qpos + 7] = self._park[one.qpos : one.qpos + 7]
@@ -389,7 +393,7 @@ class Cargo:
         return [one for one, leaves in zip(free, may.tolist(), strict=True) if leaves]
 
     def _leave(self, one: _Product, cycle: int) -> None:
-        """Products at the end of their belt are taken off; others may have fallen."""
+        """Removes a product at the end of its belt, or that has fallen."""
         place = self._data.qpos[one.qpos : one.qpos + 3]
         for belt in self._belts.values():
             x, y, z = self._seen_from(belt, place)
@@ -404,10 +408,11 @@ class Cargo:
             self._wait(one)
 
     def _forget(self, one: _Product) -> None:
+        """Where it came to rest is not judged any more."""
         self._rests = [rests for rests in self._rests if rests.product is not one]
 
     def _weld(self, weld: int, body: int, one: _Product) -> None:
-        """Holds a product at a body as it hangs there now."""
+        """Enables the weld between a body and a product at their present relative pose."""
         data, mujoco = self._data, self._mujoco
         mujoco.mj_kinematics(self._model, data)
         turn, back, quat = data.xquat[body], np.zeros(4), np.zeros(4)
@@ -452,7 +457,7 @@ class Cargo:
             handled.put,
             handled.belt,
             moved,
-            math.degrees(math.acos(min(1.0, upright))),
+            math.degrees(math.acos(max(-1.0, min(1.0, upright)))),
             handled.lost or ("" if self._is_on(belt, one) else "it fell off the belt"),
         )
 

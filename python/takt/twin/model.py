@@ -29,7 +29,7 @@ PER_RAD = 180 / math.pi  # deg
 
 @dataclass(frozen=True)
 class Joint:
-    """How an axis and a joint of the model belong together: position = zero + scale * joint, in u, m and rad."""
+    """An axis and a joint of the model: position [u] = zero [u] + scale [u/m or u/rad] * joint [m or rad]."""
 
     axis: str
     name: str
@@ -48,10 +48,10 @@ class Tool:
     rows: tuple[int, ...]  # of its axes, among those of the twin
     site: int  # of the model, or -1: a body
     body: int
-    base: Array  # (4, 4), mm: of the machine coordinate system in the world
+    base: Array  # (4, 4), mm: pose of the group's MCS in the world
 
     def pose_in(self, data: Any) -> tuple[Array, Array]:
-        """Position in m and rotation, as the data have them."""
+        """Position (3,) [m] and rotation (9,), row by row, of the flange in the world, by MuJoCo."""
         if self.site >= 0:
             return data.site_xpos[self.site], data.site_xmat[self.site]
         return data.xpos[self.body], data.xmat[self.body]
@@ -75,7 +75,7 @@ class Model:
 
 
 def rotations(angles: Array) -> Array:
-    """(n, 3, 3) of (n, 3) angles about X, Y, Z of a frame that stands still, in deg."""
+    """Rotation matrices (n, 3, 3), Rz(c) Ry(b) Rx(a), of angles a, b, c (n, 3) [deg] about fixed axes X, Y, Z."""
     a, b, c = np.radians(angles).T
     zero, one = np.zeros_like(a), np.ones_like(a)
 
