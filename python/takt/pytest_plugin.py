@@ -14,6 +14,7 @@ failure report says where.
 from __future__ import annotations
 
 import hashlib
+import itertools
 import re
 from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
@@ -55,8 +56,14 @@ class _Kept:
                 self.add(recorder.stop())
             except Exception as error:  # an engine that failed must not hide why the test failed
                 lines.append(f"a recording could not be ended: {error}")
+        stems: set[str] = set()
         for name, recording in self.recordings:
-            stem = re.sub(r"[^\w.-]+", "_", name)[:80]
+            stem = wanted = re.sub(r"[^\w.-]+", "_", name)[:80]
+            for number in itertools.count(2):
+                if stem not in stems:
+                    break
+                stem = f"{wanted}_{number}"
+            stems.add(stem)
             try:
                 lines.append(f"data:    {recording.save(self.directory / f'{stem}.npz')}")
                 from takt import plot

@@ -114,6 +114,7 @@ def test_traces_of_passing_tests_and_another_directory(run: Run, pytester: pytes
             assert takt_keep(curve(), "first try") is not None
             rec = curve()
             assert takt_keep(rec) is takt_keep(rec)
+            takt_keep(curve(), "first:try")
         """,
         "--takt-keep-traces",
         "--takt-reports",
@@ -124,7 +125,7 @@ def test_traces_of_passing_tests_and_another_directory(run: Run, pytester: pytes
     assert len(directories) == 2
     for directory in directories:
         assert sorted(p.name for p in directory.iterdir()) == [
-            "first_try.npz", "first_try.png", "recording2.npz", "recording2.png",
+            "first_try.npz", "first_try.png", "first_try_2.npz", "first_try_2.png", "recording2.npz", "recording2.png",
         ]  # fmt: skip
 
 
