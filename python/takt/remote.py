@@ -182,7 +182,7 @@ class RemoteSession(Session):
         self._leave()
 
     def _leave(self) -> None:
-        """Hears nothing any more; else LCM would gather messages for as long as somebody knows the session."""
+        """Unsubscribes; else LCM would queue messages for as long as the session object is referenced."""
         self._receiver.join()
         while self._subscriptions:
             self._lcm.unsubscribe(self._subscriptions.pop())
@@ -580,7 +580,8 @@ class RemoteSession(Session):
 def connect(
     url: str | None = None, *, client: str | None = None, timeout: float = 5.0, key: KeyFile | None = None
 ) -> RemoteSession:
-    """Joins the LCM network and waits until its engine has described itself, `timeout` seconds at most.
+    """Joins the LCM network and returns a session with its engine. Waits `timeout` seconds at most for the description
+    of its machine, then as long again for a first state of every component.
 
     url: "udpm://239.255.76.67:7667?ttl=0" unless given here or in the environment (LCM_DEFAULT_URL).
     client: a name of one's own; two clients of one name are refused by the engine. Made up unless given.

@@ -24,7 +24,7 @@ SHAPE_FIELDS = ("part", "length", "closed", "position", "x", "y", "direction")
 
 @dataclass(frozen=True)
 class StateDifference:
-    """The first recorded message that is not what the engine published in this cycle."""
+    """A recorded message that differs from what the replay published in the same cycle."""
 
     component: str
     field: str
@@ -167,7 +167,7 @@ class _Looks:
         return self._messages[self._given].cycle if self._given < len(self._messages) else 2**62
 
     def compare(self) -> None:
-        """The messages of the cycle that was the last one."""
+        """Compares the messages of the last cycle."""
         at = self._engine.cycle - 1
         while self.next_cycle <= at:
             message = self._messages[self._given]

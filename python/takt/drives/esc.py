@@ -53,7 +53,7 @@ class Device(ABC):
 
     @abstractmethod
     def mailbox(self, kind: int, data: bytes) -> list[tuple[int, bytes]]:
-        """The answers to a message: kinds and data."""
+        """The replies to a mailbox message, as (mailbox type, data); `kind` is its type: 3 is CoE."""
 
     @abstractmethod
     def sizes(self) -> tuple[int, int]:
@@ -61,7 +61,7 @@ class Device(ABC):
 
     @abstractmethod
     def entered(self, state: int, before: int) -> None:
-        """The state has changed."""
+        """Called after the AL state has changed from `before` to `state`."""
 
     @abstractmethod
     def cycle(self, outputs: bytes | None) -> bytes:
@@ -101,9 +101,9 @@ class Esc:
         m[_SII_CONTROL] = 0x40  # 8 bytes at once
         self._maps: list[tuple[int, int, int, int]] = []
         self._outbox: list[bytes] = []
-        self._letter = b""  # taken last, for a repetition
+        self._letter = b""  # message delivered last, for a repeat request
         self._received: bytes | None = None
-        self._heard = self._sent = 0  # counters of messages
+        self._heard = self._sent = 0  # mailbox counters: last received, last sent
         self.waiting = False
 
     # --- state ---
@@ -116,7 +116,7 @@ class Esc:
         return int.from_bytes(self.memory[register : register + 2], "little")
 
     def _control(self) -> None:
-        """A state has been asked for."""
+        """AL control has been written: changes the state or refuses."""
         m = self.memory
         wanted, acknowledged = m[_AL_CONTROL] & 0x0F, bool(m[_AL_CONTROL] & ERROR_BIT)
         if m[_AL_STATUS] & ERROR_BIT and not acknowledged:
@@ -147,7 +147,7 @@ class Esc:
         return 0
 
     def fall_back(self, state: int, code: int) -> None:
-        """To a state with an error."""
+        """Changes to a state, with the error bit and this AL status code."""
         self._enter(state, ERROR_BIT, code)
 
     def _enter(self, state: int, error: int = 0, code: int = 0) -> None:
@@ -166,11 +166,11 @@ class Esc:
 
     @property
     def watchdog_s(self) -> float:
-        """Without outputs; 0: none."""
+        """Time [s] without outputs after which the process data watchdog expires; 0: it is disabled."""
         return self.number_at(_WATCHDOG) * (self.number_at(_DIVIDER) + 2) * 40e-9
 
     def watch(self, now_s: float) -> bool:
-        """Whether the watchdog has bitten just now."""
+        """Whether the process data watchdog expires now: then to SAFEOP with AL status code 0x001B."""
         watchdog_s = self.watchdog_s
         watched = self.state == OPERATIONAL and watchdog_s and self.memory[_SYNC_MANAGERS + 16 + 4] & 0x40
         if not watched or now_s - self.last_s <= watchdog_s:
@@ -194,7 +194,7 @@ class Esc:
         self.memory[begin : begin + length] = inputs[:length].ljust(length, b"\0")
 
     def live(self) -> None:
-        """One cycle; its inputs are ready for the next frame."""
+        """Executes a cycle of the device; its inputs are in the area of sync manager 3 for the next frame."""
         self.waiting = False
         begin, length = self._area(2)
         operational = self.state == OPERATIONAL
@@ -245,7 +245,8 @@ class Esc:
     # --- memory ---
 
     def read(self, at: int, length: int) -> bytes | None:
-        """None: there is nothing to read."""
+        """So many bytes of the memory; None if the mailbox is empty or they exceed the memory. Reading the last
+        byte of the mailbox empties it."""
         m = self.memory
         if at >= _MEMORY:
             begin, size = self._area(1)
@@ -264,7 +265,7 @@ class Esc:
         return data if len(data) == length else None
 
     def write(self, at: int, data: bytes) -> bool:
-        """False: it is not taken."""
+        """False: the memory is read-only or too short, or the mailbox is full."""
         m, end = self.memory, at + len(data)
         if end > _SIZE or any(first <= at and end <= last for first, last in _READ_ONLY):
             return False
@@ -332,7 +333,7 @@ class Esc:
         return now_ns + self._clock_ns + round(self._drift * (now_ns - self._drifts_since_ns))
 
     def drift(self, ppm: float) -> None:
-        """From now on the clock is so much faster than that of the host."""
+        """Drift of the clock against that of the host, from now on; its time does not jump."""
         now_ns = time.monotonic_ns()
         self._clock_ns = self.local_ns() - now_ns
         self._drift, self._drifts_since_ns = 1e-6 * ppm, now_ns
@@ -384,7 +385,7 @@ class Line:
 
     def __init__(self, slaves: Sequence[Esc]) -> None:
         self.slaves = list(slaves)
-        self.malformed = 0  # frames that were none of EtherCAT
+        self.malformed = 0  # EtherCAT frames with a datagram that exceeds the frame
         self._reached: list[Esc] | None = None
         self._behind: list[Esc] | None = None
 

@@ -18,7 +18,7 @@ Row = dict[str, Any]
 
 
 class _Batch:
-    """Components whose messages lie alike in memory: decoded at once."""
+    """Components of one kind whose messages have the same size: decoded as one array."""
 
     def __init__(self, kind: str, sources: list[Source]) -> None:
         self.kind = kind
@@ -32,7 +32,7 @@ class _Batch:
         self.rows = self.sources[0].layout.rows(self.messages)
 
     def changed(self) -> npt.NDArray[np.intp]:
-        """Which components have to be put into words again."""
+        """Places in the batch of the components whose texts have changed."""
         fields = WORDS.get(self.kind, ())
         now = np.stack([self.rows[f] for f in fields], axis=1).astype(float) if fields else np.zeros(self.seen.shape)
         news = np.any((now != self.seen) & ~(np.isnan(now) & np.isnan(self.seen)), axis=1) & self.heard
@@ -62,7 +62,7 @@ class Overview:
         batch.heard[i] = True
 
     def update(self, ledger: Ledger, latest_cycle: float) -> None:
-        """Makes numbers and words of what has come. What says to be later than `latest_cycle` is not believed."""
+        """Decodes the newest messages: numbers, words, and `cycle`, which passes over cycles after `latest_cycle`."""
         touched = {self.machine.by_name[t].index for t in ledger.touched if t in self.machine.by_name}
         ledger.touched.clear()
         for batch in self._batches:
@@ -80,12 +80,12 @@ class Overview:
         return [row for changed_at, row in self.words.values() if changed_at > revision]
 
     def value(self, name: str, field: str) -> float:
-        """The newest value of a component."""
+        """The newest value of a field of a component, in its unit; NaN before its first message."""
         batch, i = self._place[self.machine.by_name[name].index]
         return float(batch.rows[field][i]) if batch.heard[i] else float("nan")
 
     def heard(self, index: int) -> bool:
-        """Whether the component has said anything yet."""
+        """Whether a message of the component has been received."""
         batch, i = self._place[index]
         return bool(batch.heard[i])
 

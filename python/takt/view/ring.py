@@ -13,7 +13,7 @@ CAPACITY = 1 << 15  # rows: half a minute at 1 kHz
 
 
 class Piece(NamedTuple):
-    """What a reader has not seen yet."""
+    """Rows that a reader has not read yet."""
 
     cursor: int  # where it goes on
     skipped: int  # rows that were overwritten before it came
@@ -36,7 +36,7 @@ class Ring:
 
     @property
     def first(self) -> int:
-        """The oldest row there still is."""
+        """Number of the oldest row that is kept."""
         return max(0, self.written - self.capacity)
 
     def append(self, cycles: npt.NDArray[np.generic], columns: npt.NDArray[np.generic]) -> None:
@@ -59,7 +59,7 @@ class Ring:
         )
 
     def after(self, cycle: float) -> int:
-        """The first row later than a cycle."""
+        """Number of the first row with a later cycle; `written` if there is none."""
         at = np.arange(self.first, self.written) % self.capacity
         return self.first + int(np.searchsorted(self._cycles[at], cycle, side="right"))
 
