@@ -10,6 +10,8 @@ void ShiftCoordinates(double by, State& s) noexcept {
   s.motion.profile.Shift(by);
   s.motion.target += by;
   s.origin -= by;
+  s.homing.captured += by;
+  s.probe.touch_position += by;
   if (s.cam_switch.list >= 0) Shift(by, s.cam_switch);
 }
 

@@ -194,7 +194,6 @@ void GiveName(State& s) {
   if (!s.active.homing.sets_position) return;
   const double by = s.active.homing.set_position - s.homing.captured;
   ShiftCoordinates(by, s);
-  s.homing.captured += by;
 }
 
 // On from the switch to the index pulse.
@@ -328,7 +327,7 @@ Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) no
     if (status.failed()) return status;
   }
   // As define_position: no place beyond a SW limit.
-  const bool names = r.homing.sets_position && r.kind != RequestKind::kFinishHoming &&
+  const bool names = (r.homing.sets_position || r.homing.pulse_velocity > 0) && r.kind != RequestKind::kFinishHoming &&
                      r.kind != RequestKind::kStepAbsolute && r.kind != RequestKind::kStepDistanceCoded;
   if (names && !Inside(c.params.limits, r.homing.set_position)) return Status::Failed(ErrorId::kTargetBehindLimit);
   HomingState& h = s.homing;

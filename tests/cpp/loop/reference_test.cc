@@ -160,6 +160,42 @@ TEST(Flying, EndsWithANewerReferenceAHaltOrWhenToldTo) {
   }
 }
 
+// AX-64: a rotary axis that brings back its turns between a switch and the way back to it returns to the switch.
+TEST(Reference, IsReturnedToWhereTurnsAreBroughtBack) {
+  Bench bench(0);
+  bench.params.kind = AxisKind::kRotary;
+  bench.params.modulus = 0.0201;  // brought back beyond 20.1 mm
+  bench.servo.switches.reference.from = 20.09;
+  bench.On();
+  StepAbsSwitch step;
+  step.direction = HomingDirection::kPositive;
+  step.switch_mode = SwitchMode::kEdgeOn;
+  step.velocity = 50;
+  const Ticket ticket = bench.Give(step);
+  ASSERT_TRUE(bench.RunToEnd(ticket));
+  EXPECT_EQ(bench.last[ticket].state, FeedbackState::kDone);
+  EXPECT_LT(bench.state.setpoint.position, 1) << "its turns have been brought back";
+  bench.Run(0.1);
+  EXPECT_NEAR(bench.place(), 20.09, 0.1);
+}
+
+// AX-49, AX-67: a reference in passing and GT_Touch at one edge: it goes back to where the edge was.
+TEST(Flying, TakesItsNumbersWhereATouchGoesBackTo) {
+  Bench bench(-5);
+  bench.servo.switches.touch_probe.from = 10;
+  bench.On();
+  bench.Give(MoveVelocity{.velocity = 100});
+  bench.Run(0.05);
+  const Ticket flying = bench.Give(StepRefFlyingSwitch{.set_position = 200});
+  const Ticket touch = bench.Give(Touch{});
+  ASSERT_TRUE(bench.RunToEnd(touch, 5));
+  EXPECT_EQ(bench.last[flying].state, FeedbackState::kDone);
+  EXPECT_EQ(bench.last[touch].state, FeedbackState::kDone);
+  bench.Run(0.1);
+  EXPECT_NEAR(bench.place(), 10, 0.11);
+  EXPECT_NEAR(bench.seen.set_position, 200, 0.11);
+}
+
 // AX-100: one rule for a place beyond a SW limit, whoever would call it so.
 TEST(Reference, NoPlaceIsBeyondALimit) {
   StepAbsSwitch by_switch;
@@ -170,8 +206,10 @@ TEST(Reference, NoPlaceIsBeyondALimit) {
   by_pulse.set_position = 201;
   for (const Command& names : {Command(SetPosition{.position = 201}), Command(StepDirect{.set_position = 201}),
                                Command(by_switch), Command(by_pulse), Command(StepRefFlyingSwitch{.set_position = 201}),
-                               Command(StepRefFlyingRefPulse{.set_position = 201})}) {
+                               Command(StepRefFlyingRefPulse{.set_position = 201}), Command(Home{.position = 201})}) {
     Bench bench(-5);
+    bench.params.homing = {.method = HomingMethod::kSwitch, .velocity = 50};
+    bench.params.homing.pulse_velocity = 5;
     bench.params.limits.upper = 200;
     bench.On();
     const double before = bench.seen.set_position;
