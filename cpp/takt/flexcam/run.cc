@@ -338,11 +338,12 @@ bool TakesOver(const ClutchState& clutch) {
 }
 
 // What is to be run instead of the end of a cam that is held, if anything: what a command wants, a sequence, or what is
-// set, be it another slot, another cam in this one, or this one again and again.
-std::optional<SequenceStep> AfterHeld(const Context& c, State& s) {
+// set, be it another slot, another cam in this one, or this one again and again. `meets`: it begins where Y is.
+std::optional<SequenceStep> AfterHeld(const Context& c, bool& meets, State& s) {
   const ProfilerState& p = s.way.profiler;
   if (const PendingChange* pending = Due(s, ChangeWhen::kNextCycle)) {
     s.inputs.cam_table = pending->change.cam_table;
+    meets = meets || pending->change.align != ChangeAlign::kNothing;
     EndChange(c, FeedbackState::kDone, ErrorId::kNone, s);
     return SequenceStep{s.inputs.cam_table, s.settings.cam_cyclic};
   }
@@ -354,14 +355,15 @@ std::optional<SequenceStep> AfterHeld(const Context& c, State& s) {
 // The end of a cam that is run once is held until another one is to be run.
 void HoldOn(const Context& c, State& s) {
   ProfilerState& p = s.way.profiler;
-  const std::optional<SequenceStep> next = IsOnCurve(s.clutch) ? std::nullopt : AfterHeld(c, s);
+  bool meets = !s.settings.slave_absolute;
+  const std::optional<SequenceStep> next = IsOnCurve(s.clutch) ? std::nullopt : AfterHeld(c, meets, s);
   if (!next || IsEmpty(s, next->slot)) return GoOn(TableOf(c, s), s.x.position, p);
   const double was = s.y.position;
   Take(*next, s);
   const cam::Table& table = TableOf(c, s);
   const double back = s.x.velocity < 0 ? table.length() : 0;
   Lay(table, s.x.position, table.begin() + back, RunsOnce(c, next->cyclic, s), p);
-  if (!s.settings.slave_absolute) p.base = was - ValueAt(table, p, s.x.position).y;
+  if (meets) p.base = was - ValueAt(table, p, s.x.position).y;
 }
 
 }  // namespace

@@ -248,6 +248,29 @@ TEST(ChangeCam, AtTheEndWithWhatIsShifted) {
   }
 }
 
+// CAM-70: and where that end is held.
+TEST(ChangeCam, AtAHeldEndWithWhatIsShifted) {
+  cam::CamParams high = UpAndDown("high", 50);
+  for (cam::CamPoint& point : high.points) point.y += 30;
+  Settings settings = Quick();
+  settings.cam_cyclic = false;
+  for (const ChangeAlign align : {ChangeAlign::kPosition, ChangeAlign::kVelocity}) {
+    Bench b(MachineOf({UpAndDown("hill", 50), high}, settings));
+    b.Web(360);
+    b.Run(300);
+    ASSERT_TRUE(b.Sync());
+    ASSERT_TRUE(b.Until([&] { return b.Module().cam_ends == 1; }, 3000));
+    b.Run(100);
+    Watch watch(b);
+    const Ticket change = b.Tell(ChangeCam{2, ChangeWhen::kNextCycle, 0, align});
+    ASSERT_TRUE(b.Until([&] { return b.Module().cam_table == 2; }, 3000));
+    EXPECT_EQ(b.Of(change), FeedbackState::kDone);
+    EXPECT_NEAR(b.Knife().set_position, 0, 0.5);
+    b.Run(100);
+    watch.ExpectSmooth();
+  }
+}
+
 // CAM-23: switched off during its first cam, and on again after the way out.
 TEST(Sequencer, ItsFirstCamIsNotRunTwice) {
   Settings s = Quick();
