@@ -105,7 +105,7 @@ def belt(positions: npt.ArrayLike, measured: npt.ArrayLike, beside: npt.ArrayLik
             f"positions: expected numbers up to {REACH:g}, found {at[np.argmin(np.abs(at) <= REACH)]:g}"
         )
     spread = at - at.mean()
-    if not np.any(spread):
+    if not np.ptp(at):
         raise CalibrationError(
             "all points were measured at one position of the belt's axis: move the belt between them"
         )
@@ -128,7 +128,10 @@ def belt(positions: npt.ArrayLike, measured: npt.ArrayLike, beside: npt.ArrayLik
 
 
 def _points(values: npt.ArrayLike, least: int, name: str) -> Array:
-    points = np.atleast_2d(np.asarray(values, dtype=float))
+    try:
+        points = np.atleast_2d(np.asarray(values, dtype=float))
+    except (TypeError, ValueError):
+        raise CalibrationError(f"{name}: expected x, y, z in each row, as numbers") from None
     if points.ndim != 2 or points.shape[1] != 3:
         raise CalibrationError(f"{name}: expected x, y, z in each row, found {points.shape[-1]} numbers")
     if len(points) < least:

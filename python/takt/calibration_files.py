@@ -28,21 +28,21 @@ def lines(kind: str, file: Path) -> Iterator[str]:
         yield f"largest residual: {found.largest:.3f} mm"
 
 
-def _read(file: Path) -> list[Fields]:
+def _read(file: Path) -> list[tuple[int, Fields]]:
     head, rows = read_rows(file, CalibrationError)
     if not rows:
         raise CalibrationError(f"{file}: expected a head and a row for each point, found no row")
     missing = [name for name in MEASURED if name not in head]
     if missing:
         raise CalibrationError(f"{file}: there is no column {missing[0]}; the head says {_shown(head)}")
-    return [fields for _, fields in rows]
+    return rows
 
 
 def _shown(head: Sequence[str]) -> str:
     return shortened(", ".join(head))
 
 
-def _numbers(file: Path, row: int, fields: Fields, names: tuple[str, ...]) -> list[float]:
+def _numbers(file: Path, line: int, fields: Fields, names: tuple[str, ...]) -> list[float]:
     numbers = []
     for name in names:
         try:
@@ -51,14 +51,14 @@ def _numbers(file: Path, row: int, fields: Fields, names: tuple[str, ...]) -> li
             numbers.append(math.nan)
         if not math.isfinite(numbers[-1]):
             found = shortened(repr(fields.get(name)))
-            raise CalibrationError(f"{file}:{row + 2}: {name}: expected a finite number, found {found}")
+            raise CalibrationError(f"{file}:{line}: {name}: expected a finite number, found {found}")
     return numbers
 
 
-def _frame(file: Path, rows: list[Fields]) -> Calibration:
-    measured = [_numbers(file, row, fields, MEASURED) for row, fields in enumerate(rows)]
-    if any(name in rows[0] for name in SEEN):
-        return calibrate.fit([_numbers(file, row, fields, SEEN) for row, fields in enumerate(rows)], measured)
+def _frame(file: Path, rows: list[tuple[int, Fields]]) -> Calibration:
+    measured = [_numbers(file, line, fields, MEASURED) for line, fields in rows]
+    if any(name in rows[0][1] for name in SEEN):
+        return calibrate.fit([_numbers(file, line, fields, SEEN) for line, fields in rows], measured)
     if len(measured) != 3:
         raise CalibrationError(
             f"{file}: expected three points (origin, on X, towards Y), found {len(measured)}; more of them need the "
@@ -67,14 +67,14 @@ def _frame(file: Path, rows: list[Fields]) -> Calibration:
     return calibrate.three_points(*measured)
 
 
-def _belt(file: Path, rows: list[Fields]) -> Calibration:
-    if "position" not in rows[0]:
-        raise CalibrationError(f"{file}: there is no column position; the head says {_shown(list(rows[0]))}")
+def _belt(file: Path, rows: list[tuple[int, Fields]]) -> Calibration:
+    if "position" not in rows[0][1]:
+        raise CalibrationError(f"{file}: there is no column position; the head says {_shown(list(rows[0][1]))}")
     positions, measured, beside = [], [], []
-    for row, fields in enumerate(rows):
-        point = _numbers(file, row, fields, MEASURED)
+    for line, fields in rows:
+        point = _numbers(file, line, fields, MEASURED)
         if (fields["position"] or "").strip():
-            positions += _numbers(file, row, fields, ("position",))
+            positions += _numbers(file, line, fields, ("position",))
             measured.append(point)
         else:
             beside.append(point)

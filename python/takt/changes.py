@@ -38,6 +38,9 @@ def _parts(text: str, file_name: str, paths: tuple[str, ...]) -> tuple[str | int
     """The text around the values, and the numbers of these."""
     for number, path in enumerate(paths):
         text = _edited(text, file_name, path, MARK.format(number))
+        for before in range(number):
+            if MARK.format(before) not in text:
+                raise ConfigError([f"{file_name}: {paths[before]} and {path} are the same value, which is given twice"])
     places = sorted((text.index(MARK.format(number)), number) for number in range(len(paths)))
     parts: list[str | int] = []
     at = 0

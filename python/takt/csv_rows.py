@@ -6,7 +6,7 @@ import csv
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from takt.errors import TaktError
 
@@ -15,22 +15,31 @@ Fields = dict[str, str | None]
 
 class Rows(NamedTuple):
     """The names in the head, and the fields of each row by name with the number of its line. Fields that a row lacks
-    are None; those that it has too many stand under ""."""
+    are None; empty ones that it has too many stand under ""."""
 
     head: Sequence[str]
     rows: list[tuple[int, Fields]]
 
 
 def read_rows(file: str | os.PathLike[str], error: type[TaktError]) -> Rows:
-    """Reads the file. Raises `error` where it is no CSV in UTF-8, OSError where it cannot be read."""
+    """Reads the file. Raises `error` where it is no CSV in UTF-8 or a row has more fields than the head, OSError where
+    it cannot be read."""
     with Path(file).open(encoding="utf-8-sig", newline="") as source:
-        table = csv.DictReader(source, restkey="", skipinitialspace=True)
+        table = csv.DictReader(source, restkey="", skipinitialspace=True, strict=True)
         try:
-            head = table.fieldnames or ()
-            return Rows(head, [(table.line_num, row) for row in table])
+            head, rows = table.fieldnames or (), []
+            for row in table:
+                more: Any = row.get("")  # text where the head ends in a comma
+                if isinstance(more, list) and any(more):
+                    raise error(
+                        f"{os.fspath(file)}:{table.line_num}: expected {len(head)} fields as in the head, found "
+                        f"{len(head) + len(more)}"
+                    )
+                rows.append((table.line_num, row))
+            return Rows(head, rows)
         except UnicodeDecodeError as wrong:
             raise error(
                 f"{os.fspath(file)}: expected text in UTF-8, found the byte 0x{wrong.object[wrong.start]:02x}"
             ) from None
         except csv.Error as wrong:  # a quotation mark that nothing ends, a field of megabytes
-            raise error(f"{os.fspath(file)}:{table.line_num}: is no CSV: {wrong}") from None
+            raise error(f"{os.fspath(file)}:{table.reader.line_num}: is no CSV: {wrong}") from None

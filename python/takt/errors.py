@@ -23,6 +23,9 @@ class ConfigError(TaktError, ValueError):
         self.problems = list(problems)
         super().__init__("\n".join(self.problems))
 
+    def __reduce__(self) -> tuple[type[ConfigError], tuple[list[str]]]:
+        return type(self), (self.problems,)  # pickled, as by runs in several processes
+
 
 class CommandError(TaktError):
     """A command was refused, failed or aborted. `feedback` has the details."""

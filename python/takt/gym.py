@@ -67,7 +67,7 @@ class ReachEnv(gymnasium.Env[Floats, Floats]):
                 raise TaktError(f"{what}: expected a number above 0, found {value!r}")
         self._engine = Engine(machine, journal=True)
         self._cycles = max(1, round(step_s / self._engine.period))
-        self._most = max(1, round(episode_s / step_s))
+        self._most = max(1, round(episode_s / (self._cycles * self._engine.period)))
         self._within = within
         low, high, speed = [], [], []
         for name in self._names:

@@ -396,7 +396,8 @@ class Recording:
             if names := part.names(component, field):
                 numbers = frame[f"{component}.{field}"]
                 texts = numbers.map(lambda value, names=names: names.get(int(value), f"?{int(value)}"), "ignore")
-                frame[f"{component}.{field}"] = pandas.Categorical(texts, dict.fromkeys(names.values()))
+                kinds = dict.fromkeys([*names.values(), *texts.dropna()])
+                frame[f"{component}.{field}"] = pandas.Categorical(texts, kinds)
         return frame
 
     def to_parquet(self, path: str | PathLike[str], *signals: str) -> Path:
@@ -524,6 +525,8 @@ def _table(
 
 
 def _enumerated(component: str, field: str, values: Array) -> Array:
+    if values.dtype.kind not in "biuf":
+        raise RecordingError(f"'{component}.{field}' holds {values.dtype}, not numbers")
     numbers = np.where(np.isnan(values), UNKNOWN_NAME, values) if values.dtype.kind == "f" else values
     if len(numbers) and (np.any(numbers < -128) or np.any(numbers > 127)):
         raise RecordingError(f"'{component}.{field}' is enumerated, but holds values outside -128 to 127")

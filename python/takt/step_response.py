@@ -6,6 +6,7 @@ other move.
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -103,6 +104,8 @@ def _turning_points(response: NDArray[np.float64], band: float) -> int:
 def step_response(session: Session, axis: Axis, distance: float, watch_s: float = 0.5) -> StepResponse:
     """Makes a step of `distance` [u] and back, and returns the response on the way there. Each way is watched until the
     axis rests: `watch_s` at least, six times that at most. Raises TaktError where the axis does not take the step."""
+    if not math.isfinite(distance) or distance == 0:
+        raise TaktError(f"{axis.name}: a step has a length; {distance:g} {axis.unit} is none")
     there, _ = there_and_back(session, axis, distance, watch_s)
     if axis.error:
         raise TaktError(f"{axis.name}: the step ended in error {axis.error}")

@@ -87,8 +87,11 @@ class MotionAssertionError(AssertionError):
     is."""
 
     def __init__(self, verdict: Verdict, note: str = "") -> None:
-        self.verdict = verdict
+        self.verdict, self._note = verdict, note
         super().__init__(f"{verdict.title}: {verdict.sentence}" + (f"\n{note}" if note else ""))
+
+    def __reduce__(self) -> tuple[type[MotionAssertionError], tuple[Verdict, str]]:
+        return type(self), (self.verdict, self._note)  # pickled, as by tests in several processes
 
 
 def seconds(time_s: float) -> str:

@@ -73,12 +73,39 @@ def test_belt() -> None:
             "point 2",
         ),
         (lambda: calibrate.belt([5, 5], [[0, 0, 0], [9, 0, 0]], [0, 9, 0]), "one position"),
+        (lambda: calibrate.belt([0.1] * 3, [[0, 0, 0], [9, 0, 0], [18, 0, 0]], [0, 9, 0]), "one position"),
         (lambda: calibrate.belt([0, 50], [[0, 0, 0], [50, 0, 0]], [70, 0, 0]), "must not lie on it"),
+        (lambda: calibrate.fit([[0, 0, 0], [1, 0]], [[0, 0, 0], [1, 0, 0]]), "x, y, z in each row, as numbers"),
     ],
 )
 def test_points_that_define_no_frame(call: object, sentence: str) -> None:
     with pytest.raises(CalibrationError, match=sentence):
         call()  # type: ignore[operator]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("x,y,z\n0,0,0\n1,5,2,5,3,5\n0,9,0\n", ":3: expected 3 fields as in the head, found 6"),
+        ("x,y,z\n\n0,0,0\n\n1,a,0\n0,1,0\n", ":5: y: expected a finite number, found 'a'"),
+        ('x,y,z,note\n0,0,0,\n9,0,0,"top\n0,9,0,\n5,5,0,\n', ":5: is no CSV"),
+        ('x,y,z\n0,0,0\n"9"5,0,0\n0,9,0\n', ":3: is no CSV"),
+    ],
+)
+def test_rows_that_cannot_be_read(text: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Decimal commas, quotation marks that nothing ends; with the number of the line."""
+    (tmp_path / "table.csv").write_text(text)
+    assert main(["calibrate", "frame", str(tmp_path / "table.csv")]) == 2
+    assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["x,y,z\n100,50,10,\n100,150,10\n20,60,10,,\n", "x,y,z,\n100,50,10,5\n100,150,10\n20,60,10,\n"],
+)
+def test_commas_at_the_end_of_a_line_mean_nothing(text: str, tmp_path: Path) -> None:
+    (tmp_path / "table.csv").write_text(text)
+    assert main(["calibrate", "frame", str(tmp_path / "table.csv")]) == 0
 
 
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

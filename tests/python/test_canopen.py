@@ -326,6 +326,11 @@ def test_names_of_buses(name: str, sentence: str) -> None:
     assert str(caught.value).startswith(sentence)
 
 
+def test_options_that_are_no_numbers_stay_texts() -> None:
+    """AX-87."""
+    assert parse("canopen:virtual:a?x=--5&y=-5&z=²").options == {"x": "--5", "y": -5, "z": "²"}
+
+
 def test_an_interface_that_is_not_there() -> None:
     """AX-87: one line, with what to look at."""
     with pytest.raises(TaktError, match=r"canopen:nocan7: the bus cannot be opened: .*ip link set nocan7 up"):

@@ -99,6 +99,11 @@ def test_what_cannot_be_changed(key: str, wrong: str) -> None:
         changed(MACHINE.encode(), "m", {key: 1})
 
 
+def test_a_value_is_given_once() -> None:
+    with pytest.raises(takt.ConfigError, match=r"axes\.x\.limits\.velocity and axes\.0\.limits\.velocity are the same"):
+        changed(MACHINE.encode(), "m", {"axes.x.limits.velocity": 1, "axes.0.limits.velocity": 2})
+
+
 def test_what_the_engine_complains_about() -> None:
     with pytest.raises(takt.ConfigError, match=r"limits: expected a known key, found 'velocty'; did you mean velocity"):
         takt.Engine(MACHINE, changes={"axes.x.limits.velocty": 1})

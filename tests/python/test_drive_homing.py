@@ -269,6 +269,17 @@ def test_the_handshake_of_a_probe() -> None:
     assert probe.fall.age_s == pytest.approx(0.001)
 
 
+def test_a_short_pulse_leaves_the_wire_as_it_was() -> None:
+    """AX-49: both edges within one cycle."""
+    probe = ProbeLatch(1)
+    probe.take((None, None), 0, 10, 0.001)
+    probe.take((5, None), 10, 10, 0.001)
+    assert probe.wire
+    probe.take((None, None), 20, 10, 0.001)
+    probe.take((28, 22), 30, 10, 0.001)
+    assert (probe.wire, probe.rise.count, probe.fall.count) == (True, 3, 2)
+
+
 def test_homing_and_probes_by_the_clock(tmp_path: Path) -> None:
     """In real time, with answers that come a cycle later: reference and edges are right; a drive that has started anew
     homes again."""

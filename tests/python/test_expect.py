@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 from motion_curves import DT, LIMITS, STATES, axis, one_axis
 from takt import checks, expect
+from takt.errors import ConfigError
 from takt.recording import Recording, RecordingError
 from takt.verdict import MotionAssertionError, Verdict
 
@@ -191,6 +193,10 @@ def test_a_failure_raises_with_a_sentence_and_a_picture(tmp_path: Path, monkeypa
     text = str(caught.value)
     assert isinstance(caught.value, AssertionError)
     assert text.startswith("reaches(x): x did not reach 100 mm ± 0.01 mm by 0.88 s")
+    again = pickle.loads(pickle.dumps(caught.value))  # as between processes
+    assert (str(again), again.verdict.sentence) == (text, caught.value.verdict.sentence)
+    wrong = pickle.loads(pickle.dumps(ConfigError(["a: one", "b: two"])))
+    assert wrong.problems == ["a: one", "b: two"]
     picture = caught.value.verdict.picture
     assert picture is not None
     assert f"picture: {picture}" in text

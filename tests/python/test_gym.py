@@ -52,6 +52,20 @@ def test_gymnasium_checks_it() -> None:
         ReachEnv(MACHINE, [])
 
 
+def test_an_episode_lasts_as_long_as_it_should() -> None:
+    """PY-23: steps are whole cycles, however short ones are asked for."""
+    pytest.importorskip("gymnasium")
+    from takt.gym import ReachEnv
+
+    with takt.Engine(MACHINE) as engine:
+        period = engine.period
+    env = ReachEnv(MACHINE, ["x"], step_s=period / 4, episode_s=10 * period)
+    env.reset(seed=1)
+    ended = [env.step([0.0])[3] for _ in range(10)]
+    assert ended == [False] * 9 + [True]
+    env.close()
+
+
 @pytest.mark.parametrize(
     ("axes", "options", "said"),
     [

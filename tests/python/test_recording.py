@@ -204,6 +204,8 @@ def test_dataframe() -> None:
     frame = two_rates().to_dataframe("x.state", "belt")
     assert frame["x.state"].iloc[0] == "Standstill"
     assert frame["x.state"].dtype.name == "category"
+    unknown = Recording({"x": {"time_s": [0, 1], "state": [0, 5]}}, names={"x": {"state": ["A"]}}).to_dataframe()
+    assert unknown["x.state"].tolist() == ["A", "?5"]
     assert frame["belt.position"].dropna().tolist() == [0.5, 1.5]
     assert "x.set_position" not in frame
     assert frame.attrs["units"]["belt.position"] == "m"
@@ -253,6 +255,7 @@ def test_a_package_that_is_not_installed_is_named(
         ({"time_s": [0.0, 1.0], "cycle": [5, 4]}, "cycle of 'x' does not rise"),
         ({"time_s": [0.0], "p": ["a"]}, "not numbers"),
         ({"time_s": [0.0], "state": [300]}, "outside -128 to 127"),
+        ({"time_s": [0.0], "state": ["A"]}, "'x.state' holds <U1, not numbers"),
     ],
 )
 def test_what_cannot_be_a_recording(columns: dict[str, Any], sentence: str) -> None:

@@ -418,6 +418,9 @@ def test_the_worse_way_counts() -> None:
 def test_steps_of_an_axis_whose_drive_closes_the_loop() -> None:
     with takt.Engine(machine(mode="cyclic_position")) as engine:
         x = powered(engine)
+        for nothing in (0.0, math.nan):
+            with pytest.raises(takt.TaktError, match="a step has a length"):
+                tuning.step_response(engine, x, nothing)
         figures = tuning.step_response(engine, x, STEP)
         assert figures.rise_s < figures.settling_s < 0.05
         assert figures.rest == pytest.approx(0, abs=1e-3)

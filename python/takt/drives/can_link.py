@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import re
 import threading
 import time
 from collections import deque
@@ -62,7 +63,7 @@ def parse(text: str) -> BusName:
         key, equals, value = part.partition("=")
         if not equals or not key:
             raise TaktError(f"{text}: expected OPTION=VALUE behind the question mark, found {part}")
-        options[key] = int(value) if value.lstrip("-").isdigit() else value
+        options[key] = int(value) if re.fullmatch(r"-?[0-9]+", value) else value
     interface, colon, channel = rest.partition(":")
     if not colon:
         return BusName(text, DEFAULT_INTERFACE, rest, options)

@@ -368,7 +368,7 @@ class CanopenBus(FieldBus):
 
     def _again(self, node: _Node) -> None:
         """Sets a drive up that has started anew, beside the cycle."""
-        node.operational = False
+        node.operational = node.fresh = False
 
         def set_up() -> None:
             try:
@@ -403,8 +403,8 @@ class CanopenBus(FieldBus):
     def _tell_clock(self, simulated: bool) -> None:
         with self._link.background():
             for node in self._nodes:
-                if node.setting_up is not None:
-                    node.setting_up.join()
+                if (setting_up := node.setting_up) is not None:  # it ends by itself
+                    setting_up.join()
                 if node.emulated:
                     self._sdos[node.id].patience(1.0).write(*CLOCK, CLOCK_IS_SYNC if simulated else 0, 8)
 

@@ -70,7 +70,7 @@ class ProbeLatch:
 
     def take(self, stored: tuple[int | None, int | None], position: int, step: int, period_s: float) -> None:
         """With the position of this cycle, and increments since the one `period_s` before."""
-        if self.rise.take(stored[0], position, step, period_s):
-            self.wire = True
-        if self.fall.take(stored[1], position, step, period_s):
-            self.wire = False
+        rose = self.rise.take(stored[0], position, step, period_s)
+        fell = self.fall.take(stored[1], position, step, period_s)
+        if rose != fell:  # a short pulse leaves the wire as it was
+            self.wire = rose
