@@ -233,6 +233,7 @@ class Plant:
             shared.lines = [_Line(axis, None, shared) for axis in shared.bus.axes]
             self._lines |= {line.axis: line for line in shared.lines}
         self._running = False
+        self._stopped = False
         self.malformed = 0  # messages that were no set points
         for line in self._lines.values():
             # Channels are regular expressions here; a point is the only such sign that a name may have.
@@ -244,13 +245,14 @@ class Plant:
         """Serves until `stop`, or for so long."""
         end_s = None if duration_s is None else time.monotonic() + duration_s
         self._running = True
-        while self._running and (end_s is None or time.monotonic() < end_s):
+        while not self._stopped and (end_s is None or time.monotonic() < end_s):
             left_s = _MOST_WAIT_S if end_s is None else max(0.0, min(_MOST_WAIT_S, end_s - time.monotonic()))
             self.handle(left_s)
+        self._running = self._stopped = False
 
     def stop(self) -> None:
-        """Ends `run`; from a drive, or from another thread."""
-        self._running = False
+        """Ends `run`, also one that is about to begin; from a drive, another thread or a signal."""
+        self._stopped = True
 
     def handle(self, timeout_s: float = 0.0) -> None:
         """Carries out what has come, waiting so long for the first of it at most, and sees to the watchdog."""

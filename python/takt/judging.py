@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import dis
 import inspect
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from types import CodeType, FunctionType
+from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
 
@@ -21,13 +21,23 @@ def asserts(function: Callable[..., object], folder: Path) -> bool:
             continue
         known.add(id(one))
         if inspect.isclass(one):
-            waiting += [member for member in vars(one).values() if isinstance(member, FunctionType)]
+            members = [getattr(member, "__func__", member) for member in vars(one).values()]  # static ones, too
+            waiting += [member for member in members if isinstance(member, FunctionType)]
         elif isinstance(one, FunctionType) and _lies_in(one, folder):
             for code in _codes(one.__code__):
                 if any(_asserts(instruction) for instruction in dis.get_instructions(code)):
                     return True
-                waiting += [one.__globals__[name] for name in code.co_names if name in one.__globals__]
+                waiting += _named(code, one.__globals__)
     return False
+
+
+def _named(code: CodeType, names: Mapping[str, object]) -> Iterator[object]:
+    """What stands behind the names that it uses, those of modules included."""
+    for name in code.co_names:
+        found = names.get(name)
+        yield found
+        if isinstance(found, ModuleType):
+            yield from (vars(found)[of] for of in code.co_names if of in vars(found))
 
 
 def _asserts(instruction: dis.Instruction) -> bool:

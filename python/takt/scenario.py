@@ -162,8 +162,13 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
     if spec is None or spec.loader is None:
         raise ScenarioError(f"{file}: is no Python file")
     module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # as dataclasses and pickle look for it
     with modules_of(file.resolve().parent), _no_exit(file):
-        spec.loader.exec_module(module)
+        try:
+            spec.loader.exec_module(module)
+        except BaseException:
+            sys.modules.pop(spec.name, None)
+            raise
     scenario: Any = getattr(module, "scenario", None)
     verify: Any = getattr(module, "verify", None)
     pictures: Any = getattr(module, "pictures", None)

@@ -107,6 +107,16 @@ def test_a_plant_of_ones_own() -> None:
         engine.shut_down()
 
 
+def test_a_plant_told_to_end_before_it_begins_ends() -> None:
+    """As by a signal between its first line and its first set point."""
+    idle = drive.Plant({"x": Lag()}, new_url())
+    idle.stop()
+    begin_s = time.monotonic()
+    idle.run(LONG_S)
+    assert time.monotonic() - begin_s < LONG_S / 2
+    idle.run(0.01)  # and serves when it is told to again
+
+
 def test_what_the_documentation_shows() -> None:
     """EN-26: its machine and its drive."""
     page = (Path(__file__).parents[2] / "docs" / "real_drives.md").read_text()

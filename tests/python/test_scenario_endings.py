@@ -141,7 +141,9 @@ JUDGES = {
     "an assertion of motion": "expect.within_limits(recording, 'x')",
     "a plain one": "assert recording.duration_s > 0",
     "one of a function": "long(recording)",
-    "one of another file": "helper.long(recording)",
+    "one of another file": "helper.far_away(recording)",
+    "one of another file's class": "helper.Far.away(recording)",
+    "one of a static method": "Still.judge(recording)",
     "one of a method": "Judge().long(recording)",
     "one inside": "[check() for check in [lambda: long(recording)]]",
 }
@@ -155,6 +157,17 @@ def long(recording):
     assert recording.duration_s > 0
 class Judge:
     def long(self, recording):
+        assert recording.duration_s > 0
+class Still:
+    @staticmethod
+    def judge(recording):
+        assert recording.duration_s > 0
+"""
+JUDGED_HELPER = """def far_away(recording):
+    assert recording.duration_s > 0
+class Far:
+    @classmethod
+    def away(cls, recording):
         assert recording.duration_s > 0
 """
 
@@ -175,9 +188,18 @@ def test_verify_does_not_pass(case: str, here: Path, capsys: pytest.CaptureFixtu
 
 @pytest.mark.parametrize("case", JUDGES)
 def test_verify_judges(case: str, here: Path) -> None:
-    Path("helper.py").write_text("def long(recording):\n    assert recording.duration_s > 0\n")
+    Path("helper.py").write_text(JUDGED_HELPER)
     Path("judged.py").write_text(JUDGED.format(line=JUDGES[case]))
     assert main(["run", "judged.py"]) == 0
+
+
+def test_a_scenario_with_a_dataclass(here: Path) -> None:
+    Path("data.py").write_text(
+        "from __future__ import annotations\nfrom dataclasses import dataclass\n"
+        "@dataclass\nclass Place:\n    x: float\ndef scenario(session):\n    session.run(Place(0.1).x)\n"
+        "def verify(recording):\n    return True\n"
+    )
+    assert main(["run", "data.py"]) == 0
 
 
 def test_without_verify(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
