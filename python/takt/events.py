@@ -66,7 +66,8 @@ class EventLog:
             if at >= size:
                 break
             end = _end_of(text, at)
-            following = end if end is not None and text.startswith(SYNC, end) else _next_sync(text, at + len(SYNC))
+            whole = end is not None and (end == size or text.startswith(SYNC, end))
+            following = end if end is not None and whole else _next_sync(text, at + len(SYNC))
             if end is not None and end <= following:
                 yield _event(text, at, end)
                 self.left_over += following - end

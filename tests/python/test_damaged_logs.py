@@ -59,6 +59,15 @@ def test_what_lcm_reads_of_a_whole_log(whole: bytes, tmp_path: Path) -> None:
     assert ours.left_over == 0
 
 
+def test_an_event_at_the_end_may_hold_a_sync_word(tmp_path: Path) -> None:
+    data = b"a" + SYNC + b"b"
+    head = HEADER.pack(SYNC, 0, 5, 1, len(data))
+    (tmp_path / "log").write_bytes(head + b"c" + data)
+    read = EventLog(tmp_path / "log")
+    assert [one.data for one in read.events()] == [data]
+    assert read.left_over == 0
+
+
 def changed_byte(data: bytes, chance: random.Random) -> tuple[bytes, int, int]:
     at = chance.randrange(len(data))
     return data[:at] + bytes([data[at] ^ (1 << chance.randrange(8))]) + data[at + 1 :], at, at + 1

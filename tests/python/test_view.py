@@ -285,6 +285,10 @@ def test_the_ledger_knows_what_became_of_commands() -> None:
         ('{"epoch": 1, "signals": 3}', "list of pairs"),
         ('{"epoch": 1, "signals": [[0, "set_position"]], "after": [[0, "x"]]}', "no number"),
         ('{"epoch": 1, "details": "x"}', "list of components"),
+        ('{"epoch": 1, "signals": [[0, []]]}', r"publishes no \[\]"),
+        ('{"epoch": 1, "signals": [[0, "set_position"]], "after": [[0, 1%s]]}' % ("0" * 400), "finite"),
+        ("[" * 100_000, "JSON"),
+        ('{"epoch": 1, "command": ["machine", "add_cam_points", {"points": [{"x": 1%s}]}]}' % ("0" * 400), "a command"),
         ('{"epoch": 1, "command": "jog"}', "a command has"),
         ('{"epoch": 1, "command": ["x", "jog", {"velocity": "}, evil: {"}]}', "a command has"),
         *(

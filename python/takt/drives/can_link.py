@@ -210,8 +210,8 @@ class Sdo(Objects):
     """Objects of one node. Someone else has to take in messages meanwhile (`CanLink.background`)."""
 
     def __init__(self, link: CanLink, node: int, timeout_s: float = 0.3) -> None:
-        _, canopen = packages()
-        self._canopen = canopen
+        can, canopen = packages()
+        self._can, self._canopen = can, canopen
         self._remote = canopen.RemoteNode(node, canopen.ObjectDictionary())
         link.network.add_node(self._remote)  # instead of one that there was
         self._remote.sdo.RESPONSE_TIMEOUT = timeout_s
@@ -238,6 +238,8 @@ class Sdo(Objects):
                 raise SdoError(f"{what}: {abort_text(error.code)}", error.code) from None
             except self._canopen.SdoCommunicationError:
                 pass
+            except self._can.CanError as error:  # a buffer full of frames that no node acknowledges
+                raise SdoError(f"{what}: {' '.join(str(error).split())}") from None
         raise SdoError(f"{what}: no answer")
 
 

@@ -7,6 +7,7 @@ and send what they measured at that very moment.
 from __future__ import annotations
 
 import contextlib
+import math
 import struct
 import threading
 import time
@@ -49,6 +50,7 @@ from takt.errors import TaktError
 OPERATIONAL: Final = 5
 HEARTBEATS_MISSING: Final = 3
 LISTENED_S: Final = 0.1  # for another master, which sends SYNC in each of its cycles
+AGAIN_S: Final = 1.0  # from a set-up that failed to the next one
 STARTS_WITHIN_S: Final = 0.5  # until a node says that it is operational
 INPUTS_AGAIN_MS: Final = 100  # inputs come when they change, and that often, as one message may be lost
 BUSY: Final = 0.8  # of the bit rate
@@ -85,6 +87,7 @@ class _Node:
         self.started_s = 0.0
         self.lost = False
         self.setting_up: threading.Thread | None = None
+        self.again_s = math.inf  # when it is to be set up again
 
     @property
     def called(self) -> str:
@@ -369,6 +372,7 @@ class CanopenBus(FieldBus):
     def _again(self, node: _Node) -> None:
         """Sets a drive up that has started anew, beside the cycle."""
         node.operational = node.fresh = False
+        node.again_s = math.inf
 
         def set_up() -> None:
             try:
@@ -376,8 +380,9 @@ class CanopenBus(FieldBus):
                 self._start_node(node)
                 self._say(f"{node.named} is set up again")
             except TaktError as error:
-                self._say(f"{error}: tried again with its next sign of life")
-                node.operational = True  # so that the next heartbeat begins anew
+                self._say(f"{error}: tried again in a second, or with its next sign of life")
+                node.operational = True  # so that the next heartbeat begins anew ...
+                node.again_s = time.monotonic() + AGAIN_S  # ... or the time, where it sends none yet
             finally:
                 node.setting_up = None
 
@@ -390,6 +395,8 @@ class CanopenBus(FieldBus):
             self._own_beat_s = now_s
             self._link.send(HEARTBEAT + int(self.described["node"]), bytes((OPERATIONAL,)))
         for node in self._nodes:
+            if now_s >= node.again_s and node.setting_up is None:
+                self._again(node)
             silent_s = now_s - node.heard_s
             if silent_s > HEARTBEATS_MISSING * self._heartbeat_s and not node.lost and node.setting_up is None:
                 node.lost = True

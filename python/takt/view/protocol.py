@@ -7,8 +7,8 @@ says what the numbers are. To the server: JSON texts, see `Request`."""
 from __future__ import annotations
 
 import json
-import math
 import struct
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -23,6 +23,7 @@ MOST_DETAILS = 16
 MOST_LETTERS = 60  # of a name or a unit
 SIGNS = set("\"'\\{}[]:,#")  # that end or begin something in the text of arguments
 POINTS = 20  # of a cam in one command
+LARGEST = sys.float_info.max  # integers of JSON may be larger
 KEYS = dict.fromkeys(("ack", "epoch", "signals", "after", "details", "command", "hold")).keys()
 
 
@@ -54,7 +55,7 @@ def parse(text: str, machine: Machine | None, epoch: int) -> Request:
     """What a page says. What it says of a machine that is gone is left out."""
     try:
         said = json.loads(text)
-    except ValueError:
+    except (ValueError, RecursionError):
         raise RequestError("a request is JSON") from None
     if not isinstance(said, dict) or not said.keys() <= KEYS:
         raise RequestError(f"a request has some of {', '.join(KEYS)}")
@@ -80,7 +81,7 @@ def _signals(said: Any, machine: Machine) -> dict[int, tuple[str, ...]]:
     wanted: dict[int, dict[str, None]] = {}
     for at, name in pairs:
         source = machine.sources[_index(at, machine)]
-        if name not in source.layout.dtype.fields:  # type: ignore[operator]
+        if not isinstance(name, str) or name not in source.layout.dtype.fields:  # type: ignore[operator]
             raise RequestError(f"{source.name} publishes no {name!r}")
         wanted.setdefault(source.index, {})[name] = None
     return {index: tuple(fields) for index, fields in wanted.items()}
@@ -119,7 +120,7 @@ def _are_points(value: Any) -> bool:
         and all(
             isinstance(point, dict)
             and point.keys() <= set("xyva")
-            and all(type(number) in (int, float) and math.isfinite(number) for number in point.values())
+            and all(type(number) in (int, float) and abs(number) <= LARGEST for number in point.values())
             for point in value
         )
     )
@@ -140,4 +141,6 @@ def _index(said: Any, machine: Machine) -> int:
 def _number(said: Any) -> float:
     if type(said) not in (int, float):
         raise RequestError(f"{said!r} is no number")
+    if not abs(said) <= LARGEST:
+        raise RequestError("a number is finite")
     return float(said)
