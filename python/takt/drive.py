@@ -232,7 +232,6 @@ class Plant:
         for shared in self._shared:
             shared.lines = [_Line(axis, None, shared) for axis in shared.bus.axes]
             self._lines |= {line.axis: line for line in shared.lines}
-        self._running = False
         self._stopped = False
         self.malformed = 0  # messages that were no set points
         for line in self._lines.values():
@@ -244,11 +243,10 @@ class Plant:
     def run(self, duration_s: float | None = None) -> None:
         """Serves until `stop`, or for so long."""
         end_s = None if duration_s is None else time.monotonic() + duration_s
-        self._running = True
         while not self._stopped and (end_s is None or time.monotonic() < end_s):
             left_s = _MOST_WAIT_S if end_s is None else max(0.0, min(_MOST_WAIT_S, end_s - time.monotonic()))
             self.handle(left_s)
-        self._running = self._stopped = False
+        self._stopped = False
 
     def stop(self) -> None:
         """Ends `run`, also one that is about to begin; from a drive, another thread or a signal."""

@@ -66,8 +66,10 @@ class EventLog:
             if at >= size:
                 break
             end = _end_of(text, at)
-            whole = end is not None and (end == size or text.startswith(SYNC, end))
-            following = end if end is not None and whole else _next_sync(text, at + len(SYNC))
+            if end is not None and (end == size or text.startswith(SYNC, end)):
+                following = end
+            else:
+                following = _next_sync(text, at + len(SYNC))
             if end is not None and end <= following:
                 yield _event(text, at, end)
                 self.left_over += following - end

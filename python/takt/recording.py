@@ -508,12 +508,12 @@ def _table(
             )
     arrays = {"time_s": time_s, "cycle": cycle} | {f: a for f, a in arrays.items() if f not in ("time_s", "cycle")}
     for field in arrays:
+        if arrays[field].dtype.kind not in "biuf":
+            raise RecordingError(f"'{component}.{field}' holds {arrays[field].dtype}, not numbers")
         if field in names:
             arrays[field] = _enumerated(component, field, arrays[field])
         elif arrays[field].dtype.kind == "u":
             arrays[field] = arrays[field].astype(np.int64)
-        elif arrays[field].dtype.kind not in "bif":
-            raise RecordingError(f"'{component}.{field}' holds {arrays[field].dtype}, not numbers")
     table = np.empty(len(time_s), dtype=[(f, a.dtype) for f, a in arrays.items()])
     for first in range(0, len(table), BLOCK):  # columns of all rows, one after the other, would leave the cache
         part = slice(first, first + BLOCK)
@@ -525,8 +525,6 @@ def _table(
 
 
 def _enumerated(component: str, field: str, values: Array) -> Array:
-    if values.dtype.kind not in "biuf":
-        raise RecordingError(f"'{component}.{field}' holds {values.dtype}, not numbers")
     numbers = np.where(np.isnan(values), UNKNOWN_NAME, values) if values.dtype.kind == "f" else values
     if len(numbers) and (np.any(numbers < -128) or np.any(numbers > 127)):
         raise RecordingError(f"'{component}.{field}' is enumerated, but holds values outside -128 to 127")

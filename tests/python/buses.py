@@ -89,7 +89,6 @@ def run_on(kind: Callable[..., AnyBus], text: str, url: str, watchdog: int) -> I
     plant = drive.Plant({}, url, buses=[bus], watchdog=watchdog, say=said.append)
     thread = threading.Thread(target=plant.run)
     thread.start()
-    eventually(lambda: plant._running)
     try:
         yield bus, said
     finally:

@@ -119,7 +119,6 @@ def served(url: str, served_drive: drive.Drive, watchdog: int = 100) -> Iterator
     made = drive.Plant({"x": served_drive}, url, watchdog=watchdog, say=said.append)
     thread = threading.Thread(target=made.run)
     thread.start()
-    eventually(lambda: made._running)
     try:
         yield made, said
     finally:

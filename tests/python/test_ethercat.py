@@ -20,6 +20,7 @@ from buses import PERIOD_S, eventually
 from machines import new_url, running
 from takt import drive, msgs
 from takt.cli import main
+from takt.drives import ethercat_bus
 from takt.drives.ethercat_bus import drift_of
 from takt.drives.ethercat_link import OPERATIONAL, Wire
 from takt.drives.phase import Phase
@@ -93,6 +94,20 @@ def test_an_engine_starts_while_frames_get_lost(tmp_path: Path) -> None:
             x1.move_absolute(position=1.0).wait()
             assert x1.error == 0
         mended.join()
+
+
+def test_an_emulated_slave_that_does_not_hear_whose_clock_counts_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """AX-87."""
+    url = new_url()
+    text = machine(url, 1)
+    monkeypatch.setattr(ethercat_bus, "CLOCK_WITHIN_S", 0.2)
+    with emulated(text, tmp_path) as emulation, run(text, url) as (served, _):
+        tell(emulation, "lose 100")
+        with pytest.raises(TaktError, match="x1: slave 1: 0x2000:0 cannot be written with 1: no answer"):
+            served.start("x1", real_time=False, period_s=PERIOD_S)
+        tell(emulation, "lose 0")
 
 
 def test_cables_supply_and_lost_frames_in_motion(tmp_path: Path) -> None:

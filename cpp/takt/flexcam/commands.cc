@@ -103,8 +103,10 @@ void describe(Enumeration<ChangeAlign>& e) {
   e.about("What is shifted at a change of cam.");
   e.value(ChangeAlign::kNothing, "nothing", "Nothing.");
   e.value(ChangeAlign::kPosition, "position", "Y, so that the position does not jump.");
-  e.value(ChangeAlign::kVelocity, "velocity",
-          "X to the nearest place of the new cam with the same slope, then Y: neither position nor velocity jumps.");
+  e.value(
+      ChangeAlign::kVelocity, "velocity",
+      "X to the nearest place of the new cam with the same slope, then Y: neither position nor velocity jumps. From an "
+      "end that is held: from the cam's beginning, whatever its slope; the position does not jump.");
 }
 
 }  // namespace takt::flexcam

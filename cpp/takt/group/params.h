@@ -80,7 +80,7 @@ struct PathElement {
   ElementShape shape = ElementShape::kLine;
   std::optional<PathPose> to{};                     // where it ends; splines: see points
   std::optional<double> via_x{}, via_y{}, via_z{};  // arc: a point that it goes through
-  std::vector<PathPose> points;                     // spline: from its start (first element) to its end
+  std::vector<PathPose> points;                     // spline: its points; of a path's first element also its start
   std::optional<double> velocity{};                 // mm/s, on this element; unset: that of the command
 };
 

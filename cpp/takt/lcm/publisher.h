@@ -50,7 +50,7 @@ class Publisher {
   void Run();
   // True if anything was there.
   bool Drain();
-  // Takes the published states of all components: every one to the log, those that are due to the network.
+  // Takes the published states of all components: all to the log, those due to the network.
   template <typename... Outputs>
   bool DrainStates(const std::tuple<Outputs...>* kinds);
   template <typename Outputs>

@@ -38,7 +38,7 @@ from takt.drives.can_link import (
     parse,
 )
 from takt.drives.cia402 import MODE_NAMES, Mode
-from takt.drives.emulation_commands import CLOCK, CLOCK_IS_SYNC
+from takt.drives.emulation_commands import CLOCK
 from takt.drives.error_texts import error_text
 from takt.drives.field_bus import ANSWERS_WITHIN, FieldBus, extras_of, lacks
 from takt.drives.homing import homing_objects
@@ -370,7 +370,7 @@ class CanopenBus(FieldBus):
             self._say(f"{node.named} is heard again")
 
     def _again(self, node: _Node) -> None:
-        """Sets a drive up that has started anew, beside the cycle."""
+        """Sets a drive up that has started anew, beside the cycle; where that fails, once more after a while."""
         node.operational = node.fresh = False
         node.again_s = math.inf
 
@@ -380,14 +380,18 @@ class CanopenBus(FieldBus):
                 self._start_node(node)
                 self._say(f"{node.named} is set up again")
             except TaktError as error:
-                self._say(f"{error}: tried again in a second, or with its next sign of life")
-                node.operational = True  # so that the next heartbeat begins anew ...
-                node.again_s = time.monotonic() + AGAIN_S  # ... or the time, where it sends none yet
+                self._say_once(f"{error}: tried again")
+                node.again_s = time.monotonic() + AGAIN_S
             finally:
                 node.setting_up = None
 
         node.setting_up = threading.Thread(target=set_up, daemon=True)
         node.setting_up.start()
+
+    def _try_again(self, now_s: float) -> None:
+        for node in self._nodes:
+            if now_s >= node.again_s and node.setting_up is None:
+                self._again(node)
 
     def _watch(self, now_s: float) -> None:
         """Own signs of life, and those of the drives; in real time."""
@@ -395,8 +399,6 @@ class CanopenBus(FieldBus):
             self._own_beat_s = now_s
             self._link.send(HEARTBEAT + int(self.described["node"]), bytes((OPERATIONAL,)))
         for node in self._nodes:
-            if now_s >= node.again_s and node.setting_up is None:
-                self._again(node)
             silent_s = now_s - node.heard_s
             if silent_s > HEARTBEATS_MISSING * self._heartbeat_s and not node.lost and node.setting_up is None:
                 node.lost = True
@@ -413,11 +415,12 @@ class CanopenBus(FieldBus):
                 if (setting_up := node.setting_up) is not None:  # it ends by itself
                     setting_up.join()
                 if node.emulated:
-                    self._sdos[node.id].patience(1.0).write(*CLOCK, CLOCK_IS_SYNC if simulated else 0, 8)
+                    self._tell_clock_of(node, self._sdos[node.id].patience(1.0), simulated)
 
     def exchange(self, told: Mapping[str, drive.SetPoint], *, real_time: bool) -> Mapping[str, drive.Measured | None]:
         self._link.drain()
         begin_s = time.monotonic()
+        self._try_again(begin_s)
         if real_time:
             self._watch(begin_s)
         for axis, point in told.items():
@@ -439,6 +442,7 @@ class CanopenBus(FieldBus):
     def idle(self, stop: Collection[str]) -> None:
         self._link.drain()
         now_s = time.monotonic()
+        self._try_again(now_s)
         self._watch(now_s)
         off = drive.SetPoint()
         for node in self._nodes:

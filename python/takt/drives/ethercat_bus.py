@@ -20,7 +20,7 @@ from takt.counted import counted
 from takt.drives import objects as od
 from takt.drives.axis import AXIS_MODES, DriveAxis, Heard, Words, set_point_mode
 from takt.drives.cia402 import MODE_NAMES, Mode
-from takt.drives.emulation_commands import CLOCK, CLOCK_IS_SYNC
+from takt.drives.emulation_commands import CLOCK
 from takt.drives.ethercat_link import (
     ERROR_BIT,
     INIT,
@@ -142,7 +142,6 @@ class EthercatBus(FieldBus):
         self._phase = Phase(self.period_s)
         self._clocks: deque[tuple[float, float]] = deque(maxlen=200_000)  # s: of this host, and of the slaves
         self._told_silent = False
-        self._said: set[str] = set()
         self._look = threading.Event()
         self._ended = False
         self._watcher: threading.Thread | None = None
@@ -502,11 +501,6 @@ class EthercatBus(FieldBus):
                     self._say_once(f"{self.bus_name}: {' '.join(str(error).split()) or type(error).__name__}")
             time.sleep(LOOK_AGAIN_S)
 
-    def _say_once(self, sentence: str) -> None:
-        if sentence not in self._said:
-            self._said.add(sentence)
-            self._say(sentence)
-
     def _look_at_all(self) -> None:
         if self._lost_in_a_row >= SILENT:
             if not self._told_silent:
@@ -585,7 +579,7 @@ class EthercatBus(FieldBus):
                 one.slave.dc_sync(True, round(1e9 * self.period_s), round(1e9 * self.period_s) // 2)
         self._to(one, SAFE_OPERATIONAL)
         if one.emulated and self._simulated:
-            one.sdo.write(*CLOCK, CLOCK_IS_SYNC, 8)
+            self._tell_clock_of(one, one.sdo, True)
         self._to(one, OPERATIONAL)
         one.told_lost = False
         one.state = OPERATIONAL
@@ -623,7 +617,7 @@ class EthercatBus(FieldBus):
         with self._wire.lock:
             for one in self._slaves:
                 if one.emulated and one.operational:
-                    one.sdo.patience(CLOCK_WITHIN_S).write(*CLOCK, CLOCK_IS_SYNC if simulated else 0, 8)
+                    self._tell_clock_of(one, one.sdo.patience(CLOCK_WITHIN_S), simulated)
             self._simulated = simulated  # the watcher, which waits for the lock, goes by it
 
     def exchange(self, told: Mapping[str, drive.SetPoint], *, real_time: bool) -> Mapping[str, drive.Measured | None]:

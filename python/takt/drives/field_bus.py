@@ -12,6 +12,7 @@ from takt import drive
 from takt.counted import counted
 from takt.drives import objects as od
 from takt.drives.cia402 import MODE_NAMES, Mode
+from takt.drives.emulation_commands import CLOCK, CLOCK_IS_SYNC
 from takt.drives.homing import DriveHoming, watch_of
 from takt.drives.probe import ProbeLatch, latches
 from takt.drives.scaling import Scaling
@@ -71,6 +72,7 @@ class FieldBus(drive.Bus):
         self.described = described
         self.period_s = float(machine["cycle"]["period_s"])
         self._say = say
+        self._said: set[str] = set()  # what is said once only
         self._simulated = False
         self.cycles = 0
         self.late = 0  # drives' answers that did not come in time
@@ -90,6 +92,17 @@ class FieldBus(drive.Bus):
     def _tell_clock(self, simulated: bool) -> None:
         """Emulated drives go by the engine's time, or by the clock."""
 
+    def _tell_clock_of(self, one: Member, objects: Objects, simulated: bool) -> None:
+        try:
+            objects.write(*CLOCK, CLOCK_IS_SYNC if simulated else 0, 8)
+        except SdoError as error:
+            raise TaktError(f"{self.bus_name}: {one.named}: {error}") from None
+
+    def _say_once(self, sentence: str) -> None:
+        if sentence not in self._said:
+            self._said.add(sentence)
+            self._say(sentence)
+
     def start(self, axis: str, *, real_time: bool, period_s: float) -> None:
         if abs(period_s - self.period_s) > 1e-9:
             raise TaktError(
@@ -103,10 +116,7 @@ class FieldBus(drive.Bus):
                 f"{metal[0].named} is no emulated drive and has a clock of its own, but the engine runs in simulated "
                 f"time; run taktd --pace real"
             )
-        try:
-            self._tell_clock(not real_time)
-        except SdoError as error:
-            raise TaktError(f"{self.bus_name}: {error}") from None
+        self._tell_clock(not real_time)
         self._simulated = not real_time
 
     def _answers_within_s(self, real_time: bool) -> float:

@@ -32,7 +32,7 @@ from takt.view.shapes import Shapes
 
 QUEUE = 200_000  # messages that wait for the next tick, of all that must not get lost
 AT_ONCE = 2000  # messages of one tick, besides states
-LONELY_S = 3.0  # silence after which the engine counts as gone
+SILENCE_S = 3.0  # silence after which the engine counts as gone
 TAKEN_OVER_S = 1.5  # without one, and another engine is heard: that one took its place
 KEPT_S = 30.0  # how long signals are kept that nobody looks at, for a page that comes back
 
@@ -118,7 +118,7 @@ class Feed:
     @property
     def gone(self) -> bool:
         """No engine is heard."""
-        return self.machine is None or time.monotonic() - self._heard > LONELY_S
+        return self.machine is None or time.monotonic() - self._heard > SILENCE_S
 
     @property
     def lost(self) -> int:
@@ -185,7 +185,7 @@ class Feed:
         if self.machine is not None and message.run_id == self.machine.run_id:
             self._heard = now
             self.may_command = self._may_command(data)
-            if now - self._other_heard > LONELY_S:
+            if now - self._other_heard > SILENCE_S:
                 self.trouble = ""
             return
         if self.machine is not None and now - self._heard < TAKEN_OVER_S:
