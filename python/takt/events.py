@@ -5,10 +5,11 @@ The format is LCM's (lcm-proj.github.io, "LCM log file format"); numbers are big
     sync word  event number  time [us]  length of the channel  length of the data  channel  data
     4 bytes    8             8          4                      4
 
-An event is whole if it ends at or before the next sync word behind its own, or at the end of the file. One whose length
-is wrong, or of which bytes are missing, reaches over that: it is left out, and reading goes on there. Of an event that
-ends before the next sync word, what stands between is left out. LCM's own reader believes the lengths that it finds,
-crashes at some, and skips what follows a wrong one.
+An event is whole if it ends at or before the next sync word behind its own, or at the end of the file. Its data may hold
+a sync word if it ends at another one, unless a whole event begins at that word: then its length is wrong by chance by
+just the events behind it. An event whose length is wrong, or of which bytes are missing, is left out, and reading goes
+on at the next sync word. Of an event that ends before the next sync word, what stands between is left out. LCM's own
+reader believes the lengths that it finds, crashes at some, and skips what follows a wrong one.
 """
 
 from __future__ import annotations
@@ -65,11 +66,9 @@ class EventLog:
         for count in itertools.count(1):
             if at >= size:
                 break
-            end = _end_of(text, at)
-            if end is not None and (end == size or text.startswith(SYNC, end)):
+            end, following = _end_of(text, at), _next_sync(text, at + len(SYNC))
+            if end is not None and _is_exact(text, end) and not _is_exact(text, _end_of(text, following)):
                 following = end
-            else:
-                following = _next_sync(text, at + len(SYNC))
             if end is not None and end <= following:
                 yield _event(text, at, end)
                 self.left_over += following - end
@@ -95,6 +94,11 @@ def _end_of(text: bytes, at: int) -> int | None:
     _, _, _, channel, data = HEADER.unpack_from(text, at)
     end = at + HEADER.size + channel + data
     return end if 0 < channel < CHANNEL and end <= len(text) else None
+
+
+def _is_exact(text: bytes, end: int | None) -> bool:
+    """Whether the next event, or the end of the file, is at the end that an event says."""
+    return end is not None and (end == len(text) or text.startswith(SYNC, end))
 
 
 def _next_sync(text: bytes, start: int) -> int:

@@ -68,6 +68,17 @@ def test_an_event_at_the_end_may_hold_a_sync_word(tmp_path: Path) -> None:
     assert read.left_over == 0
 
 
+def test_a_wrong_length_may_end_at_another_event(tmp_path: Path) -> None:
+    """EN-36: the length of the first reaches just over the second and the third."""
+    behind = [event(b"b", b"two"), event(b"c", b"three"), event(b"d", b"four")]
+    for reached in (1, 2, 3):
+        length = len(b"one") + sum(map(len, behind[:reached]))
+        (tmp_path / "log").write_bytes(event(b"a", b"one", length=length) + b"".join(behind))
+        read = EventLog(tmp_path / "log")
+        assert [one.data for one in read.events()] == [b"two", b"three", b"four"]
+        assert read.left_over == len(event(b"a", b"one"))
+
+
 def changed_byte(data: bytes, chance: random.Random) -> tuple[bytes, int, int]:
     at = chance.randrange(len(data))
     return data[:at] + bytes([data[at] ^ (1 << chance.randrange(8))]) + data[at + 1 :], at, at + 1
