@@ -5,11 +5,11 @@ The format is LCM's (lcm-proj.github.io, "LCM log file format"); numbers are big
     sync word  event number  time [us]  length of the channel  length of the data  channel  data
     4 bytes    8             8          4                      4
 
-An event is whole if it ends at or before the next sync word behind its own, or at the end of the file. Its data may hold
-a sync word if it ends at another one, unless a whole event begins at that word: then its length is wrong by chance by
-just the events behind it. An event whose length is wrong, or of which bytes are missing, is left out, and reading goes
-on at the next sync word. Of an event that ends before the next sync word, what stands between is left out. LCM's own
-reader believes the lengths that it finds, crashes at some, and skips what follows a wrong one.
+An event is whole if it ends at or before the next sync word behind its own, or at the end of the file. Its data may
+hold a sync word if it ends at another one, unless a whole event begins at that word: then its length is wrong by
+chance by just the events behind it. An event whose length is wrong, or of which bytes are missing, is left out, and
+reading goes on at the next sync word. Of an event that ends before the next sync word, what stands between is left
+out. LCM's own reader believes the lengths that it finds, crashes at some, and skips what follows a wrong one.
 """
 
 from __future__ import annotations

@@ -546,6 +546,8 @@ def _event(event: Sequence[Any]) -> Event:
 
 def _put_aside(value: Any, kept: dict[bytes, Array]) -> Any:
     """What JSON can hold of `meta`: arrays go into `kept`, each once, and leave their number."""
+    if isinstance(value, np.ndarray) and value.dtype.hasobject:
+        return _put_aside(value.tolist(), kept)
     if isinstance(value, np.ndarray):
         key = hashlib.sha256(f"{value.dtype} {value.shape}".encode() + value.tobytes()).digest()
         kept.setdefault(key, value)

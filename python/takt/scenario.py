@@ -234,20 +234,28 @@ _folders: set[Path] = set()  # of scenarios that were loaded
 
 @contextlib.contextmanager
 def modules_of(folder: Path) -> Iterator[None]:
-    """Here modules are imported that lie in the folder of a scenario. Those of other scenarios are forgotten: another
-    `judge` beside this one would be taken for them."""
+    """Here modules and packages are imported that lie in the folder of a scenario. Those of other scenarios are
+    forgotten: another `judge` beside this one would be taken for them."""
     folder = folder.resolve()
-    others = {str(other) for other in _folders - {folder}}
-    for name, module in list(sys.modules.items()) if others else ():
-        place = getattr(module, "__file__", None)
-        if place and place.rpartition(os.sep)[0] in others:
-            del sys.modules[name]
+    others = _folders - {folder}
+    loaded = [(name, module) for name, module in sys.modules.items() if "." not in name] if others else []
+    forgotten = {name for name, module in loaded if _root_of(module) in others}
+    for name in [name for name in sys.modules if name.partition(".")[0] in forgotten - {"takt"}]:
+        del sys.modules[name]
     _folders.add(folder)
     sys.path.insert(0, str(folder))
     try:
         yield
     finally:
         sys.path.remove(str(folder))
+
+
+def _root_of(module: Any) -> Path | None:
+    """The folder from which a module or package is imported."""
+    if path := list(getattr(module, "__path__", ())):
+        return Path(path[0]).parent
+    place = getattr(module, "__file__", None)
+    return Path(place).parent if isinstance(place, str) else None
 
 
 def run_scenario(scenario: Scenario, session: Session, directory: Path | None = None) -> Outcome:

@@ -278,6 +278,7 @@ def test_lists_and_whole_texts_of_arguments() -> None:
     assert values(("axis", "power"), "enable_positive", False, ua.VariantType.Boolean) is False
     for of, name, wrong, kind, status in (
         (("machine", "add_cam_points"), "points", "[{x: 0", ua.VariantType.String, ua.StatusCodes.BadOutOfRange),
+        (("machine", "add_cam_points"), "points", "[{1: 0}]", ua.VariantType.String, ua.StatusCodes.BadOutOfRange),
         (("axis", "power"), "buffer_mode", 99, ua.VariantType.Int32, ua.StatusCodes.BadOutOfRange),
         (("axis", "power"), "buffer_mode", "later", ua.VariantType.String, ua.StatusCodes.BadOutOfRange),
         (("axis", "power"), "buffer_mode", 1.0, ua.VariantType.Double, ua.StatusCodes.BadTypeMismatch),
@@ -341,6 +342,30 @@ def test_two_clients_command_beside_each_other(plant: Plant, client: Client, loo
         until(lambda: client.get_node("ns=2;s=/machine").call_method("2:feedback", number)[1] == ABORTED)
         until(lambda: value(client, "x/last_command/state") == DONE)
         assert value(client, "x/last_command/command") == second["command"]
+
+
+def test_a_command_is_followed_behind_the_end_of_its_session(
+    plant: Plant, client: Client, loop: ThreadLoop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """EN-22: a move that takes longer than a closed session is waited for."""
+    monkeypatch.setattr("takt.opcua.commands.GIVEN_UP_S", 0.2)
+    powered(client)
+    start = value(client, "x.set_position")
+    with Client(plant.address, tloop=loop) as other:
+        given = call(other, "x", "move_absolute", start + 40.0, 40.0)
+    number = ua.Variant(given["command"], ua.VariantType.UInt32)
+    until(lambda: client.get_node("ns=2;s=/machine").call_method("2:feedback", number)[1] == DONE)
+
+
+def test_commands_that_have_ended_are_forgotten_first(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    """EN-22."""
+    monkeypatch.setattr("takt.opcua.commands.MOST", 3)
+    powered(client)
+    moving = call(client, "x", "move_absolute", value(client, "x.set_position") + 40.0, 20.0)
+    for _ in range(5):
+        assert call(client, "x", "set_override", 1.0)["error_id"] == 0
+    number = ua.Variant(moving["command"], ua.VariantType.UInt32)
+    assert client.get_node("ns=2;s=/machine").call_method("2:feedback", number)[1] in (ACTIVE, DONE)
 
 
 # --- rights ---

@@ -288,6 +288,13 @@ def test_an_empty_recording() -> None:
     assert "x: 0 samples" in repr(rec)
 
 
+def test_arrays_of_objects_in_meta_become_lists(tmp_path: Path) -> None:
+    """PY-04: what is saved is read again."""
+    texts = np.array(["one", None, 3], dtype=object)
+    path = Recording({"x": {"time_s": [0.0]}}, meta={"texts": texts}).save(tmp_path / "a.npz")
+    assert Recording.load(path).meta["texts"] == ["one", None, 3]
+
+
 def test_arrays_in_meta_are_kept(tmp_path: Path) -> None:
     """At any depth, with their types and shapes, and equal ones once."""
     large = np.random.default_rng(1).normal(size=100_000)

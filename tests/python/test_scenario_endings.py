@@ -202,6 +202,19 @@ def test_a_scenario_with_a_dataclass(here: Path) -> None:
     assert main(["run", "data.py"]) == 0
 
 
+def test_packages_beside_two_scenarios(here: Path) -> None:
+    """PY-20: a package of one scenario is not taken for that of another."""
+    for name in ("first", "second"):
+        package = here / name / "helpers"
+        package.mkdir(parents=True)
+        (package / "__init__.py").write_text("")
+        (package / "names.py").write_text(f"NAME = '{name}'")
+        (here / name / "s.py").write_text(
+            "from helpers.names import NAME\nmachine = {}\n__doc__ = NAME\ndef scenario(session): pass\n"
+        )
+        assert load_scenario(here / name / "s.py").title == name
+
+
 def test_without_verify(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A scenario may judge itself; one that does not has not passed."""
     Path("plain.py").write_text("def scenario(session):\n    session.run(0.1)\n")

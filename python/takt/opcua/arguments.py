@@ -9,6 +9,7 @@ from typing import Any
 import yaml
 from asyncua import ua
 
+from takt.arguments import to_text
 from takt.opcua.descriptions import Argument, enumerations
 
 Types = Mapping[str, ua.NodeId]  # data types of enumerations, by name
@@ -123,7 +124,9 @@ def _scalar(argument: Argument, value: Any, given: ua.VariantType) -> Any:
         return value or None
     if argument.kind == "yaml":
         try:
-            return yaml.safe_load(value) if value else None
+            loaded = yaml.safe_load(value) if value else None
         except yaml.YAMLError:
             raise ValueError from None
+        to_text({"value": loaded})  # raises ValueError where a key is no name
+        return loaded
     return value

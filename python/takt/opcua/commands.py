@@ -65,7 +65,7 @@ class Commands:
         self._feed = feed
         self._target_of = target_of
         self._clients: dict[Session, _Client] = {}
-        self._leaving: list[tuple[float, _Client]] = []  # lets go of what it held, until then
+        self._leaving: list[tuple[float, Session, _Client]] = []  # lets go of what it held, at least until then
         self._followed: OrderedDict[int, Followed] = OrderedDict()
         self._open: dict[tuple[Session, int], int] = {}  # number of a command by session, and number in there
         self._latest: dict[str, int] = {}  # of each target
@@ -126,8 +126,9 @@ class Commands:
                 "ticket": 0,
             },
         )
-        while len(self._followed) > MOST:
-            self._followed.popitem(last=False)
+        if len(self._followed) > MOST:
+            ended = (old for old, one in self._followed.items() if one.told["state"] >= FINAL)
+            del self._followed[next(ended, next(iter(self._followed)))]
         number = self._client_of(session).give(target, verb.name, arguments, held, time.monotonic())
         self._open[session, number] = self._latest[target] = self._count
         self.changed[target] = followed
@@ -174,19 +175,20 @@ class Commands:
             if session.is_closed:
                 client.release()
                 del self._clients[session]
-                self._leaving.append((now + GIVEN_UP_S, client))
+                self._leaving.append((now + GIVEN_UP_S, session, client))
             else:
                 client.hold(now if session.calls else session.heard_at)
                 client.tick(now)
-        for end, client in self._leaving[:]:
+        pending = {session for session, _ in self._open}
+        for end, session, client in self._leaving[:]:
             client.tick(now)
-            if now > end:
-                self._leaving.remove((end, client))
+            if now > end and session not in pending:
+                self._leaving.remove((end, session, client))
                 self._feed.listeners.discard(client.take)
 
     def forget(self) -> None:
         """Another start of the engine: it knows nothing of what was commanded before."""
-        for client in (*self._clients.values(), *(client for _, client in self._leaving)):
+        for client in (*self._clients.values(), *(client for *_, client in self._leaving)):
             self._feed.listeners.discard(client.take)
         self._clients.clear()
         self._leaving.clear()
@@ -195,7 +197,8 @@ class Commands:
             if followed is not None:
                 followed.told |= {"state": ERROR, "sentence": "the engine was started again meanwhile"}
                 followed.news.set()
-                self.changed[followed.target] = followed
+                if self._latest.get(followed.target) == number:
+                    self.changed[followed.target] = followed
         self._open.clear()
 
     def release(self) -> None:

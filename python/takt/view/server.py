@@ -239,16 +239,20 @@ class Site:
         loop = asyncio.get_running_loop()
         due = loop.time()
         while True:
-            self._tick()
-            self.feed.look_at(signal for page in self.pages for signal in page.signals)
+            with self._trouble_told():
+                self.feed.tick()
+            with self._trouble_told():
+                self.feed.look_at(signal for page in self.pages for signal in page.signals)
             for page in self.pages:
-                page.tick()
+                with self._trouble_told():
+                    page.tick()
             due = max(due + TICK_S, loop.time())
             await asyncio.sleep(due - loop.time())
 
-    def _tick(self) -> None:
+    @contextlib.contextmanager
+    def _trouble_told(self) -> Iterator[None]:
         try:
-            self.feed.tick()
+            yield
         except Exception as error:  # a page that says so is better than one that stands still
             trouble = f"the server of this page has failed: {error!r}"
             if self.feed.trouble != trouble:
