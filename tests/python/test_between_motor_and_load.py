@@ -141,3 +141,22 @@ def test_without_any_of_it_nothing_changes() -> None:
         x.power().wait()
         x.move_absolute(position=10).wait()
         assert x.encoder_correction == 0
+
+
+def test_the_table_of_a_screw_stays_where_it_lies() -> None:
+    """AX-115: MC_SetPosition renames places, and moves nothing; the next reference names them as the table does."""
+    with takt.Engine(machine(f"compensation: {{screw: {SCREW}}}", f"screw: {SCREW}")) as s:
+        x = s.axis("x")
+        x.power().wait()
+        x.step_direct(set_position=0).wait()
+        x.move_absolute(position=100).wait()
+        s.run(0.3)
+        x.define_position(position=0).wait()
+        s.run(0.3)
+        assert x.true_position == pytest.approx(100, abs=0.003)
+        x.move_absolute(position=50).wait()
+        s.run(0.3)
+        assert x.true_position == pytest.approx(150, abs=0.003)
+        x.step_direct(set_position=150).wait()
+        s.run(0.3)
+        assert x.true_position == pytest.approx(150, abs=0.003)

@@ -88,6 +88,7 @@ bool IsUpdate(const Request& r, const State& s) {
 void Update(const Context& c, const Request& r, State& s) {
   Report(c, s.active.ticket, FeedbackState::kAborted, ErrorId::kNone, s.reported);
   AbortBuffer(c, s);
+  KeepCovered(s);
   AbortOverlay(c, FeedbackState::kAborted, ErrorId::kNone, s);
   FollowsTable(r.kind) ? UpdateTable(c, r, s) : UpdateCam(c, r, s);
 }
@@ -149,6 +150,7 @@ Status SwitchOff(const Context& c, const Request& r, State& s) {
   s.direct_voltage_v = 0;
   Grant(c, r, s);
   if (!s.loop_closed || AtRest(s)) {
+    if (s.loop_closed) StandStill(c, s);
     Conclude(c, 0, s);
     return Status::Ok();
   }

@@ -22,8 +22,12 @@ double ShareOf(const CamLaw& law, const CamState& cam, double master) noexcept {
   return law.periodic ? share : std::clamp(share, 0.0, 1.0);
 }
 
+double WholeCycles(const CamLaw& law, const CamState& cam, double master) noexcept {
+  return law.periodic ? std::floor(Cycles(law, cam, master) + kNear) : 0;
+}
+
 void BeginCycles(const CamLaw& law, double master, CamState& cam) noexcept {
-  if (law.periodic) cam.master += std::floor(Cycles(law, cam, master) + kNear) * law.way();
+  cam.master += WholeCycles(law, cam, master) * law.way();
 }
 
 cam::Value ValueAt(const CamLaw& law, const CamState& cam, double master) noexcept {

@@ -34,6 +34,8 @@ struct CamState {
 
 // Where a master is in the cam, in cycles from its beginning; not periodic: 0 to 1.
 double ShareOf(const CamLaw& law, const CamState& cam, double master) noexcept;
+// How many whole cycles lie between the beginning and a master's position; 0 for a cam that is not periodic.
+double WholeCycles(const CamLaw& law, const CamState& cam, double master) noexcept;
 // Shifts the beginning by whole cycles such that a master here is in cycle 0.
 void BeginCycles(const CamLaw& law, double master, CamState& cam) noexcept;
 // The slave's place over the master's position (derivatives, too, over that).

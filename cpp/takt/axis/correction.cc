@@ -67,8 +67,9 @@ void Correct(const Context& c, State& s) noexcept {
   const double standing = kStandingShare * c.params.limits.velocity;
   const double velocity = s.setpoint.velocity;
   if (s.loop_closed && !s.torque.engaged && std::abs(velocity) > standing) k.sense = velocity > 0 ? 1 : -1;
-  // A table is one of positions, which an axis without a reference does not know.
-  const double screw = s.homing.homed ? ScrewError(p.screw, Reported(c.params, s.setpoint.position)) : 0;
+  // A table is one of positions as the reference names them, which an axis without one does not know.
+  const double place = Reported(c.params, s.setpoint.position - s.homing.renamed);
+  const double screw = s.homing.homed ? ScrewError(p.screw, place) : 0;
   const double target = k.sense * p.backlash / 2 - screw;
   if (s.loop_closed) {
     const trajectory::Limits limits = c.params.planner_limits();

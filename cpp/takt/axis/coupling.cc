@@ -488,23 +488,22 @@ void UpdateCam(const Context& c, const Request& r, State& s) noexcept {
   Grant(c, r, s);
   k.law = r.coupling;
   const KinematicState master = Seen(c, k, k.law.terms[0], PhaseAt(c, k));
-  const auto cycle_of = [&](const CamLaw& at) {
-    return at.periodic ? std::floor((master.position - k.cam.master) / at.way()) : 0;
-  };
-  const double cycle = cycle_of(was);
+  // On the way there: where it will be in step.
+  const double place = k.joining == Joining::kOnCurve ? k.master_sync : master.position;
+  const double cycle = WholeCycles(was, k.cam, place);
   const double begin = k.cam.master + cycle * was.way();  // of the cycle that the master is in
   if (fixed) {
     const double zero = begin - (was.table.begin() - (k.law.master_offset - offset)) / was.ratio;
     k.cam.master = zero + (law.table.begin() - k.law.master_offset) / law.ratio;
-    BeginCycles(law, master.position, k.cam);
+    BeginCycles(law, place, k.cam);
     k.cam.master -= cycle * law.way();
   } else {
-    const double x = was.ratio * (master.position - begin) + offset;  // from the beginning of the cam
-    k.cam.master = master.position - x / law.ratio - cycle * law.way();
+    const double x = was.ratio * (place - begin) + offset;  // from the beginning of the cam
+    k.cam.master = place - x / law.ratio - cycle * law.way();
   }
   // In a later cycle the cam stands higher by its strokes: that is not scaled anew.
   k.cam.slave += slave_offset + (was.scale - law.scale) * cycle * law.table.stroke();
-  k.cam.share = ShareOf(law, k.cam, master.position);
+  k.cam.share = ShareOf(law, k.cam, place);
   k.cam.over = false;
   s.limited_by = LimitedBy::kNothing;
   if (k.joining == Joining::kOnCurve) BeginCurve(c, master, s);

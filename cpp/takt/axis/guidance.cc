@@ -62,9 +62,7 @@ void LetGoOfGuidance(const Context& c, State& s) noexcept {
     return BrakeInFault(c, s.error, s);
   }
   if (!AtRest(s)) return ComeToRest(c, c.params.planner_limits(), FromCycleBefore(c), s);
-  StartMotion(trajectory::Profile{s.setpoint}, s.setpoint.position, FromCycleBefore(c), s);
-  s.motion.arrived = true;
-  s.motion.arrived_cycle = c.cycle.count;
+  StandStill(c, s);
   Enter(s, PlcState::kStandstill);
 }
 

@@ -192,6 +192,7 @@ void GoBack(const Context& c, State& s) {
 // The found place gets its name. Braking and the way back go on under the new numbers.
 void GiveName(State& s) {
   if (!s.active.homing.sets_position) return;
+  s.homing.renamed = 0;
   const double by = s.active.homing.set_position - s.homing.captured;
   ShiftCoordinates(by, s);
 }
@@ -273,6 +274,7 @@ Status BeginFlying(const Context& c, Ticket ticket, bool pulse, const HomingRequ
 // Under its new numbers a motion with an end may lead out of the SW limits. (Those without one are watched cycle by
 // cycle.)
 void KeepInside(const Context& c, State& s) {
+  if (FollowsDemand(s.active.kind)) return;
   const bool waits = s.motion.held && s.active.positions();  // the override holds it back from there
   const double end = (waits ? s.motion.target : s.motion.profile.end().position) + AddedAtEnd(s);
   if ((s.motion.arrived && !waits && !s.superimposed) || Inside(c.params.limits, end)) return;
@@ -365,6 +367,7 @@ Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) no
       break;
     case RequestKind::kStepAbsolute:
       ShiftCoordinates(s.origin, s);
+      h.renamed = 0;
       Finish(c, s);
       break;
     default:
@@ -405,6 +408,7 @@ void WatchFlying(const Context& c, State& s) noexcept {
     h.captured = h.flying_pulse ? PulsePosition(c, s) : s.actual.position;
     ShiftCoordinates(h.flying.set_position - h.captured, s);
     h.captured = h.flying.set_position;
+    h.renamed = 0;
     h.homed = true;
     EndFlying(c, FeedbackState::kDone, ErrorId::kNone, s);
     return KeepInside(c, s);

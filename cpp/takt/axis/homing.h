@@ -91,6 +91,7 @@ struct HomingState {
   std::int8_t sense = 1;       // of the search
   bool switch_before = false;  // the switch that is searched, a cycle ago
   double captured = 0;         // u, where it was found
+  double renamed = 0;          // u, what MC_SetPosition has added to positions since the reference got its own
   double mark = 0;             // u, over all turns: the coded mark that was passed last ...
   bool mark_known = false;     // ... if one was
   std::uint8_t turns = 0;      // how often it turned round

@@ -51,6 +51,7 @@ void describe(Description<HomingState>& d) {
   d.internal<&H::sense>("Of the search.");
   d.internal<&H::switch_before>("The switch that is searched, a cycle ago.");
   d.internal<&H::captured>(unit::u, "Where it was found.");
+  d.internal<&H::renamed>(unit::u, "What MC_SetPosition has added to positions since the reference got its own.");
   d.internal<&H::mark>(unit::u, "Coded mark that was passed last, over all turns.");
   d.internal<&H::mark_known>("One was passed.");
   d.internal<&H::turns>("How often it turned round.");

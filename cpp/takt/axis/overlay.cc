@@ -175,12 +175,12 @@ void Fold(double added, State& s) {
   s.motion.target += added;
   if (Couples(s.active.kind)) s.coupling.chase.offset += added;
   if (FollowsTable(s.active.kind)) s.time_table.chase.offset += added;
-  s.superimposed = false;
 }
 
 void End(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
   OverlayState& o = s.overlay;
   Fold(o.chase.in_step ? o.profile.end().position : s.setpoint.position - o.base.position, s);
+  s.superimposed = false;
   Report(c, o.ticket, feedback, error, false, o.covered);
   if (s.motion.arrived) s.motion.arrived_cycle = c.cycle.count;
   if (error != ErrorId::kNone) AbortBuffer(c, s);
@@ -284,6 +284,10 @@ void AbortOverlay(const Context& c, FeedbackState feedback, ErrorId error, State
   if (!s.superimposed) return;
   s.superimposed = false;
   Report(c, s.overlay.ticket, feedback, error, false, s.overlay.covered);
+}
+
+void KeepCovered(State& s) noexcept {
+  if (s.superimposed) Fold(s.setpoint.position - s.overlay.base.position, s);
 }
 
 bool StandsBeneath(const State& s) noexcept {

@@ -83,6 +83,12 @@ void StartMotion(const Plan& plan, const MotionStart& start, State& s) noexcept 
   s.motion.held = plan.held;
 }
 
+void StandStill(const Context& c, State& s) noexcept {
+  StartMotion(Profile{s.setpoint}, s.setpoint.position, FromCycleBefore(c), s);
+  s.motion.arrived = true;
+  s.motion.arrived_cycle = c.cycle.count;
+}
+
 bool InPosition(const AxisParams& p, const State& s) noexcept {
   return !p.supervision.in_position || std::abs(s.setpoint.position - s.actual.position) <= *p.supervision.in_position;
 }
@@ -137,6 +143,10 @@ void GiveWay(const Context& c, State& s) {
   if (s.buffered == 0) return;
   const Ticket ticket = s.active.ticket;
   if (Couples(s.active.kind)) Uncouple(c, false, s);
+  // Beneath a superimposed motion the next command may have to wait: the axis goes on as it moves now.
+  if (FollowsDemand(s.active.kind)) {
+    StartMotion(Profile{s.setpoint}, s.setpoint.position, FromThisCycle(c), s);
+  }
   s.active = Request{};
   Report(c, ticket, FeedbackState::kAborted, ErrorId::kNone, s.reported);
   StartNext(c, 0, s);

@@ -38,6 +38,8 @@ inline double Elapsed(const Context& c, const State& s) noexcept {
 
 void StartMotion(const trajectory::Profile& profile, double target, const MotionStart& start, State& s) noexcept;
 void StartMotion(const Plan& plan, const MotionStart& start, State& s) noexcept;
+// An axis at rest stays where its set point is, whatever gave it so far.
+void StandStill(const Context& c, State& s) noexcept;
 
 // Puts a request in control of the motion there is ...
 void Grant(const Context& c, const Request& request, State& s, double travel_s = 0) noexcept;

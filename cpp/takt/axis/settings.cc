@@ -314,6 +314,7 @@ Status CarryOut(const Context& c, Ticket ticket, const SetPosition& p, State& s)
   const double by = p.relative ? p.position : p.position - s.setpoint.position;
   State shifted = s;
   ShiftCoordinates(by, shifted);
+  shifted.homing.renamed += by;
   if (!Fits(c, c.params.limits, shifted)) return Status::Failed(ErrorId::kTargetBehindLimit);
   s = shifted;
   return Done(c, ticket);
