@@ -118,7 +118,9 @@ int Run(const Options& options, MachineFile file) {
   const engine::RunResult result = engine::Run(engine, scheduler, signals);
   cycle_runs = false;
   checking.reset();
-  if (result.end == engine::RunEnd::kSignal) alarm(kCloseWithinS);
+  // A second signal after the last look of the cycle and before cycle_runs was false counts, too.
+  const bool at_once = result.end == engine::RunEnd::kSignal || signals > 1;
+  if (at_once) alarm(kCloseWithinS);
   drives.reset();
   const lcm::Losses losses = service ? service->Close() : lcm::Losses{};
   std::cout << Summary(engine, result, scheduler.pace, losses) << std::endl;
