@@ -1,5 +1,8 @@
 #include "takt/engine/carriers.h"
 
+#include <algorithm>
+#include <variant>
+
 #include "takt/kinematics/kinematics.h"
 
 namespace takt::engine {
@@ -66,6 +69,19 @@ double CarrierTravelAt(void* owner, std::uint32_t number, double position) noexc
 }
 
 }  // namespace
+
+bool TakesToolAway(const group::Command& command) noexcept {
+  if (const auto* transform = std::get_if<group::SetKinTransform>(&command)) return !transform->enable;
+  return std::holds_alternative<group::RemoveAxis>(command) || std::holds_alternative<group::UngroupAllAxes>(command) ||
+         std::holds_alternative<group::SetTool>(command);
+}
+
+bool IsRidden(const World& w, std::size_t group) noexcept {
+  const std::size_t number = w.belts.size() + group + 1;
+  return std::ranges::any_of(w.group_states, [&](const group::State& rider) {
+    return std::ranges::any_of(rider.ridden, [&](std::uint32_t carrier) { return carrier == number; });
+  });
+}
 
 group::Carriers CarriersFor(Rider& rider) noexcept {
   return {FindCarrier, CarrierAt, CarrierTravelAt, &rider, !rider.world->pick_places.empty()};

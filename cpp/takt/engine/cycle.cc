@@ -427,6 +427,7 @@ void Apply(World& w, const Command& command) noexcept {
   } else if (const auto* for_group = std::get_if<group::Command>(&command.body)) {
     const Wanted wanted = WantedBy(w, *for_group, i);
     if (Changes(wanted) && !MakeOrder(w, wanted)) return refuse(ErrorId::kCouplingLoop);
+    if (TakesToolAway(*for_group) && IsRidden(w, i)) return refuse(ErrorId::kState);
     group::Apply(ContextOf(w, w.groups[i]), command.ticket, command.lease_s, *for_group, w.group_states[i]);
   } else if (const auto* for_belt = std::get_if<conveyor::Command>(&command.body)) {
     conveyor::Apply(ContextOf(w, w.belts[i]), command.ticket, *for_belt, w.belt_states[i]);

@@ -34,6 +34,8 @@ struct Applier {
   }
   bool Is(GroupState state) const { return s.state == state; }
   bool stands() const { return Is(GroupState::kDisabled) || Is(GroupState::kStandby); }
+  // Members and kinematics: a command that waits for an object to track relies on them.
+  bool MayBeChanged() const { return stands() && s.track.ticket == 0; }
 
   // Its feedback names the member.
   ErrorId Blamed(ErrorId error, std::size_t place) const {
@@ -167,11 +169,11 @@ struct Applier {
   }
 
   void operator()(const AddAxis& m) const {
-    if (!stands()) return Refuse(ErrorId::kState);
+    if (!MayBeChanged()) return Refuse(ErrorId::kState);
     Finish(Add(c, m, s));
   }
   void operator()(const RemoveAxis& m) const {
-    if (!stands()) return Refuse(ErrorId::kState);
+    if (!MayBeChanged()) return Refuse(ErrorId::kState);
     const ErrorId error = Remove(c, m, s);
     if (error == ErrorId::kNone && CountOf(s) == 0 && Is(GroupState::kStandby)) Enter(GroupState::kDisabled, s);
     Finish(error);
@@ -204,10 +206,12 @@ struct Applier {
     LetGoOfSynced(c, FeedbackState::kDone, s);
     ForgetPlan(c, s);
     s.begun = s.ends = s.lets_go = false;
+    s.active = 0;
     s.clutches = {};
     s.ridden = {};
     s.rise = {};
     s.pace = {};
+    s.master = {};
   }
   void operator()(const Disable&) const {
     if (Is(GroupState::kErrorStop)) return Refuse(ErrorId::kErrorStop);
@@ -286,15 +290,20 @@ struct Applier {
     }
     for (std::size_t k = 0; k < kMaxAxes; ++k) {
       if (s.members[k] == 0 && axes[k]) return Refuse(ErrorId::kNotGroupMember);
+      if (k < moved && axes[k]) return Refuse(ErrorId::kParameter);
     }
-    for (std::size_t k = 0; k < kMaxAxes; ++k) {
-      if (s.members[k] == 0 || !(k < moved ? of_tool : axes[k].has_value())) continue;
-      const double position = k < moved ? end.joints[k] : *axes[k];
-      if (const ErrorId error = Tell(c, s, k, axis::SetPosition{.position = position}); error != ErrorId::kNone) {
-        return Refuse(error);
+    const auto with_each = [&](auto set) {
+      for (std::size_t k = 0; k < kMaxAxes; ++k) {
+        if (s.members[k] == 0 || !(k < moved ? of_tool : axes[k].has_value())) continue;
+        const axis::SetPosition position{.position = k < moved ? end.joints[k] : *axes[k]};
+        if (const ErrorId error = set(k, position); error != ErrorId::kNone) return error;
       }
-    }
-    Finish(ErrorId::kNone);
+      return ErrorId::kNone;
+    };
+    const auto try_it = [&](std::size_t k, const axis::SetPosition& position) { return Try(c, s, k, position); };
+    const auto do_it = [&](std::size_t k, const axis::SetPosition& position) { return Tell(c, s, k, position); };
+    if (const ErrorId error = with_each(try_it); error != ErrorId::kNone) return Refuse(error);
+    Finish(with_each(do_it));
   }
   void operator()(const SetOverride& m) const {
     s.velocity_factor = m.velocity_factor;
@@ -303,7 +312,7 @@ struct Applier {
     Finish(ErrorId::kNone);
   }
   void operator()(const SetKinTransform& m) const {
-    if (!stands()) return Refuse(ErrorId::kState);
+    if (!MayBeChanged()) return Refuse(ErrorId::kState);
     if (m.enable && !c.kinematics) return Refuse(ErrorId::kParameter);
     s.kinematics_on = m.enable;
     Finish(ErrorId::kNone);

@@ -89,6 +89,11 @@ bool NothingToGo(const Context& c, const State& s) {
   return c.ahead.count == 0 && s.planning.stage == Stage::kIdle && s.planning.move >= s.done + s.queue.count;
 }
 
+// The move that would be planned next waits for the command that tracks its object.
+bool LeadsToTracking(const State& s) {
+  return s.planning.move < s.done + s.queue.count && WaitsForTracking(s, MoveAt(s, s.planning.move));
+}
+
 // Each brakes by itself, off the path.
 void BrakeEachAlone(const Context& c, State& s) {
   LetGoOfMembers(c, s);
@@ -121,11 +126,13 @@ void MoveOn(const Context& c, State& s) {
     if (s.task == Task::kInterrupt) EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
     return;
   }
-  // Before a zone it waits for, all that leads there is done.
-  while (s.waits_for != 0 && StandsAtEnd(c, s) && s.done < s.planning.move) {
+  // Before a zone or an object it waits for, all that leads there is done.
+  const bool for_object = LeadsToTracking(s) && StandsAtEnd(c, s);
+  while ((for_object || (s.waits_for != 0 && StandsAtEnd(c, s))) && s.done < s.planning.move) {
     Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
     s.active = 0;
   }
+  if (for_object && !rides) return ComeToRest(c, s);
   if (!IsThrough(c, s) || (rides && Slips(s))) return;
   if (c.ahead.cut_short) return EndCutShort(c, s);
   if (Jogs(s)) {
@@ -289,7 +296,7 @@ void WatchMembers(const Context& c, State& s) {
   AbortMoves(c, ErrorId::kNone, s);
   if (s.ends) return;  // comes to rest
   ForgetPlan(c, s);
-  s.interrupted = false;
+  s.interrupted = s.lets_go = false;
   if (s.state == GroupState::kMoving) Enter(GroupState::kStandby, s);
 }
 
@@ -336,6 +343,8 @@ void Step(const Context& c, State& s) noexcept {
     // Moves to where the group stands are done.
     while (!s.ends && s.queue.count > 0) Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
     ComeToRest(c, s);
+  } else if (!s.interrupted && c.ahead.count == 0 && LeadsToTracking(s)) {
+    while (s.done < s.planning.move) Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
   }
   if (const ErrorId error = StepZones(c, s); error != ErrorId::kNone) Fail(c, error, s);
   WatchTracking(c, s);

@@ -13,6 +13,9 @@ namespace takt::group {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
+// A spline begins where the tool stands: mm and rad.
+constexpr double kSamePlace = 1e-3;
+constexpr double kSameTurn = 1e-4;
 // What a belt's speed may change without the limits being exceeded.
 constexpr double kBeltChange = 1.1;
 constexpr double kMostReserve = 0.9;  // of a limit
@@ -106,6 +109,31 @@ path::Circle InBase(const Frame& system, const path::Circle& circle, const KDL::
   return out;
 }
 
+// Holds what a spline does not give where it is at its beginning: auxiliary axes, and perhaps the orientation.
+void Hold(const KDL::Rotation* orientation, const path::Auxiliaries& auxiliaries, path::Segment& segment) {
+  segment.auxiliary_count = 0;
+  for (std::size_t i = 0; i < path::kMaxAuxiliaries; ++i) {
+    segment.auxiliaries[i] = {auxiliaries[i]};
+    if (auxiliaries[i] != 0) segment.auxiliary_count = static_cast<std::uint8_t>(i + 1);
+  }
+  if (orientation == nullptr) return;
+  segment.turning = path::Course::kStill;
+  segment.turn = {};
+  orientation->GetQuaternion(segment.base[0], segment.base[1], segment.base[2], segment.base[3]);
+}
+
+ErrorId AlongSpline(const PathPiece& piece, const Frame& system, const path::Auxiliaries& auxiliaries, LookAhead& ahead,
+                    State& s) {
+  path::Segment& segment = ahead.next.segment;
+  segment = Moved(system, piece.segment);
+  Hold(piece.turned ? nullptr : &ahead.end_tool.M, auxiliaries, segment);
+  const Frame begin = path::PointAt(segment, 0).frame;
+  const bool there = (begin.p - ahead.end_tool.p).Norm() <= kSamePlace;
+  if (there && kinematics::TurnBetween(begin.M, ahead.end_tool.M).Norm() <= kSameTurn) return ErrorId::kNone;
+  s.problem = path::Problem::kApart;
+  return ErrorId::kPathGeometry;
+}
+
 ErrorId AlongPath(const Context& c, const Request& move, std::uint32_t element, const Frame& system, LookAhead& ahead,
                   State& s) {
   const PathPiece& piece = c.paths[move.path].pieces[element];
@@ -113,20 +141,18 @@ ErrorId AlongPath(const Context& c, const Request& move, std::uint32_t element, 
   if (piece.velocity > 0) one.limits.velocity = std::min(one.limits.velocity, piece.velocity);
   const path::Auxiliaries auxiliaries = Behind(ahead.end_joints, c.kinematics->count);
   if (piece.shape == ElementShape::kSpline) {
-    ahead.next.segment = Moved(system, piece.segment);
     ahead.next.limits = one.limits;
-    const KDL::Vector gap = path::PointAt(ahead.next.segment, 0).frame.p - ahead.end_tool.p;
-    if (gap.Norm() <= 1e-3) return ErrorId::kNone;
-    s.problem = path::Problem::kApart;
-    return ErrorId::kPathGeometry;
+    return AlongSpline(piece, system, auxiliaries, ahead, s);
   }
   kinematics::Pose to = kinematics::ToPose(system.Inverse() * ahead.end_tool);
   to.x = piece.to.x;
   to.y = piece.to.y;
   to.z = piece.to.z;
-  if (Given(piece.to.a)) to.a = piece.to.a;
-  if (Given(piece.to.b)) to.b = piece.to.b;
-  if (Given(piece.to.c)) to.c = piece.to.c;
+  if (piece.turned) {
+    to.a = piece.to.a;
+    to.b = piece.to.b;
+    to.c = piece.to.c;
+  }
   path::Circle circle;
   circle.auxiliary_point = ToTriple(system * ToVector(piece.via));
   const bool arc = piece.shape == ElementShape::kArc;

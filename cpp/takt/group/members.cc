@@ -25,7 +25,6 @@ void EndTask(const Context& c, FeedbackState feedback, ErrorId error, State& s) 
   if (s.task != Task::kNone && !stopped) Report(c, s.ticket, feedback, error);
   s.task = Task::kNone;
   s.ticket = 0;
-  s.lease_s = 0;
 }
 
 axis::State& MemberOf(const Context& c, const State& s, std::size_t place) noexcept {
@@ -39,6 +38,13 @@ axis::Context ContextOf(const Context& c, const State& s, std::size_t place) noe
 ErrorId Tell(const Context& c, const State& s, std::size_t place, const axis::Command& command) noexcept {
   c.feedback.TakeOwnError();
   axis::Apply(ContextOf(c, s, place), 0, 0, command, MemberOf(c, s, place));
+  return c.feedback.TakeOwnError();
+}
+
+ErrorId Try(const Context& c, const State& s, std::size_t place, const axis::Command& command) noexcept {
+  axis::State copy = MemberOf(c, s, place);
+  c.feedback.TakeOwnError();
+  axis::Apply(ContextOf(c, s, place), 0, 0, command, copy);
   return c.feedback.TakeOwnError();
 }
 

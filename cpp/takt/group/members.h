@@ -15,6 +15,8 @@ axis::Context ContextOf(const Context& c, const State& s, std::size_t place) noe
 
 // Gives a member a command; why it was refused, if it was.
 ErrorId Tell(const Context& c, const State& s, std::size_t place, const axis::Command& command) noexcept;
+// What the member would answer; nothing changes.
+ErrorId Try(const Context& c, const State& s, std::size_t place, const axis::Command& command) noexcept;
 // The same for all; the first refusal, the others are told all the same.
 ErrorId TellAll(const Context& c, const State& s, const axis::Command& command) noexcept;
 

@@ -274,6 +274,12 @@ bool IsClosed(const Context& c, const Stretch& stretch, double way, const trajec
   return s.refused.any();
 }
 
+// The next stretch is known; zones that the blend into it leads through count, too.
+void EnterNext(const Context& c, State& s) {
+  NoteBlend(c, s);
+  s.planning.stage = Stage::kEnter;
+}
+
 // Tries places all along, before anything moves.
 void Verify(const Context& c, int& budget, State& s) {
   const Stretch& stretch = c.ahead.next;
@@ -333,7 +339,7 @@ void Verify(const Context& c, int& budget, State& s) {
   } else if (!IsPath(s) && CanAsk(c, s)) {
     Ask(c, s);
   } else {
-    s.planning.stage = Stage::kEnter;
+    EnterNext(c, s);
   }
 }
 
@@ -342,7 +348,8 @@ bool Check(const Context& c, State& s) {
   if (!IsAnswered(c, s)) return false;
   const PathChecked& answer = s.answer;
   if (answer.trouble == workspace::Trouble::kNone) {
-    s.planning.stage = IsPath(s) ? Stage::kIdle : Stage::kEnter;
+    if (!IsPath(s)) EnterNext(c, s);
+    if (IsPath(s)) s.planning.stage = Stage::kIdle;
     return true;
   }
   const double free = answer.place - kFreeBefore;
@@ -509,7 +516,6 @@ void Sweep(const Context& c, State& s) {
 // False: it waits for a zone. What is planned already is then sampled to its end, where the tool waits.
 bool MayEnter(const Context& c, State& s) {
   const bool waited = s.waits_for != 0;
-  if (!waited) NoteBlend(c, s);
   switch (EnterZones(c, s)) {
     case Entry::kWaits:
       if (IsJog(MoveAt(s, s.planning.move))) {  // it does not wait: it ends before the zone

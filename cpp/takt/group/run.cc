@@ -345,6 +345,7 @@ void GiveUpPath(const Context& c, const Brake& brake, bool lets_go, State& s) no
     EndMotion(c, brake, lets_go || s.lets_go, s);
   } else {
     ForgetPlan(c, s);
+    s.lets_go = false;
   }
   s.interrupted = false;
 }
