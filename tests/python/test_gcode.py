@@ -151,6 +151,26 @@ def test_continue() -> None:
     assert along_x(LOOPS["continue"]) == [1, 3, 2, 10]
 
 
+@pytest.mark.parametrize(
+    ("text", "x"),
+    [
+        # continue and break of the outer loop: the counter of the inner one begins anew
+        ("o1 repeat [2]\no2 repeat [3]\n{move}\no3 if [#1 eq 1]\no1 continue\no3 endif\no2 endrepeat\no1 endrepeat", 4),
+        (
+            "o9 repeat [2]\no1 while [1]\no2 repeat [3]\n{move}\no3 if [#1 eq 1]\no1 break\no3 endif\no2 endrepeat\n"
+            "o1 break\no1 endwhile\no9 endrepeat",
+            4,
+        ),
+        # the second of two runs that M98 asks for
+        ("M98 P100 L2\nM2\nO100\no2 repeat [3]\n{move}\no3 if [#1 eq 1]\nM99\no3 endif\no2 endrepeat\nM99", 4),
+    ],
+)
+def test_loops_that_are_left_early_begin_anew(text: str, x: int) -> None:
+    """PY-22."""
+    text = "#1=0\n" + text.format(move="#1=[#1+1]\nG1 X#1 F60")
+    assert along_x(text) == list(range(1, x + 1))
+
+
 @pytest.mark.parametrize(("value", "x"), [(1, 10), (2, 20), (3, 30), (4, 40)])
 def test_branches(value: int, x: int) -> None:
     text = (
