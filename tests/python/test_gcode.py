@@ -483,6 +483,15 @@ def test_polar_coordinates() -> None:
     assert [complex(*one.end[:2]) for one in path.elements] == pytest.approx(expected)
 
 
+@pytest.mark.parametrize("unit", ["G21", "G20"])
+def test_polar_coordinates_with_diameters(unit: str) -> None:
+    """PY-22: diameters hold for the words X; @ is a distance from the axis, with G90 and with G91."""
+    path = parse_gcode(f"{unit} G7 G1 X40 Y0 F600\n@10 ^0\n^90\nG91 ^-90\n@2")
+    scale = 25.4 if unit == "G20" else 1.0
+    expected = [scale * point for point in (20, 10, 10j, 10, 12)]
+    assert [complex(*one.end[:2]) for one in path.elements] == pytest.approx(expected)
+
+
 def test_diameters_and_inverse_time() -> None:
     assert along_x("G7 G1 X10 F60\nG8 X10") == [5, 10]
     path = parse_gcode("G93 G1 X10 F2\nG3 X10 Y10 J5 F4\nG94 G1 F60 X0")

@@ -461,7 +461,7 @@ class Machine:
         x, y = radius * math.cos(math.radians(angle)), radius * math.sin(math.radians(angle))
         if self.modal.relative:
             x, y = x - local.real, y - local.imag
-        numbers["X"], numbers["Y"] = x, y
+        numbers["X"], numbers["Y"] = x * (2.0 if self.modal.diameters else 1.0), y
 
     def _move_in_machine(self, numbers: Numbers) -> None:
         """G53."""
