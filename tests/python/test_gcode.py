@@ -564,6 +564,21 @@ def test_splines() -> None:
     assert "G5.1: expected I or J" in wrong("G5.1 X1 Y1")
 
 
+@pytest.mark.parametrize(
+    "spline",
+    [
+        "G5 X10 Y0 I0 J40 P0 Q40", "G5 X0 Y0 I40 J40 P-40 Q40", "G5.1 X10 Y0 I5 J40", "G2 X10 Y0 I5 J0",
+        "G6.2 P3 K0 X0 Y0\nX5 Y40 K0\nX10 Y0 K0\nK1\nK1\nK1",
+    ],
+)  # fmt: skip
+def test_curves_take_the_time_of_g93(spline: str) -> None:
+    """PY-22: F of G93 is the inverse of the duration [1/min] of the whole curve, also where it ends as it begins."""
+    path = parse_gcode("G21 G90 G93\n" + "\n".join(line + " F6" for line in spline.split("\n")))
+    (velocity,) = {one.velocity for one in path.elements}
+    assert velocity is not None
+    assert path.length / velocity == pytest.approx(10, rel=1e-6)
+
+
 QUARTER = math.sqrt(0.5)  # the weight in the middle of a quarter of a circle
 
 
