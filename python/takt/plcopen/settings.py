@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from takt.axis import Axis
-from takt.feedback import QUEUE_FULL, Feedback
-from takt.plcopen.base import FunctionBlock, Input, Output, SettingBlock
+from takt.feedback import Feedback
+from takt.plcopen.base import FunctionBlock, Input, Output, SettingBlock, found_no_room
 
 YES_OR_NO = (4, 5, 6)  # parameters: EnableLimitPos, EnableLimitNeg, EnablePosLagMonitoring
 
@@ -81,8 +81,7 @@ class MC_SetOverride(FunctionBlock):  # noqa: N801
             self._given = self._feedback = None
             return
         wanted = self._arguments()
-        full = self._feedback is not None and self._feedback.error_id == QUEUE_FULL  # then it is tried again
-        if self._feedback is None or wanted != self._given or full:
+        if self._feedback is None or wanted != self._given or found_no_room(self._feedback):
             self._given = wanted
             self._feedback = self.Axis.session.command(self.Axis.name, "set_override", wanted)
         if self._feedback.error:
