@@ -112,7 +112,7 @@ class MC_WriteBoolParameter(SettingBlock):  # noqa: N801
 
 class MC_ReadParameter(FunctionBlock):  # noqa: N801
     """A parameter by PLCopen's number, asked for again and again as long as Enable is true. Value is valid from the
-    first answer on, one or more cycles after Enable."""
+    first answer on, one or more cycles after Enable or after a change of ParameterNumber."""
 
     Enable = Input(False)
     ParameterNumber = Input(0, "number")
@@ -121,6 +121,7 @@ class MC_ReadParameter(FunctionBlock):  # noqa: N801
     Value: Output[Any] = Output(0.0)
 
     def __init__(self, axis: Axis, **inputs: Any) -> None:
+        self._given: dict[str, Any] | None = None  # arguments of the question
         self._asked: Feedback | None = None
         self._answer: Feedback | None = None
         super().__init__(axis, **inputs)
@@ -129,9 +130,12 @@ class MC_ReadParameter(FunctionBlock):  # noqa: N801
         if not self.Enable:
             self._asked = self._answer = None
             return
+        wanted = self._arguments()
+        if wanted != self._given:
+            self._given, self._asked, self._answer = wanted, None, None
         self._take_answer()
         if self._asked is None:
-            self._asked = self.Axis.session.command(self.Axis.name, "read_parameter", self._arguments())
+            self._asked = self.Axis.session.command(self.Axis.name, "read_parameter", wanted)
             self._take_answer()  # what cannot be is refused at once
         if self._answer is not None and self._answer.error:
             self._show_error(self._answer.error_id, self._answer.sentence)
