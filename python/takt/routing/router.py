@@ -439,7 +439,8 @@ class SurfaceRouter:
                 self._install(*self._plan(self._goals, raster))
                 break
             except RoutingError as error:
-                names = [error.mover] if error.mover in self._goals else list(self._goals)
+                failed = self._goals.get(error.mover)
+                names = [name for name, goal in self._goals.items() if failed is None or goal.pool is failed.pool]
                 for name in names:
                     self._fail(name, str(error) if name in str(error) else f"mover {name}: {error}")
                 if not names:
