@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -56,6 +57,10 @@ class TrackLayout:
             if not whole and not re.search(rf"^{key}\s*:".encode(), text, re.MULTILINE):
                 text += f"\n{line}".encode()
         self._core = _core.TrackLayout(text + b"\n", name or found)
+
+    def place_parts(self, indices: Sequence[int]) -> None:
+        """Links the tracks as with each part at this position, by its index from 1. Requires: `tracks` was not read."""
+        self._core.place_parts(list(indices))
 
     def clear_gap(self, width: float, height: float, turned: float, least: float) -> float:
         """Returns the least gap [mm] from `least` on at which two movers of this size, both at the angle `turned`

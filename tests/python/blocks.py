@@ -45,6 +45,12 @@ def overrun(engine: takt.Engine, x: takt.Axis) -> None:
     assert not x.loop_closed
 
 
+def fill_queue(axis: takt.Axis) -> None:
+    """Gives commands to an axis until the command queue of the engine is full."""
+    while not axis.set_override(velocity_factor=1.0).error:
+        pass
+
+
 def call(engine: takt.Engine, block: plc.FunctionBlock, seconds: float, **inputs: object) -> Any:
     """Calls a block each cycle for so long."""
     for _ in range(round(seconds / engine.period)):

@@ -151,6 +151,26 @@ def test_continue() -> None:
     assert along_x(LOOPS["continue"]) == [1, 3, 2, 10]
 
 
+@pytest.mark.parametrize(
+    ("text", "x"),
+    [
+        # continue and break of the outer loop: the counter of the inner one begins anew
+        ("o1 repeat [2]\no2 repeat [3]\n{move}\no3 if [#1 eq 1]\no1 continue\no3 endif\no2 endrepeat\no1 endrepeat", 4),
+        (
+            "o9 repeat [2]\no1 while [1]\no2 repeat [3]\n{move}\no3 if [#1 eq 1]\no1 break\no3 endif\no2 endrepeat\n"
+            "o1 break\no1 endwhile\no9 endrepeat",
+            4,
+        ),
+        # the second of two runs that M98 asks for
+        ("M98 P100 L2\nM2\nO100\no2 repeat [3]\n{move}\no3 if [#1 eq 1]\nM99\no3 endif\no2 endrepeat\nM99", 4),
+    ],
+)
+def test_loops_that_are_left_early_begin_anew(text: str, x: int) -> None:
+    """PY-22."""
+    text = "#1=0\n" + text.format(move="#1=[#1+1]\nG1 X#1 F60")
+    assert along_x(text) == list(range(1, x + 1))
+
+
 @pytest.mark.parametrize(("value", "x"), [(1, 10), (2, 20), (3, 30), (4, 40)])
 def test_branches(value: int, x: int) -> None:
     text = (
@@ -463,6 +483,15 @@ def test_polar_coordinates() -> None:
     assert [complex(*one.end[:2]) for one in path.elements] == pytest.approx(expected)
 
 
+@pytest.mark.parametrize("unit", ["G21", "G20"])
+def test_polar_coordinates_with_diameters(unit: str) -> None:
+    """PY-22: diameters hold for the words X; @ is a distance from the axis, with G90 and with G91."""
+    path = parse_gcode(f"{unit} G7 G1 X40 Y0 F600\n@10 ^0\n^90\nG91 ^-90\n@2")
+    scale = 25.4 if unit == "G20" else 1.0
+    expected = [scale * point for point in (20, 10, 10j, 10, 12)]
+    assert [complex(*one.end[:2]) for one in path.elements] == pytest.approx(expected)
+
+
 def test_diameters_and_inverse_time() -> None:
     assert along_x("G7 G1 X10 F60\nG8 X10") == [5, 10]
     path = parse_gcode("G93 G1 X10 F2\nG3 X10 Y10 J5 F4\nG94 G1 F60 X0")
@@ -533,6 +562,21 @@ def test_splines() -> None:
     assert second - first == pytest.approx(np.broadcast_to([1, 1, 0], first.shape))
     assert "G5: expected I and J" in wrong("G5 P0 Q-3 X1 Y1")
     assert "G5.1: expected I or J" in wrong("G5.1 X1 Y1")
+
+
+@pytest.mark.parametrize(
+    "spline",
+    [
+        "G5 X10 Y0 I0 J40 P0 Q40", "G5 X0 Y0 I40 J40 P-40 Q40", "G5.1 X10 Y0 I5 J40", "G2 X10 Y0 I5 J0",
+        "G6.2 P3 K0 X0 Y0\nX5 Y40 K0\nX10 Y0 K0\nK1\nK1\nK1",
+    ],
+)  # fmt: skip
+def test_curves_take_the_time_of_g93(spline: str) -> None:
+    """PY-22: F of G93 is the inverse of the duration [1/min] of the whole curve, also where it ends as it begins."""
+    path = parse_gcode("G21 G90 G93\n" + "\n".join(line + " F6" for line in spline.split("\n")))
+    (velocity,) = {one.velocity for one in path.elements}
+    assert velocity is not None
+    assert path.length / velocity == pytest.approx(10, rel=1e-6)
 
 
 QUARTER = math.sqrt(0.5)  # the weight in the middle of a quarter of a circle

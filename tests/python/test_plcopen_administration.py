@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 import takt
-from blocks import WEAK, overrun, shown, until
+from blocks import WEAK, fill_queue, overrun, shown, until
 from machines import MACHINE
 from takt import plcopen as plc
 
@@ -137,6 +137,19 @@ def test_power_buffered_and_refused(engine: takt.Engine, x: takt.Axis) -> None:
             engine.step()
     assert not recorder.recording.events
     assert not power(Enable=True).Error
+
+
+def test_power_in_a_full_queue(engine: takt.Engine) -> None:
+    """AX-20, EN-22: a command for which there was no room is given again, whatever it changes."""
+    r = engine.axis("r")
+    power = plc.MC_Power(r)
+    for enable, forward in ((True, True), (True, False), (False, True)):
+        fill_queue(engine.axis("x"))
+        power(Enable=enable, EnablePositive=forward)
+        assert power.ErrorID in ((3012,) if enable else (0, 3012))
+        until(engine, power, lambda: power.Status is enable and not (power.Busy or power.Error))  # noqa: B023
+        answer = r.move_relative(distance=1.0).wait_final()
+        assert answer.error_id == (10 if not enable else 0 if forward else 3103)
 
 
 def test_power_of_two_instances(weak: takt.Engine) -> None:

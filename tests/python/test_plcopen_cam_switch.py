@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import pytest
 import takt
+from blocks import fill_queue
 from machines import MACHINE
 from takt._commands import Direction, MasterSource
 from takt.plcopen import MC_DigitalCamSwitch, MC_MoveVelocity
@@ -101,6 +102,37 @@ def test_cam_switch_says_what_is_wrong(x: takt.Axis) -> None:  # AX-50
     assert not cams.Busy
     cams(Enable=False)
     assert not cams.Error
+
+
+def test_cam_switch_in_a_full_queue(x: takt.Axis) -> None:
+    """AX-50, EN-22: what was refused is given again, whether it switches on, changes or switches off."""
+    cams = MC_DigitalCamSwitch(x, Switches="gates")
+    x.move_absolute(position=15.0).wait()
+    other = engine_of(x).axis("r")
+    fill_queue(other)
+    assert cams(Enable=True).ErrorID == 3012
+    until(x, lambda: cams.InOperation, cams)
+    assert cams.Outputs == 1
+    fill_queue(other)
+    assert cams(EnableMask=2).ErrorID == 3012
+    cams(Enable=False, EnableMask=1)  # the change has not been taken
+    assert (cams.Busy, cams.InOperation, cams.Error, x.cam_outputs) == (True, True, False, 1)
+    until(x, lambda: x.cam_outputs == 0, cams)
+    assert (cams.Busy, cams.InOperation, cams.Error) == (False, False, False)
+    refused = engine_of(x).figures["commands_refused"]
+    until(x, lambda: cams(Enable=True).InOperation)
+    assert cams.Outputs == 1
+    assert engine_of(x).figures["commands_refused"] == refused
+
+
+def test_cam_switch_ends_after_a_change_that_was_refused(x: takt.Axis) -> None:
+    """AX-50: the switches in force go on after it, and end with Enable."""
+    cams = MC_DigitalCamSwitch(x, Switches="gates")
+    x.move_absolute(position=15.0).wait()
+    until(x, lambda: cams(Enable=True).InOperation)
+    until(x, lambda: cams(Switches="doors").Error)
+    assert x.cam_outputs == 1
+    until(x, lambda: x.cam_outputs == 0, lambda: cams(Enable=False))
 
 
 def edges_of_turn(axis: takt.Axis, sense: int, source: MasterSource) -> dict[int, list[tuple[bool, float]]]:

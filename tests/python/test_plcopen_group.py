@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 import takt
-from blocks import shown, until
+from blocks import fill_queue, shown, until
 from portals import PORTAL, portal
 from takt import plcopen as plc
 from takt.plcopen.group import GroupBlock
@@ -205,6 +205,15 @@ def test_override_holds_the_group(engine: takt.Engine, gantry: takt.Group) -> No
     until(engine, override, lambda: override.Enabled, VelFactor=0.5)
     done(engine, move)
     assert (override(VelFactor=-1.0).Error, override.ErrorID) == (True, 5)
+
+
+def test_override_in_a_full_queue(engine: takt.Engine, gantry: takt.Group) -> None:
+    """AX-51, EN-22: it is given again until there is room."""
+    fill_queue(next(iter(engine.axes.values())))
+    override = plc.MC_GroupSetOverride(gantry, VelFactor=0.5)
+    assert override(Enable=True).ErrorID == 3012
+    until(engine, override, lambda: override.Enabled)
+    assert not override.Error
 
 
 def test_every_block_is_called_by_its_group() -> None:

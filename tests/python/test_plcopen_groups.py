@@ -150,6 +150,11 @@ def test_parameters(engine: takt.Engine) -> None:
     assert enabled.Value is False
     call(engine, read, 0.01, Enable=True, ParameterNumber=99)
     assert (read.Valid, read.ErrorID) == (False, 5)
+    for number, value in ((2, 50.0), (4, 0.0), (2, 50.0)):
+        read(ParameterNumber=number)
+        assert (read.Valid, read.Error, read.Busy) == (False, False, True)
+        call(engine, read, 0.01)
+        assert (read.Valid, read.Value) == (True, value)
     assert call(engine, plc.GT_SWLim(y, LimPos=20.0, LimNeg=-20.0), 0.01, Execute=True).Done
     assert call(engine, plc.MC_MoveAbsolute(y, Position=21.0), 0.01, Execute=True).ErrorID == 8
     assert call(engine, plc.MC_SetPosition(y, Position=-7.0), 0.01, Execute=True).Done

@@ -136,6 +136,29 @@ def test_a_continuous_distance_counts_from_its_beginning(s: takt.Engine) -> None
     takt.expect.within_limits(recorder.recording, "x")
 
 
+@pytest.mark.parametrize("block_of", [MC_MoveContinuousAbsolute, MC_MoveContinuousRelative])
+@pytest.mark.parametrize(("factor", "velocity"), [(0.5, 20.0), (1.0, 40.0), (2.0, 80.0), (10.0, 300.0)])
+def test_the_end_velocity_is_scaled_by_the_override(
+    s: takt.Engine, block_of: Any, factor: float, velocity: float
+) -> None:
+    """AX-51: InEndVelocity with the end velocity that the override makes of it; not while the axis is held."""
+    x = s.axis("x")
+    x.set_override(velocity_factor=factor).wait()
+    place = {"Position": 10.0} if block_of is MC_MoveContinuousAbsolute else {"Distance": 10.0}
+    block = block_of(x, EndVelocity=40.0, Velocity=100.0, **place)
+    while not block(Execute=True).InEndVelocity:
+        assert s.now < 5
+        s.step()
+    assert x.set_velocity == pytest.approx(velocity)
+    assert x.set_position >= 10
+    x.set_override(velocity_factor=0.0).wait()
+    run(s, block, 0.5)
+    assert (x.set_velocity, block(Execute=True).InEndVelocity) == (0, False)
+    x.set_override(velocity_factor=0.25).wait()
+    run(s, block, 0.5)
+    assert (x.set_velocity, block(Execute=True).InEndVelocity) == (pytest.approx(10), True)
+
+
 @pytest.mark.parametrize("beneath", [False, True])
 def test_what_is_on_top_counts_from_its_beginning(s: takt.Engine, beneath: bool) -> None:
     """AX-111: MC_MoveSuperimposed adds the new distance in all, also less than it has added already."""

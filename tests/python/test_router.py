@@ -172,6 +172,48 @@ def test_movers_that_fail_are_gone_round() -> None:
     assert not watch.overlaps
 
 
+@pytest.mark.parametrize("size", [113, 200])
+def test_an_order_while_the_last_mover_on_its_way_brakes(size: int) -> None:
+    """PL-72: it is carried out once that one stands, on the raster on which both were."""
+    pitch = 120 if size < 118 else 240
+    movers = [
+        {"name": name, "width": side, "height": side, "initial": {"x": pitch / 2, "y": y}}
+        for name, side, y in (("a", size, pitch / 2), ("b", 113, pitch * 1.5))
+    ]
+    stators = [{"x": 240 * x, "y": 240 * y} for x, y in square(3)]
+    with Engine(
+        {"name": "s", "axes": [], "movers": movers, "environments": [{"name": "floor", "stators": stators}]}
+    ) as engine:
+        for feedback in [mover.enable() for mover in engine.movers.values()]:
+            feedback.wait()
+        first = engine.route({"a": (720 - pitch / 2, pitch / 2)})
+        engine.run(0.25)
+        engine.mover("a").halt()
+        engine.run(0.02)
+        target = (720 - pitch / 2, pitch * 1.5)
+        engine.route({"b": target}).wait()
+        assert math.dist((engine.mover("b").x, engine.mover("b").y), target) < 1e-6
+        assert set(first.failed) == {"a"}
+
+
+@pytest.mark.parametrize("targets", [[(5, 0), (5, 1)], [(5, 0)]])
+def test_an_order_for_any_of_them_that_fails_alone(targets: list[Cell]) -> None:
+    """PL-72: a target of the pool is covered by a mover that was halted; the order of another mover goes on."""
+    engine = engine_of({name: (0, y) for y, name in enumerate("abcd")}, square(5))
+    halted = engine.route({"a": at((9, 0))})
+    pool = engine.route_any([at(cell) for cell in targets], movers=["b", "c"])
+    other = engine.route({"d": at((9, 3))})
+    a = engine.mover("a")
+    engine.wait(lambda: a.x > 430)
+    a.halt()
+    other.wait()
+    assert is_at(engine.mover("d"), (9, 3))
+    for order in (halted, pool):
+        engine.wait(lambda order=order: order.done)
+        assert set(order.failed) == set(order.movers)
+    assert all("mover a stands at the target (660, 60)" in said for said in pool.failed.values())
+
+
 @pytest.mark.parametrize(
     ("verb", "arguments"),
     [

@@ -314,6 +314,52 @@ def test_tracks_that_were_changed() -> None:
         engine.move_on_tracks({"a": ("line", 300.0)})
 
 
+SWITCH = """
+name: t
+axes: []
+coordinate_systems: [{name: w}]
+parts:
+  - {name: A, columns: 4, rows: 1, positions: [{coordinate_system: w}]}
+  - {name: C, columns: 4, rows: 1, positions: [{coordinate_system: w, y: 1000}]}
+  - {name: B, columns: 4, rows: 1, travel_time_s: 0.1,
+     positions: [{coordinate_system: w, x: 960}, {coordinate_system: w, x: 960, y: 1000}]}
+movers:
+  - {name: on_a, reference: A, initial: {x: 120, y: 120}}
+  - {name: on_c, reference: C, initial: {x: 120, y: 120}}
+tracks:
+  - {name: a, part: A, elements: [{from: {x: 70, y: 120}, to: {x: 960, y: 120}}]}
+  - {name: c, part: C, elements: [{from: {x: 70, y: 120}, to: {x: 960, y: 120}}]}
+  - {name: b, part: B, elements: [{from: {x: 0, y: 120}, to: {x: 800, y: 120}}],
+     starts_from_positions: [{track: a, this_position_index: 1}, {track: c, this_position_index: 2}]}
+"""
+
+
+def test_links_are_those_of_parts_where_they_are() -> None:
+    """PL-88: the track on a part that moves is linked to another one at each of its positions."""
+    with Engine(SWITCH) as engine:
+        put_on_tracks(engine, [(0, 0.0), (1, 0.0)], ["a", "c"])
+        for index, name, other in ((1, "a", "c"), (2, "c", "a")):
+            engine.part("B").activate_position(index=index).wait()
+            assert str(takt.plan_routes(engine, {f"on_{name}": ("b", 600)})) == f"on_{name}: {name} > b to 600 mm"
+            with pytest.raises(takt.RoutingError, match=f"no way leads from {other} to b"):
+                takt.plan_routes(engine, {f"on_{other}": ("b", 600)})
+        engine.move_on_tracks({"on_c": ("b", 600)})
+        assert engine.mover("on_c").track_position == pytest.approx(600)
+
+
+def test_links_that_commands_have_made() -> None:
+    """PL-88: ways are planned on the tracks of the machine file; those that are linked otherwise by now are named."""
+    tracks = "".join(
+        f"  - {{name: {name}, elements: [{{from: {{x: {x}, y: 0}}, to: {{x: {x + 500}, y: 0}}}}]}}\n"
+        for name, x in (("one", 0), ("two", 500))
+    )
+    with Engine(f"name: n\naxes: []\nmovers: [{{name: a}}]\ntracks:\n{tracks}") as engine:
+        engine.track("two").start_from_track(track="one").wait()
+        put_on_tracks(engine, [(0, 0.0)], ["one"])
+        with pytest.raises(takt.RoutingError, match="track one is not as the machine file has it"):
+            takt.plan_routes(engine, {"a": ("one", 300.0)})
+
+
 THREE = """
   - {name: main, elements: [{from: {x: 0, y: 0}, to: {x: 1500, y: 0}}]}
   - name: up

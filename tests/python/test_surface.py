@@ -266,6 +266,34 @@ def test_a_mover_that_fails_is_named_and_the_others_rest_in_places() -> None:
     assert (engine.mover("a").x, engine.mover("a").y) == pytest.approx(at((3, 0)), abs=1e-6)
 
 
+def test_a_mover_that_was_sent_ahead_by_time_rests_where_it_is_its_turn() -> None:
+    """PL-72: one that passes first fails; the other stops before its place, and stays there when that is free."""
+    dynamics = {"maximum": {"velocity": 1000, "acceleration": 5000, "jerk": 100000}}
+    movers = [
+        {"name": name, "width": SIDE, "height": SIDE, "xy": dynamics, "initial": {"x": at(cell)[0], "y": at(cell)[1]}}
+        for name, cell in (("a", (2, 13)), ("b", (0, 1)))
+    ]
+    stators = [{"x": 240 * x, "y": 240 * y} for x in range(3) for y in range(7)]
+    engine = Engine(
+        {"name": "s", "axes": [], "movers": movers, "environments": [{"name": "floor", "stators": stators}]}
+    )
+    a, b = engine.mover("a"), engine.mover("b")
+    for feedback in [a.enable(), b.enable()]:
+        feedback.wait()
+    journey = takt.SurfaceJourney(engine, takt.plan_surface(engine, {"a": at((2, 0)), "b": at((5, 1))}))
+    engine.wait(lambda: journey.scan() or engine.now > 0.3)
+    b.disable()
+    with pytest.raises(takt.RoutingError, match="mover b is Disabling on its way"):
+        journey.wait()
+    engine.run(3)
+    assert (a.x, a.y) == pytest.approx(at((2, 2)), abs=1e-6)
+    b.enable().wait()
+    x, y = at((5, 1))
+    b.move_to_position(x=x, y=y).wait()
+    engine.run(1)
+    assert (a.x, a.y) == pytest.approx(at((2, 2)), abs=1e-6)
+
+
 def test_the_same_plan_each_time() -> None:
     starts, targets = random_world(3, 12, 8)
     plans = [takt.plan_surface(engine_of(starts, square(3)), targets) for _ in range(2)]

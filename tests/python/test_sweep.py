@@ -174,6 +174,20 @@ def test_the_same_rows_whatever_the_number_of_workers(capsys: pytest.CaptureFixt
     assert "2 passed" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(("judges", "passed"), [("return True", "1"), ("return False", "0"), ("assert False", "0")])
+def test_results_whatever_verify_says(judges: str, passed: str) -> None:
+    """PY-24: they are asked for where the scenario came to its end, and may be NaN in a run that repeats."""
+    head, _ = SCENARIO.split("def verify")
+    broken = "    assert mode == 'plain'\n"
+    results = "def results(recording):\n    return {'mean': float('nan'), 'time': recording.duration_s}\n"
+    Path("scenario.py").write_text(f"{head}{broken}def verify(recording):\n    {judges}\n{results}")
+    result = sweep("scenario.py", ["mode=plain,other"], directory="d", workers=1)
+    first, second = rows("d")
+    assert (first["passed"], first["mean"], second["passed"], second["mean"]) == (passed, "nan", "0", "")
+    assert float(first["time"]) > 0.1
+    assert result.repeats
+
+
 def test_what_fails_is_a_row() -> None:
     result = sweep("scenario.py", ["velocity=250,350,1000", "mode=plain,raises"], directory="d", workers=2)
     assert (result.summary.passed, result.summary.failed) == (1, 5)

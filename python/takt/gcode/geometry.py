@@ -137,20 +137,22 @@ class PathBuilder:
             for i in range(count):
                 self.line(arc.at((i + 1) / count), velocity)
 
-    def bezier(self, control: Sequence[complex], velocity: float | None) -> None:
-        """In X and Y, from where the tool is; `control`: the points behind that."""
-        x, y, z = self.here
+    def bezier(self, control: Sequence[complex]) -> list[complex]:
+        """Returns the ends of its chords [mm] in X and Y; `control`: the control points after the present position.
+        Raises LineError."""
+        x, y, _ = self.here
         points = [complex(x, y), *control]
         if not all(abs(point) <= REACH for point in points):
             raise LineError(f"a spline: expected numbers up to {REACH:.0e} mm")
         count = self._room(chords_of_bezier(points, self.tolerance))
-        for i in range(1, count + 1):
+        found = []
+        for i in range(1, count):
             share = i / count
             ends = points
             while len(ends) > 1:  # de Casteljau
                 ends = [(1 - share) * a + share * b for a, b in pairwise(ends)]
-            point = control[-1] if i == count else ends[0]
-            self.line((point.real, point.imag, z), velocity)
+            found.append(ends[0])
+        return [*found, control[-1]]
 
     def _append(self, element: Element) -> None:
         self._room(1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -461,7 +461,7 @@ class Machine:
         x, y = radius * math.cos(math.radians(angle)), radius * math.sin(math.radians(angle))
         if self.modal.relative:
             x, y = x - local.real, y - local.imag
-        numbers["X"], numbers["Y"] = x, y
+        numbers["X"], numbers["Y"] = x * (2.0 if self.modal.diameters else 1.0), y
 
     def _move_in_machine(self, numbers: Numbers) -> None:
         """G53."""
@@ -547,7 +547,7 @@ class Machine:
             out = complex(numbers["I"], numbers["J"]) if "I" in numbers else -complex(*(self._spline or (0.0, 0.0)))
             self._spline = (numbers["P"], numbers["Q"])
             control = [here + unit * out, end + unit * complex(*self._spline), end]
-        self.path.bezier(control, self.modal.feed if not self.modal.inverse_time else self._velocity(abs(end - here)))
+        self._draw_chords(self.path.bezier(control), 0, 1)
 
     def _nurbs_line(self, motion: str, numbers: Numbers) -> None:
         """A control point of G5.2 (P: its weight, L: the order) or of G6.2 (R: its weight, K: a knot, P: the order), or
@@ -584,10 +584,10 @@ class Machine:
             self._nurbs = None
             if motion == "G5.3":
                 self.modal = replace(self.modal, motion=None)
-            self._draw_nurbs(nurbs, first, second)
+            self._draw_chords(nurbs.chords(self.path.tolerance), first, second)
 
-    def _draw_nurbs(self, nurbs: Nurbs, first: int, second: int) -> None:
-        points = nurbs.chords(self.path.tolerance)
+    def _draw_chords(self, points: Sequence[complex], first: int, second: int) -> None:
+        """Appends chords that end at these points of the plane of two axes, mm."""
         here = complex(self.path.here[first], self.path.here[second])
         velocity = self._velocity(sum(abs(b - a) for a, b in pairwise([here, *points])))
         for point in points:

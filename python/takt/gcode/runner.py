@@ -29,7 +29,7 @@ class _Frame:
     kept: tuple[dict[int, float], dict[str, float]] | None = None  # of an o-word; M98 has no parameters of its own
     first: int = 0
     left: int = 0  # so often more
-    repeats: dict[int, int] = field(default_factory=dict)
+    repeats: dict[int, int] = field(default_factory=dict)  # by line of a repeat that is in progress
     modal: Modal | None = None  # of M70 or M73
     restore: bool = False
 
@@ -108,6 +108,7 @@ class Runner:
                 raise LineError("M99 ends programs that M98 calls; expected O- endsub or return")
             if frame.left > 0:
                 frame.left -= 1
+                frame.repeats.clear()
                 self._at = frame.first
             else:
                 self._return(None)
@@ -188,14 +189,21 @@ class Runner:
                 repeats[at] = left
             self._at = at + 1 if left > 0 else text.links[at] + 1
         elif keyword == "BREAK":
-            repeats.pop(text.links[-1 - at], None)
+            self._leave_loops(range(text.links[-1 - at], text.links[at]))
             self._at = text.links[at] + 1
         elif keyword == "CONTINUE":
+            self._leave_loops(range(text.links[-1 - at] + 1, text.links[at]))
             begin = text.line(text.links[-1 - at])
             is_do = isinstance(begin, OWord) and begin.keyword == "DO"
             self._at = text.links[at] if is_do else text.links[-1 - at]
         else:  # do, endif
             self._at += 1
+
+    def _leave_loops(self, lines: range) -> None:
+        """Drops the counters of the loops that begin in these lines."""
+        repeats = self._frames[-1].repeats
+        for begin in [begin for begin in repeats if begin in lines]:
+            del repeats[begin]
 
     def _branch(self, line: OWord) -> None:
         """To the first branch whose condition holds, or behind them."""

@@ -10,7 +10,17 @@ from takt.axis import Axis
 from takt.drives.error_texts import error_text as drive_error_text
 from takt.engine import error_text
 from takt.feedback import Feedback
-from takt.plcopen.base import AxisName, ExecuteBlock, FunctionBlock, Input, Output, ReadBlock, SettingBlock, in_control
+from takt.plcopen.base import (
+    AxisName,
+    ExecuteBlock,
+    FunctionBlock,
+    Input,
+    Output,
+    ReadBlock,
+    SettingBlock,
+    found_no_room,
+    in_control,
+)
 
 PARAMETER = 5  # error of a command: an input is out of its range
 OUTPUTS = 32
@@ -42,8 +52,9 @@ class MC_Power(FunctionBlock):  # noqa: N801
 
     A fault that opened the loop is shown by Error until the axis is reset; then the loop is closed again. Enable true
     on a Disabled axis with a fault leads to ErrorStop. A command that is refused is given again once the axis is in
-    another state. After an emergency stop it shows error 3100 until Enable has risen anew: nothing resumes by itself.
-    One instance an axis: two with different Enable switch it to and fro.
+    another state; while the command queue is full, in each call. After an emergency stop it shows error 3100 until
+    Enable has risen anew: nothing resumes by itself. One instance an axis: two with different Enable switch it to and
+    fro.
 
     EnablePositive, EnableNegative: the directions in which the axis may move. Motion in another one is refused with
     error 3103, and one in progress ends with it, as at a limit switch: the axis brakes into ErrorStop. Both are told to
@@ -96,7 +107,7 @@ class MC_Power(FunctionBlock):  # noqa: N801
             self._anew = False
         if not ended.error:
             self._told = (self._given["enable_positive"], self._given["enable_negative"])
-        refused = ended.error and (ended.ticket == 0 or not enable)
+        refused = ended.error and (ended.ticket == 0 or not enable) and not found_no_room(ended)
         if self._given["enable"] is enable and (refused or (ended.aborted and not enable)):
             self._refusal = (self.Axis.state, ended.error_id)
         return ended

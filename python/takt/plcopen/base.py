@@ -9,7 +9,7 @@ from takt import _commands
 from takt.axis import Axis
 from takt.component import Component
 from takt.engine import error_text
-from takt.feedback import Feedback, FeedbackState
+from takt.feedback import QUEUE_FULL, Feedback, FeedbackState
 
 ENDINGS = {FeedbackState.DONE: "Done", FeedbackState.ABORTED: "CommandAborted", FeedbackState.ERROR: "Error"}
 
@@ -167,6 +167,12 @@ def named(usual: Any, value: Any) -> Any:
 def in_control(feedback: Feedback, arguments: Mapping[str, Any]) -> bool:
     """Active of a command in progress; one that does not wait for others is as soon as it is given."""
     return feedback.active or arguments["buffer_mode"] == _commands.BufferMode.ABORTING
+
+
+def found_no_room(feedback: Feedback | None) -> bool:
+    """Whether a command was refused because the command queue is full: blocks that follow the level of Enable give it
+    again in their next call."""
+    return feedback is not None and feedback.error_id == QUEUE_FULL
 
 
 class ExecuteBlock(FunctionBlock):

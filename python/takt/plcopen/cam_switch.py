@@ -7,13 +7,13 @@ from typing import Any
 from takt import _commands
 from takt.axis import Axis
 from takt.feedback import Feedback
-from takt.plcopen.base import FunctionBlock, Input, Output
+from takt.plcopen.base import FunctionBlock, Input, Output, found_no_room
 
 
 class MC_DigitalCamSwitch(FunctionBlock):  # noqa: N801
     """Switches outputs by the position of the axis as long as Enable is true. Switches is the name of a list in the
     machine file, which holds the options of its tracks too; Outputs has a bit for each track. Inputs count when they
-    change."""
+    change. While the command queue is full the command is given again in each call."""
 
     Enable = Input(False)
     Switches = Input("", "switches")
@@ -24,27 +24,34 @@ class MC_DigitalCamSwitch(FunctionBlock):  # noqa: N801
     Outputs = Output(0)
 
     def __init__(self, axis: Axis, **inputs: Any) -> None:
-        self._given: dict[str, Any] | None = None  # arguments of the command in force
-        self._feedback: Feedback | None = None
+        self._given: dict[str, Any] | None = None  # arguments of the last command; None: it switches off
+        self._feedback: Feedback | None = None  # of the last command
+        self._switching: list[tuple[Feedback, str]] = []  # commands that have not ended, with their lists of switches
         super().__init__(axis, **inputs)
 
     def _scan(self) -> None:
         wanted = self._arguments() if self.Enable else None
-        if wanted != self._given:
-            self._give(wanted)
+        self._switching = [(feedback, name) for feedback, name in self._switching if feedback.busy]
+        if wanted != self._given or found_no_room(self._feedback):
+            self._feedback = self._give(wanted)
         self._given = wanted
         if self._feedback is None:
             return
-        if self._feedback.error:
+        if wanted is None and found_no_room(self._feedback):
+            self._show(Busy=True, InOperation=True, Outputs=self.Axis.cam_outputs)
+        elif self._feedback.error:
             self._show_error(self._feedback.error_id)
-        elif self._feedback.busy:
+        elif wanted is not None and self._feedback.busy:
             works = self._feedback.active
             self._show(Busy=True, InOperation=works, Outputs=self.Axis.cam_outputs if works else 0)
 
-    def _give(self, wanted: dict[str, Any] | None) -> None:
+    def _give(self, wanted: dict[str, Any] | None) -> Feedback | None:
+        """Gives the command; to switch off, only if one that switches has not ended."""
         if wanted is not None:
-            self._feedback = self.Axis.session.command(self.Axis.name, "digital_cam_switch", wanted)
-        elif self._feedback is not None:
-            if self._feedback.busy:
-                self.Axis.digital_cam_switch(switches=self._given["switches"] if self._given else "", enable=False)
-            self._feedback = None
+            feedback = self.Axis.session.command(self.Axis.name, "digital_cam_switch", wanted)
+            self._switching.append((feedback, wanted["switches"]))
+            return feedback
+        if not self._switching:
+            return None
+        _, name = self._switching[0]
+        return self.Axis.digital_cam_switch(switches=name, enable=False)

@@ -18,7 +18,7 @@ from takt.engine import error_text
 from takt.feedback import Feedback
 from takt.group import POSE, PRODUCT_SYSTEMS, Group
 from takt.kinematics import Array, matrix_to_pose, pose_to_matrix
-from takt.plcopen.base import ExecuteBlock, FunctionBlock, Input, Output, ReadBlock, SettingBlock
+from takt.plcopen.base import ExecuteBlock, FunctionBlock, Input, Output, ReadBlock, SettingBlock, found_no_room
 from takt.plcopen.coupling import axis_name
 
 Numbers = Sequence[float | None] | Mapping[str, float]
@@ -297,7 +297,7 @@ class MC_GroupSetOverride(GroupBlock, FunctionBlock):  # noqa: N801
             self._feedback = None
             return
         wanted = self._arguments()
-        if self._feedback is None or wanted != self._given:
+        if self._feedback is None or wanted != self._given or found_no_room(self._feedback):
             self._given = wanted
             self._feedback = self.AxesGroup.session.command(self.AxesGroup.name, "set_override", wanted)
         if self._feedback.error:

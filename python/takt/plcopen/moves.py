@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from takt import _commands
+from takt.axis import Axis
 from takt.feedback import Feedback
 from takt.plcopen.base import ExecuteBlock, Input, MotionBlock, Output, UpdatedBlock
 
@@ -87,6 +88,12 @@ class MC_Stop(MotionBlock):  # noqa: N801
             self._feedback.release()
 
 
+def has_end_velocity(axis: Axis, end_velocity: float) -> bool:
+    """Whether the set point has the end velocity [u/s] of a continuous move, as the override in force scales it."""
+    scaled = end_velocity * (axis.override_factor or 1.0)  # 0: the axis is held
+    return abs(axis.set_velocity) >= min(scaled, axis.parameters["limits"]["velocity"] or scaled) * (1 - 1e-9)
+
+
 class MC_MoveContinuousAbsolute(UpdatedBlock):  # noqa: N801
     """Moves to a position and goes on from there with EndVelocity. Never done: InEndVelocity says that it is there."""
 
@@ -102,7 +109,7 @@ class MC_MoveContinuousAbsolute(UpdatedBlock):  # noqa: N801
 
     def _run(self, feedback: Feedback) -> None:
         super()._run(feedback)
-        there = feedback.reached and abs(self.Axis.set_velocity) >= self._given["end_velocity"] * (1 - 1e-9)
+        there = feedback.reached and has_end_velocity(self.Axis, self._given["end_velocity"])
         self._show(InEndVelocity=there and self._is_due("InEndVelocity"))
 
 
@@ -120,7 +127,7 @@ class MC_MoveContinuousRelative(UpdatedBlock):  # noqa: N801
 
     def _run(self, feedback: Feedback) -> None:
         super()._run(feedback)
-        there = feedback.reached and abs(self.Axis.set_velocity) >= self._given["end_velocity"] * (1 - 1e-9)
+        there = feedback.reached and has_end_velocity(self.Axis, self._given["end_velocity"])
         self._show(InEndVelocity=there and self._is_due("InEndVelocity"))
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from takt.axis import Axis
-from takt.feedback import QUEUE_FULL, Feedback
-from takt.plcopen.base import FunctionBlock, Input, Output, SettingBlock
+from takt.feedback import Feedback
+from takt.plcopen.base import FunctionBlock, Input, Output, SettingBlock, found_no_room
 
 YES_OR_NO = (4, 5, 6)  # parameters: EnableLimitPos, EnableLimitNeg, EnablePosLagMonitoring
 
@@ -81,8 +81,7 @@ class MC_SetOverride(FunctionBlock):  # noqa: N801
             self._given = self._feedback = None
             return
         wanted = self._arguments()
-        full = self._feedback is not None and self._feedback.error_id == QUEUE_FULL  # then it is tried again
-        if self._feedback is None or wanted != self._given or full:
+        if self._feedback is None or wanted != self._given or found_no_room(self._feedback):
             self._given = wanted
             self._feedback = self.Axis.session.command(self.Axis.name, "set_override", wanted)
         if self._feedback.error:
@@ -113,7 +112,7 @@ class MC_WriteBoolParameter(SettingBlock):  # noqa: N801
 
 class MC_ReadParameter(FunctionBlock):  # noqa: N801
     """A parameter by PLCopen's number, asked for again and again as long as Enable is true. Value is valid from the
-    first answer on, one or more cycles after Enable."""
+    first answer on, one or more cycles after Enable or after a change of ParameterNumber."""
 
     Enable = Input(False)
     ParameterNumber = Input(0, "number")
@@ -122,6 +121,7 @@ class MC_ReadParameter(FunctionBlock):  # noqa: N801
     Value: Output[Any] = Output(0.0)
 
     def __init__(self, axis: Axis, **inputs: Any) -> None:
+        self._given: dict[str, Any] | None = None  # arguments of the question
         self._asked: Feedback | None = None
         self._answer: Feedback | None = None
         super().__init__(axis, **inputs)
@@ -130,9 +130,12 @@ class MC_ReadParameter(FunctionBlock):  # noqa: N801
         if not self.Enable:
             self._asked = self._answer = None
             return
+        wanted = self._arguments()
+        if wanted != self._given:
+            self._given, self._asked, self._answer = wanted, None, None
         self._take_answer()
         if self._asked is None:
-            self._asked = self.Axis.session.command(self.Axis.name, "read_parameter", self._arguments())
+            self._asked = self.Axis.session.command(self.Axis.name, "read_parameter", wanted)
             self._take_answer()  # what cannot be is refused at once
         if self._answer is not None and self._answer.error:
             self._show_error(self._answer.error_id, self._answer.sentence)

@@ -263,7 +263,7 @@ class SurfaceRouter:
 
     def _make_raster(self, movers: Sequence[Mover]) -> Raster:
         options = self.options
-        if self._on_way and self._raster is not None:  # those on their way stay on theirs
+        if (self._on_way or self._goals) and self._raster is not None:  # movers with an order stay on its raster
             raster = make_raster(self.session, movers, options.environment, self._raster.pitch, self._raster.origin)
         else:
             raster = make_raster(self.session, movers, options.environment, options.pitch, options.origin)
@@ -397,7 +397,9 @@ class SurfaceRouter:
 
     def _plan_round(self) -> None:
         """Plans anew, since movers failed or the surface has changed; first movers get out of the way if they must."""
-        movers = [one.mover for one in self._on_way.values()]
+        movers = [self.session.mover(name) for name in dict.fromkeys([*self._on_way, *self._goals])]
+        if not movers:
+            return
         try:
             raster = self._make_raster(movers)
         except RoutingError as error:
@@ -439,7 +441,8 @@ class SurfaceRouter:
                 self._install(*self._plan(self._goals, raster))
                 break
             except RoutingError as error:
-                names = [error.mover] if error.mover in self._goals else list(self._goals)
+                failed = self._goals.get(error.mover)
+                names = [name for name, goal in self._goals.items() if failed is None or goal.pool is failed.pool]
                 for name in names:
                     self._fail(name, str(error) if name in str(error) else f"mover {name}: {error}")
                 if not names:

@@ -252,14 +252,19 @@ class Streets:
 
 
 def read_streets(session: Session, gap: float, movers: Iterable[Mover] = ()) -> Streets:
-    """Those of a session's machine file, with the links and lengths its engine has now.
+    """The tracks of a session's machine file, linked as its parts stand now.
 
-    movers: the gap is raised to the least one at which these clear each other on all tracks."""
+    movers: the gap is raised to the least one at which these clear each other on all tracks.
+
+    Raises RoutingError if a track has other lengths or links in the engine."""
     layout = TrackLayout(session.machine_text) if session.tracks else None
     if layout is None:
         raise RoutingError("the machine has no tracks")
+    layout.place_parts([part.commanded_index for part in session.parts.values()])
     for laid in layout.tracks:
-        if abs(laid.length - session.track(laid.name).length) > 1e-3:
+        track = session.track(laid.name)
+        links = (len(laid.previous), len(laid.subsequent))
+        if abs(laid.length - track.length) > 1e-3 or links != (track.previous_tracks, track.subsequent_tracks):
             raise RoutingError(f"track {laid.name} is not as the machine file has it: ways are planned on its tracks")
     sizes = [(float(m.parameters["width"]), float(m.parameters["height"]), m.c) for m in movers]
     width, height = (max((size[k] for size in sizes), default=0.0) for k in (0, 1))

@@ -247,14 +247,14 @@ def make_plan(
     for pool, order in enumerate(orders):
         for k, point in enumerate(order.points):
             said, mover = order.says(k), order.movers[k]
-            place = raster.place_at(point, said, mover if order.own else "")
+            place = raster.place_at(point, said, mover)
             if place in goals:
                 both = f"{goals[place]} and {said}".replace(f" of movers {', '.join(order.movers)}", "")
-                raise RoutingError(f"{both} are in one place, {_at(raster, place)}")
+                raise RoutingError(f"{both} are in one place, {_at(raster, place)}", mover)
             if place in standing:
                 raise RoutingError(
                     f"mover {standing[place]} stands at the target {_at(raster, place)}, and may not be moved",
-                    mover if order.own else "",
+                    mover,
                 )
             goals[place] = said
             targets[number[mover]] = place
@@ -320,7 +320,8 @@ def _check_outcome(
         if pools[routes.unreachable] >= 0:
             raise RoutingError(
                 "the targets cannot all be reached: holes and movers that stand shut the ways to them"
-                f"{_round(standing.values())}"
+                f"{_round(standing.values())}",
+                name,
             )
         target = _at(raster, targets[routes.unreachable])
         raise RoutingError(f"mover {name}: no way leads to its target {target}{_round(standing.values())}", name)

@@ -82,7 +82,7 @@ class SurfaceJourney:
         now_s = self.session.now - self.started_s
         for one in self._left:
             one.look()
-            self._check(one)
+        self._check()
         for one in self._left:
             one.grant()
         for one in self._left:
@@ -92,10 +92,15 @@ class SurfaceJourney:
         self._left = [one for one in self._left if math.isnan(one.arrived_s)]
         return not self._left
 
-    def _check(self, one: Traveller) -> None:
-        if (sentence := one.fault()) is not None:
-            self._interrupted = True
-            raise RoutingError(sentence, one.mover.name)
+    def _check(self) -> None:
+        for one in self._left:
+            if (sentence := one.fault()) is not None:
+                self._interrupted = True
+                for other in self._left:
+                    other.grant()
+                    if other.is_told:
+                        other.stop_where_granted(self._dynamics)
+                raise RoutingError(sentence, one.mover.name)
 
     def _go_on_again(self) -> None:
         for one in self._left:

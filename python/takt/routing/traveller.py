@@ -180,10 +180,15 @@ class Traveller:
         for visit in range(self.granted + 1, leg.last + 1):
             if now_s + later_s < timetable.entries_s[visit] + timetable.late_s:
                 break
-            timetable.disturbed()
-            self._send(self.granted, dynamics)
+            self.stop_where_granted(dynamics)
             break
         return True
+
+    def stop_where_granted(self, dynamics: Mapping[str, Any]) -> None:
+        """Ends a leg that was started by time at the last place that is granted."""
+        if self.sent > self.granted and self.timetable is not None:
+            self.timetable.disturbed()
+            self._send(self.granted, dynamics)
 
     def _begins(self, timetable: Timetable, leg: Leg, now_s: float) -> float:
         """Returns the earliest start of the leg, in s since the start of the plan, at which each place is free on

@@ -13,7 +13,7 @@ from typing import Any
 from takt.changes import Value, text_of
 from takt.engine import Engine
 from takt.errors import ConfigError
-from takt.scenario import Outcome, load_scenario, run_scenario, with_settings
+from takt.scenario import Outcome, Played, load_scenario, run_scenario, with_settings
 
 Row = dict[str, Any]
 TEXT = 300  # letters of a sentence
@@ -62,11 +62,18 @@ class Job:
             finally:
                 found |= {"engine_s": round(session.now, 9), "hash": f"{session.state_hash:016x}"}
         more = _margins(outcome)
-        if outcome.verdicts:
+        if Played.of(outcome.recording).broken_off is None:
             taken = {*found, *point, "run", "passed", "failed", "command", *more}
             for name, value in scenario.numbers(outcome.recording).items():
                 more[f"{name} (result)" if name in taken else name] = _plain(value)
         return _why(outcome), more
+
+
+def is_same(row: Row, other: Row) -> bool:
+    """Whether two rows have the same columns and values; NaN is the same as NaN."""
+    return row.keys() == other.keys() and all(
+        row[name] == other[name] or (row[name] != row[name] and other[name] != other[name]) for name in row
+    )
 
 
 def _why(outcome: Outcome) -> str:

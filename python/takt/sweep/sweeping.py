@@ -15,7 +15,7 @@ from takt.scenario import load_scenario, with_settings
 from takt.sweep.cluster import Cluster
 from takt.sweep.design import Design, SweepError
 from takt.sweep.pool import Pool
-from takt.sweep.runs import Job, Row
+from takt.sweep.runs import Job, Row, is_same
 from takt.sweep.summary import Summary
 from takt.sweep.table import ABOUT, Table, about, rows_of, to_parquet
 
@@ -120,7 +120,7 @@ def _make(
         nonlocal flushed, repeats
         if row["run"] == first and row["hash"]:
             again = job.run(first, {key: row[key] for key in pool.keys})
-            repeats = again == row
+            repeats = is_same(again, row)
         table.append(row)
         if time.monotonic() - flushed > FLUSH_S:
             table.flush()
