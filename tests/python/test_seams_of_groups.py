@@ -203,7 +203,7 @@ def test_a_blend_that_cuts_a_zone_waits_however_much_is_planned(lines: int) -> N
 
 @pytest.mark.parametrize("what", ["kinematics", "member", "all members", "tool"])
 def test_a_tool_that_carries_another_stays(what: str) -> None:
-    """GR-05, GR-30: what takes the tool of a group away, or moves it by a jump, is refused while another rides on it."""
+    """GR-05, GR-30: what takes the tool of a group away, or makes it jump, is refused while another rides on it."""
     engine = enabled(TWO)
     left, right = engine.group("left"), engine.group("right")
     left.move_linear_absolute(x=200, y=100).wait()
