@@ -83,6 +83,51 @@ def test_runs_in_which_workers_die(tmp_path: Path) -> None:
         assert ("no result: its worker ended again and again" in row["failed"]) == (row["dies"] == "1")
 
 
+HANGS = (
+    SCENARIO.replace("velocity=100.0, dies=0", "number=0, hangs=0, hangs_s=0.0, velocity=100.0, dies=0")
+    .replace("import os, signal", "import os, signal, time")
+    .replace("    ram = session", "    if number == hangs:\n        time.sleep(hangs_s)\n    ram = session")
+)
+
+
+def test_runs_that_take_too_long(tmp_path: Path) -> None:
+    """PY-24: only they are given up, not others of their range or behind them, which another worker makes."""
+    distributed = pytest.importorskip("distributed")
+    file = tmp_path / "press.py"
+    file.write_text(HANGS)
+    (tmp_path / "machine.yaml").write_text(MACHINE)
+    grid = ["number=" + ",".join(map(str, range(16))), "hangs=4", "hangs_s=60"]
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=str(tmp_path / "dask")
+    ) as cluster:
+        there = sweep(file, grid, directory=tmp_path / "there", scheduler=cluster.scheduler_address, timeout_s=6.0)
+    found = rows(there.table)
+    assert [row["passed"] for row in found] == [*["1"] * 4, "0", *["1"] * 11]
+    assert found[4]["failed"] == "no result: it took longer than 6 s"
+
+
+@pytest.mark.parametrize("ends", [True, False])
+def test_a_run_that_holds_the_only_worker(ends: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """PY-24: no run is given up that waits behind one; where that one does not end, a sentence says so."""
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr("takt.sweep.cluster.GONE_S", 60.0 if ends else 0.1)
+    file = tmp_path / "press.py"
+    file.write_text(HANGS)
+    (tmp_path / "machine.yaml").write_text(MACHINE)
+    grid = ["number=0,1,2,3", f"hangs_s={6 if ends else 8}"]
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster:
+        call = lambda: sweep(file, grid, directory=tmp_path / "x", scheduler=cluster.scheduler_address, timeout_s=2)  # noqa: E731
+        if ends:
+            assert [row["passed"] for row in rows(call().table)] == ["0", "1", "1", "1"]
+        else:
+            with pytest.raises(
+                SweepError, match=r"no worker is free: runs that took longer than 2 s still hold inproc.*1 runs"
+            ):
+                call()
+
+
 def test_schedulers_that_do_not_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed")
     monkeypatch.setattr("takt.sweep.cluster.CONNECT_S", 0.3)
@@ -120,6 +165,12 @@ class Vanishing:
     def run(self, _: object) -> dict[str, str]:
         return {"one": takt.__version__}
 
+    def subscribe_topic(self, topic: str, handler: Callable[..., object]) -> None:
+        pass
+
+    def get_worker(self) -> SimpleNamespace:
+        return SimpleNamespace(address="one", log_event=lambda topic, message: None)
+
     def submit(self, make: Callable[..., object], *arguments: object, pure: bool) -> Future:
         future = self.Future()
         if len(self.given) < 3:  # those of the beginning
@@ -147,7 +198,7 @@ def test_a_scheduler_that_goes_away(comes_back: bool, tmp_path: Path, monkeypatc
     monkeypatch.setattr("takt.sweep.cluster.GONE_S", 0.2)
     monkeypatch.setattr("takt.sweep.cluster.LOOK_S", 0.02)
     client = Vanishing(comes_back)
-    dask = SimpleNamespace(Client=client, wait=client.wait, TimeoutError=TimeoutError)
+    dask = SimpleNamespace(Client=client, wait=client.wait, TimeoutError=TimeoutError, get_worker=client.get_worker)
     monkeypatch.setitem(sys.modules, "distributed", dask)
     file = tmp_path / "press.py"
     file.write_text(SCENARIO)

@@ -3,14 +3,18 @@ are those that local processes make. Dask is an extra: pip install "takt-motion[
 
 from __future__ import annotations
 
+import itertools
 import logging
 import re
 import threading
 import time
+import uuid
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any
+from weakref import WeakValueDictionary
 
 import takt
 from takt.sweep.design import Design, SweepError
@@ -25,10 +29,33 @@ ADDRESS = re.compile(r"[a-z][a-z0-9+]*://[^\s/]+(/\S*)?")
 _alone = threading.Lock()
 
 
-def make(job: Job, design: Design, first: int, end: int) -> list[Row]:
+@dataclass
+class Range:
+    """Runs that a worker is given at once."""
+
+    first: int
+    end: int
+    at: int = -1  # the run in progress
+    worker: str = ""  # address of the one that makes it
+    since: float | None = None  # s, when it began; None: none has begun
+
+
+def make(job: Job, design: Design, first: int, end: int, topic: str, token: int) -> list[Row]:
     """On a worker: the rows of some runs. Scenarios are modules, so one at a time in each process."""
+    rows = []
     with _alone:
-        return [job.run(number, design.point(number)) for number in range(first, end)]
+        for number in range(first, end):
+            tell(topic, token, number)
+            rows.append(job.run(number, design.point(number)))
+    return rows
+
+
+def tell(topic: str, token: int, number: int) -> None:
+    """On a worker: a run begins."""
+    from distributed import get_worker
+
+    worker = get_worker()
+    worker.log_event(topic, (token, number, worker.address))
 
 
 def version() -> str:
@@ -42,6 +69,12 @@ class Cluster:
     def __init__(self, job: Job, design: Design, address: str, timeout_s: float) -> None:
         self._job, self._design, self._address, self._timeout_s = job, design, address, timeout_s
         self._made = 0
+        self._topic = f"takt-sweep-{uuid.uuid4().hex}"  # of events with which workers say that a run begins
+        self._tokens = itertools.count()
+        self._given: WeakValueDictionary[int, Range] = WeakValueDictionary()  # by token
+        self._heard = time.monotonic()  # when a run last began or ended
+        self._held: set[str] = set()  # addresses of workers with a run that was given up, and may go on
+        self._free: list[str] = []  # of all others, once there are such
         if not ADDRESS.fullmatch(address):  # Dask would take it for the name of a host, and look for it for long
             raise SweepError(f"expected the address of a scheduler as tcp://host:8786, found '{address}'")
         try:
@@ -72,50 +105,113 @@ class Cluster:
 
     def _run(self, client: Any, first: int, end: int, take: Callable[[Row], None]) -> None:
         threads = self._check(client)
+        client.subscribe_topic(self._topic, self._hear)
         each = max(1, min(AT_ONCE, (end - first) // (4 * threads)))
-        pending: dict[Any, tuple[int, int]] = {}
+        pending: dict[Any, Range] = {}
         rows: dict[int, Row] = {}
         following = oldest = first
-        heard = time.monotonic()
+        answered = time.monotonic()  # the scheduler was there
         while oldest < end:
             self._give_again(client, pending)
             while following < end and len(pending) < AHEAD * threads:
-                span = (following, min(following + each, end))
-                pending[client.submit(make, self._job, self._design, *span, pure=False)] = span
-                following = span[1]
+                self._give(client, pending, following, min(following + each, end))
+                following = min(following + each, end)
             done = self._done(client, pending)
-            if done:
-                heard = time.monotonic()
-            elif client.status != "running" and time.monotonic() - heard > GONE_S:
-                raise SweepError(
-                    f"the scheduler at {self._address} is gone; {oldest - first} runs are kept, and the same command "
-                    "goes on with the others"
-                )
-            elif time.monotonic() - heard > self._timeout_s * each:
-                done = [min(pending, key=lambda future: pending[future])]
+            if client.status == "running" or done:
+                answered = time.monotonic()
+            elif time.monotonic() - answered > GONE_S:
+                raise SweepError(f"the scheduler at {self._address} is gone; {self._kept(oldest - first)}")
             for future in done:
                 span = pending.pop(future)
-                if future.status == "error" and span[1] - span[0] > 1:  # which of them it was is not known
-                    for number in range(*span):
-                        one = client.submit(make, self._job, self._design, number, number + 1, pure=False)
-                        pending[one] = (number, number + 1)
+                self._heard = time.monotonic()
+                if future.status == "error" and span.end - span.first > 1:  # which of them it was is not known
+                    for number in range(span.first, span.end):
+                        self._give(client, pending, number, number + 1)
                     continue
-                for row in self._rows(future, span, time.monotonic() - heard > self._timeout_s * each):
+                for row in self._rows(future, span):
                     rows[row["run"]] = row
+            for row in self._give_up(client, pending):
+                rows[row["run"]] = row
+            if self._held and self._waits_in_vain(pending):
+                raise SweepError(
+                    f"no worker is free: runs that took longer than {self._timeout_s:g} s still hold "
+                    f"{', '.join(sorted(self._held))}; {self._kept(oldest - first)}"
+                )
             while (found := rows.pop(oldest, None)) is not None:
                 oldest += 1
                 self._made += 1
                 take(found)
 
-    def _give_again(self, client: Any, pending: dict[Any, tuple[int, int]]) -> None:
+    @staticmethod
+    def _kept(count: int) -> str:
+        return f"{count} runs are kept, and the same command goes on with the others"
+
+    def _give(self, client: Any, pending: dict[Any, Range], first: int, end: int) -> None:
+        span = Range(first, end)
+        token = next(self._tokens)
+        self._given[token] = span
+        arguments = (self._job, self._design, first, end, self._topic, token)
+        # Dask takes workers for free whose run was cancelled, though it goes on.
+        where = {"workers": self._free, "allow_other_workers": True} if self._free else {}
+        pending[client.submit(make, *arguments, pure=False, **where)] = span
+
+    def _give_again(self, client: Any, pending: dict[Any, Range]) -> None:
         """Runs that a scheduler took with it when it went away, once one answers again."""
         if client.status != "running":
             return
-        for future in [future for future in pending if future.status in ("cancelled", "lost")]:
+        lost = [future for future in pending if future.status in ("cancelled", "lost")]
+        if lost:
+            client.subscribe_topic(self._topic, self._hear)  # a scheduler that was started again does not know of it
+        for future in lost:
             span = pending.pop(future)
-            pending[client.submit(make, self._job, self._design, *span, pure=False)] = span
+            self._give(client, pending, span.first, span.end)
 
-    def _done(self, client: Any, pending: dict[Any, tuple[int, int]]) -> list[Any]:
+    def _hear(self, event: tuple[float, tuple[int, int, str]]) -> None:
+        """A worker begins a run."""
+        _, (token, number, worker) = event
+        span = self._given.get(token)
+        if span is not None:
+            span.at, span.worker, span.since = number, worker, time.monotonic()
+            self._heard = time.monotonic()
+
+    def _give_up(self, client: Any, pending: dict[Any, Range]) -> Iterator[Row]:
+        """The rows of runs that take too long. Others of their ranges, and those behind them, are given again."""
+        now = time.monotonic()
+        late = [
+            future
+            for future, span in pending.items()
+            if future.status == "pending" and span.since is not None and now - span.since > self._timeout_s
+        ]
+        if not late or client.status != "running":
+            return
+        workers = client.scheduler_info(n_workers=-1)["workers"]
+        for future in late:
+            span = pending[future]
+            if future.status != "pending":
+                continue
+            if span.worker not in workers:  # it has ended, and Dask gives the range to another one
+                span.since = None
+                continue
+            del pending[future]
+            future.cancel()
+            yield self._failed(span.at, f"it took longer than {self._timeout_s:g} s")
+            for first, end in ((span.first, span.at), (span.at + 1, span.end)):
+                if first < end:
+                    self._give(client, pending, first, end)
+            self._held.add(span.worker)
+            self._heard = time.monotonic()
+        self._free = [worker for worker in workers if worker not in self._held]
+        for future in [future for future, span in pending.items() if future.status == "pending" and span.since is None]:
+            span = pending.pop(future)
+            future.cancel()
+            self._give(client, pending, span.first, span.end)
+
+    def _waits_in_vain(self, pending: dict[Any, Range]) -> bool:
+        """Whether no run is in progress, and none has begun or ended for long."""
+        idle = all(future.status == "pending" and span.since is None for future, span in pending.items())
+        return idle and time.monotonic() - self._heard > max(GONE_S, self._timeout_s)
+
+    def _done(self, client: Any, pending: dict[Any, Range]) -> list[Any]:
         # Without a scheduler all futures are cancelled at once, and a wait for them raises.
         open_ = [future for future in pending if future.status not in ("cancelled", "lost")]
         if not open_:
@@ -130,11 +226,8 @@ class Cluster:
             return []
         return [future for future in ended if future.status in ("finished", "error")]
 
-    def _rows(self, future: Any, span: tuple[int, int], late: bool) -> list[Row]:
+    def _rows(self, future: Any, span: Range) -> list[Row]:
         """What became of a range of runs."""
-        if late:
-            future.cancel()
-            return [self._failed(number, f"it took longer than {self._timeout_s:g} s") for number in range(*span)]
         if future.status == "finished":
             found: list[Row] = future.result()
             return found
@@ -144,7 +237,7 @@ class Cluster:
             if type(error).__name__ == "KilledWorker"
             else f"{type(error).__name__}: {_line(error)}"
         )
-        return [self._failed(number, why) for number in range(*span)]
+        return [self._failed(number, why) for number in range(span.first, span.end)]
 
     def _failed(self, number: int, why: str) -> Row:
         return self._job.row(number, self._design.point(number), f"no result: {why}", {}, {})
