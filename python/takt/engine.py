@@ -176,7 +176,9 @@ class Engine(Session):
     def shut_down(self, timeout: float = 60.0) -> None:
         """Stops everything along its ramps and opens the loops, as the end of taktd does; no command is accepted any
         more."""
+        self._check_open()
         self._core.request_shutdown()
+        self._run(1)  # a machine that is off already has to hear of it, too
         self.wait(lambda: self._core.all_disabled, timeout, what="every axis at rest with its loop open")
 
     def close(self) -> None:

@@ -110,6 +110,8 @@ class OnNetwork(Bus):
         if axis in self._started:  # of another engine
             self._begin()
         self._started.add(axis)
+        if real_time and self._cycle == -1:  # the first answer is what is measured before anything is told
+            self._step()
 
     def exchange(self, told: Mapping[str, SetPoint], *, real_time: bool) -> Mapping[str, Measured | None]:
         late = real_time and self._heard.isdisjoint(told)  # the rest of a cycle that was carried out without them

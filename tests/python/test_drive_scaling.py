@@ -6,9 +6,14 @@ import math
 from fractions import Fraction
 
 import pytest
+import takt
 from hypothesis import given
 from hypothesis import strategies as st
+from takt import drive
+from takt.drives.axis import DriveAxis, Heard
+from takt.drives.cia402 import Mode, PowerStateMachine, State
 from takt.drives.scaling import Scaling, Unwrapped, scaling_of, signed
+from takt.plant import Drives
 
 AXIS = {"encoder": {"increments_per_unit": 1000.0}}
 
@@ -71,3 +76,50 @@ def test_velocities_and_torques() -> None:
     assert scaling.torque(1e9) == 32767
     assert scaling.torque_nm(-500) == pytest.approx(-1.0)
     assert [scaling.torque_limit(nm) for nm in (0.0, 3.0, 1e6, math.inf)] == [0xFFFF, 1500, 0xFFFF, 0xFFFF]
+
+
+class Followed(drive.Drive):
+    """A drive that is in each cycle where it was told to be in the one before, and what it was told at most."""
+
+    def __init__(self, ratio: Fraction, position: int) -> None:
+        self.axis = DriveAxis("x", "it", Scaling(ratio), {}, frozenset({Mode.CYCLIC_POSITION}), lambda _: None)
+        self.machine, self.position, self.time_s, self.furthest = PowerStateMachine(), position, 0.0, 0
+        self.machine.started()
+
+    def step(self, told: drive.SetPoint, _: float) -> drive.Measured:
+        self.time_s += 0.001
+        words = self.axis.words(told, self.time_s)
+        self.machine.control(words.control)
+        step = signed(words.position - self.position)
+        self.furthest = max(self.furthest, abs(step))
+        if self.axis.state is State.OPERATION_ENABLED and abs(step) < 1 << 29:
+            self.position = signed(self.position + step)
+        heard = Heard(self.machine.status_word(), self.position, 0, 0, int(Mode.CYCLIC_POSITION))
+        return self.axis.measured(heard, self.time_s)
+
+
+ENDLESS = """
+name: endless
+axes:
+  - name: x
+    limits: {velocity: 30000, acceleration: 1000000, jerk: 1000000000}
+    encoder: {increments_per_unit: 1000000}
+    supervision: {deviation_moving: 1000}
+"""
+
+
+@pytest.mark.parametrize("ratio", ["1", "3/2", "10/3", "1/4"])
+@pytest.mark.parametrize("start", [0, 600_000_000])
+def test_an_engine_that_starts_later_does_not_make_the_drive_jump(ratio: str, start: int) -> None:
+    """AX-87: the engine counts from what it hears first; the drive may have wrapped before, at any ratio."""
+    followed = Followed(Fraction(ratio), start)
+    for _ in range(2):
+        with takt.Engine(ENDLESS, plant=Drives({"x": followed})) as engine:
+            engine.step(5)
+            followed.furthest = 0
+            axis = engine.axis("x")
+            axis.power().wait()
+            engine.step(20)
+            assert followed.furthest <= 1  # rounding
+            axis.move_relative(distance=2500).wait()
+            assert 0 < followed.furthest < 1 << 28

@@ -331,6 +331,19 @@ def test_a_jog_ends_with_its_client(plant: Plant, client: Client, how: str, loop
                 other.disconnect()
 
 
+def test_a_held_stop_holds_while_its_client_is_heard(plant: Plant, client: Client, loop: ThreadLoop) -> None:
+    """EN-23: also after it is done; it ends with its session."""
+    powered(client)
+    with Client(plant.address, tloop=loop) as other:
+        call(other, "x", "stop", math.nan, math.nan, True)
+        end = time.monotonic() + 1.0  # longer than the dead man's time
+        while time.monotonic() < end:
+            value(other, "x.set_velocity")
+            time.sleep(0.05)
+        assert value(other, "x.state") == enumeration(other, "x.state").index("Stopping")
+    until(lambda: value(client, "x.state") == 1)
+
+
 def test_two_clients_command_beside_each_other(plant: Plant, client: Client, loop: ThreadLoop) -> None:
     """EN-22: each is a client of the engine by itself; the later command takes over."""
     with Client(plant.address, tloop=loop) as other:

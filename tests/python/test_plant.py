@@ -11,7 +11,7 @@ import takt
 import yaml
 from plants import inside, outside
 from takt import _core, drive
-from takt.plant import MEASURED, Drives, Rows
+from takt.plant import MEASURED, Drives, OnNetwork, Rows
 from test_drive import same, work
 
 URL = "udpm://239.255.76.67:7690?ttl=0"  # nothing is ever sent there
@@ -202,3 +202,24 @@ def test_a_machine_as_a_dict() -> None:
     for wrong, said in ((float("nan"), "no machine file can hold"), ({1, 2}, "is no number, text, list or dict")):
         with pytest.raises(takt.ConfigError, match=said):
             takt.Engine({"name": "x", "axes": wrong})
+
+
+def test_the_first_answer_in_real_time_is_measured() -> None:
+    """AX-87: an absolute encoder is read before anything is told; 0 would be a place, and the next answer a jump."""
+
+    class Standing(takt.Plant):
+        axes = ("x",)
+
+        def start(self, machine: Mapping[str, Any], period_s: float) -> None:
+            pass
+
+        def step(self, cycle: int, told: Rows, measured: Rows) -> None:
+            measured["counts"] = 100_000
+
+    machine = {"name": "m", "cycle": {"period_s": 0.001}}
+    bus = OnNetwork(Standing, machine)
+    bus.start("x", real_time=True, period_s=0.001)
+    for _ in range(2):
+        found = bus.exchange({"x": drive.SetPoint()}, real_time=True)["x"]
+        assert found is not None
+        assert found.counts == 100_000

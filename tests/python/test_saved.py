@@ -91,6 +91,17 @@ def test_an_engine_that_shuts_down_is_saved() -> None:
             assert str(again.error) == str(refused.error) != "None"
 
 
+def test_an_engine_that_is_off_shuts_down_for_its_clones_too() -> None:
+    """EN-08: the end of the machine is in what is saved."""
+    with takt.Engine(MACHINE, journal=True) as engine:
+        engine.step(10)
+        engine.shut_down()
+        with engine.clone() as copy:
+            name = next(iter(engine.axes))
+            refused, again = (one.axis(name).power().wait_final() for one in (engine, copy))
+            assert again.sentence == refused.sentence != ""
+
+
 def test_what_is_saved_can_be_kept_and_gone_back_to() -> None:
     """Pickled, and as often as one wishes: branches from one state."""
     with takt.Engine(MACHINE, journal=True, period=0.002) as engine:

@@ -460,3 +460,18 @@ except takt.TaktError as error:
 """
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert 'pip install "takt-motion[twin]"' in done.stdout
+
+
+def test_the_distance_from_the_set_pose_is_no_way_of_a_cycle() -> None:
+    """PY-23: at a constant velocity a gantry is as far from its set pose as its axis has a following error."""
+    with takt.Engine(GANTRY, plant="mujoco") as engine:
+        for axis in "xyzc":
+            engine.axis(axis).power().wait()
+        robot = engine.group("robot")
+        robot.enable().wait()
+        record = engine.record()
+        robot.move_linear_absolute(x=100, coordinate_system="mcs").wait()
+        recording = record.stop()
+        (tool,) = judge(engine.plant, recording).tools
+    lag = np.abs(recording["x"]["following_error"]).max()
+    assert tool.off[1] == pytest.approx(lag, abs=0.02)

@@ -196,3 +196,29 @@ def verify(recording):
     assert len(found.placed) >= 2, found.sentence
     assert found.errors.max() < 0.3, found.sentence
 '''
+
+
+def test_belts_in_a_row_hand_products_on() -> None:
+    """What lies beyond the end of one belt is on another one."""
+    text = MACHINE
+    for before, added in (
+        ("groups:", "  - {name: other, unit: mm, limits: {velocity: 500, acceleration: 2000, jerk: 60000}}\n"),
+        ("twin:", "  - {name: next, axis: other, source: actual_value, origin: {x: 600, y: 0, z: -100}}\n"),
+        ("  mechanisms:", "    - {axis: other, mass: 5, max_torque: 300}\n"),
+        ("  products:", "    - {belt: next, from: -300, to: 300, width: 100, surface: -20}\n"),
+    ):
+        text = text.replace(before, added + before, 1)
+    with powered(text) as engine:
+        assert isinstance(engine.plant, Twin)
+        cargo = engine.plant.cargo
+        assert cargo is not None
+        number = cargo.put("line", x=250)
+        engine.step(30)
+        assert cargo.here == (number,)
+        for distance, there in ((200, (number,)), (500, ())):
+            for move in [engine.axis(name).move_relative(distance=distance) for name in ("drive", "other")]:
+                move.wait()
+            engine.run(0.2)
+            assert cargo.here == there
+            assert [seen.number for seen in cargo.camera("next")] == list(there)
+        assert cargo.fallen == []

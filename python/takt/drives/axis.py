@@ -13,7 +13,7 @@ from takt.drives.cia402 import CONTROL_WORDS, Command, FaultReset, Mode, State, 
 from takt.drives.error_texts import error_text
 from takt.drives.homing import DriveHoming
 from takt.drives.probe import ProbeLatch
-from takt.drives.scaling import Scaling, Unwrapped, signed
+from takt.drives.scaling import WORD, Scaling, Unwrapped, signed
 
 MODES = {
     drive.CYCLIC_POSITION: Mode.CYCLIC_POSITION,
@@ -106,6 +106,8 @@ class DriveAxis:
         self.status = 0
         self.position = 0  # increments, as last heard
         self.error_code = 0  # of the last fault, 0: not told yet
+        self._base = 0  # counts, a multiple of 2^32: by which it counts further than the engine does
+        self._counts: int | None = None  # as last measured, over all wraps
         self._target: int | None = None  # position that the drive was told last, while it followed one
         self._lag: int | None = None  # increments: of the drive behind it at the begin of the last fault
         self._fault_since_s: float | None = None
@@ -144,13 +146,17 @@ class DriveAxis:
             self._homing.forget()
         words = Words(self._control(enable, now_s, stop), int(mode), torque_limit=self._limit(told))
         words.probe = self._probe.function if self._probe is not None else 0
+        follows = self.state is State.OPERATION_ENABLED and enable and mode is Mode.CYCLIC_POSITION
+        if self._counts is not None and not follows:  # the engine tells the measured position
+            self._base = round((self._counts - told.position_counts) / WORD) * WORD
         words.position = self.position  # so that the drive does not jump when it is switched on, or to csp
         self._target = None
         if self._homes:
             self._home(words, enable, now_s)
         elif self.state is State.OPERATION_ENABLED and enable:
             if mode is Mode.CYCLIC_POSITION:
-                words.position = signed(self.scaling.increments(told.position_counts) + self._absorbed)
+                counts = told.position_counts + self._base
+                words.position = signed(self.scaling.increments(counts) + self._absorbed)
                 self._target = words.position
             words.velocity = self.scaling.velocity(told.velocity_counts_s) if mode is Mode.CYCLIC_VELOCITY else 0
             words.torque = self.scaling.torque(told.torque_nm) if mode is Mode.CYCLIC_TORQUE else 0
@@ -232,8 +238,9 @@ class DriveAxis:
         self.status, self.position, self.mode = heard.status, heard.position, heard.mode
         self._watch_fault(now_s)
         at = total - self._absorbed
+        self._counts = self.scaling.counts(at)
         found = drive.Measured(
-            counts=self.scaling.counts(at),
+            counts=self._counts,
             drive_fault=self.faulty or (self._homing is not None and self._homing.failed != ""),
             torque_nm=self.scaling.torque_nm(heard.torque),
             drive_error=self.error_code if self.faulty else 0,

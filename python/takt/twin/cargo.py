@@ -393,15 +393,20 @@ class Cargo:
         return [one for one, leaves in zip(free, may.tolist(), strict=True) if leaves]
 
     def _leave(self, one: _Product, cycle: int) -> None:
-        """Removes a product at the end of its belt, or that has fallen."""
+        """Removes a product at the end of its belt, where no other one carries it on, or that has fallen."""
         place = self._data.qpos[one.qpos : one.qpos + 3]
+        half, at_end = self._half[0], False
         for belt in self._belts.values():
             x, y, z = self._seen_from(belt, place)
-            on = abs(y) <= belt.half_width and abs(z - self._half[2] - belt.surface) < 0.01
-            if on and x > belt.to_m - self._half[0]:
-                self._forget(one)
-                self._wait(one)
+            if abs(y) > belt.half_width or abs(z - self._half[2] - belt.surface) >= 0.01:
+                continue
+            if belt.from_m - half < x <= belt.to_m - half:
                 return
+            at_end = at_end or belt.to_m - half < x <= belt.to_m + half
+        if at_end:
+            self._forget(one)
+            self._wait(one)
+            return
         if place[2] < self._floor:
             self.fallen.append((one.number, cycle))
             self._forget(one)

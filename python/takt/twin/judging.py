@@ -97,7 +97,8 @@ def _pair(values: tuple[float, float] | None) -> tuple[str, str]:
 
 
 def judge(twin: Twin, recording: Recording, servo: Recording | None = None) -> Judged:
-    """Judges what a twin has seen while this was recorded. servo: the same run with our servo model, to compare."""
+    """Judges what a twin has seen since its start. recording: of the same time, for the figures of axes and groups;
+    servo: the same run with our servo model, to compare."""
     seen = twin.seen()
     period = float(recording.meta["period_s"])
     verdicts: list[Verdict] = []
@@ -233,6 +234,6 @@ def _off(recording: Recording, group: str) -> Array:
     """Distance of the tool from its set pose while the group is enabled. The measured pose answers the set pose of the
     cycle before."""
     table = recording[group]
-    columns = [np.asarray(table[name], float) for name in ("x", "y", "z", "actual_x", "actual_y", "actual_z")]
-    off = np.linalg.norm(np.subtract(columns[3:], columns[:3])[:, 1:], axis=0)
+    poses = np.array([table[name] for name in ("x", "y", "z", "actual_x", "actual_y", "actual_z")], float)
+    off = np.linalg.norm(poses[3:, 1:] - poses[:3, :-1], axis=0)
     return np.asarray(off[np.isfinite(off)])

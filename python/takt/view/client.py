@@ -20,6 +20,7 @@ from takt.view.machine import Machine
 RESEND_S = 0.2  # between two tries of a command that is not answered
 REFRESH_S = 2.0  # after which a command that is not finished is asked about: its last answer may have been lost
 GIVEN_UP_S = 2.0
+DONE = 2
 FINAL = 2  # from this state on a feedback is the last one
 
 
@@ -32,6 +33,7 @@ class Given:
     ticket: int = 0
     held: bool = False  # goes on until it is let go of
     let_go: bool = False  # it is to be let go of as soon as it has a ticket
+    done: bool = False  # a held stop: it stays in force
 
 
 class Client(ABC):
@@ -77,7 +79,7 @@ class Client(ABC):
             if not given.answered and now - given.began > GIVEN_UP_S:
                 del self._given[number]
                 self._unanswered(given.message)
-            elif now - given.sent > (REFRESH_S if given.answered else RESEND_S):
+            elif not given.done and now - given.sent > (REFRESH_S if given.answered else RESEND_S):
                 given.sent = now
                 self._network.publish("takt/command", given.message.encode())
 
@@ -90,7 +92,8 @@ class Client(ABC):
             return
         given.answered = True
         given.ticket = message.ticket
-        if message.state >= FINAL:
+        given.done = message.state == DONE and (given.held or given.let_go) and given.message.verb != "jog"
+        if message.state >= FINAL and not given.done:
             del self._given[message.id]
         else:
             self._let_go(given, time.monotonic())
@@ -99,6 +102,8 @@ class Client(ABC):
     def _let_go(self, given: Given, now: float) -> None:
         if given.let_go and given.ticket:
             given.let_go = False
+            if given.done:
+                del self._given[given.message.id]
             self._send("machine", "release", to_text({"ticket": given.ticket}), now)
 
     def _send(self, target: str, verb: str, arguments: str, now: float, held: bool = False) -> int:
