@@ -218,3 +218,14 @@ def test_the_same_over_lcm(tmp_path: Path) -> None:
             ("move_to_position", "ERROR", 3041),
         ]
         assert all(0 <= record.cycle <= record.begun <= record.changed for record in mover.history())
+
+
+def test_set_position_and_enable_in_one_cycle() -> None:
+    """PL-11: the position that was measured before is no deviation."""
+    engine = takt.Engine("name: plane\naxes: []\nmovers: [{name: one, deviation: 2}]\n")
+    one = engine.mover("one")
+    put, on = one.set_position(x=500, y=100), one.enable()
+    engine.run(0.01)
+    assert put.done
+    assert on.done, on.sentence
+    assert (one.state, one.x, one.actual_x) == ("Enabled", 500, 500)
