@@ -25,9 +25,8 @@ constexpr int kDoublings = 31;  // of kLittle, up to kFar
 // What X or Y may have by itself.
 PlaneParams ParamsOfEach(const PlaneParams& p) {
   const auto as = [](const Limits& l) { return Dynamics{l.velocity, l.acceleration, l.deceleration, l.jerk}; };
-  const Limits most = LimitsOfEach(p.maximum.limits()), standard = StandardOf(p);
-  return {as(most), as({std::min(standard.velocity, most.velocity), std::min(standard.acceleration, most.acceleration),
-                        std::min(standard.deceleration, most.deceleration), std::min(standard.jerk, most.jerk)})};
+  const Limits most = LimitsOfEach(p.maximum.limits());
+  return {as(most), as(SmallerOf(StandardOf(p), most))};
 }
 
 KinematicState& Of(PlaneState& at, Coordinate which) {
