@@ -149,3 +149,14 @@ def test_a_planet_says_that_what_is_buffered_waits_for_the_end_of_the_formation(
         two.leave_formation().wait()
         waits.wait()
         assert (two.delay, two.blocked_by, two.x) == ("none", None, pytest.approx(900))
+
+
+def test_a_planet_whose_star_is_lost_begins_nothing_by_itself() -> None:
+    """PL-71, PL-73: what is buffered behind the formation is aborted with its error."""
+    with Engine(MACHINE) as engine:
+        star, two = formed(engine), engine.mover("two")
+        behind = two.move_to_position(x=900, y=240, buffer_mode="buffered")
+        star.disable()
+        engine.run(1)
+        assert behind.aborted
+        assert (two.x, two.buffered, two.formation) == (420, 0, 0)

@@ -246,6 +246,18 @@ def test_by_velocity_it_goes_to_the_edge_of_the_surface(velocity: float) -> None
     within_limits(recorder.recording, "a")
 
 
+def test_a_velocity_that_ends_for_want_of_room_ends_what_is_buffered() -> None:
+    """PL-71."""
+    engine = engine_of(**ON_PARTS)
+    a = engine.mover("a")
+    on = a.move_velocity_x(velocity=400)
+    behind = a.move_to_position(x=200, y=200, buffer_mode="buffered")
+    assert on.wait_final(60).error_id == 3071
+    engine.run(1)
+    assert behind.aborted
+    assert a.x == pytest.approx(EDGE, abs=0.1)
+
+
 def test_by_velocity_it_goes_as_far_as_its_group_has_room() -> None:
     engine = engine_of(
         {"name": "b", "initial": {"x": 700, "y": 200}},

@@ -306,6 +306,7 @@ void Conclude(const Context& c, Slot slot, State& s) noexcept {
   }
   Endless& e = s.endless[static_cast<std::size_t>(found - std::begin(kSlotOfEndless))];
   End(c, slot, e.on ? FeedbackState::kError : FeedbackState::kDone, e.on ? e.end : ErrorId::kNone, s, e.object);
+  if (e.on) AbortBuffered(c, s);
   e = {};
 }
 

@@ -238,6 +238,7 @@ void MindStar(const Context& c, State& s) noexcept {
   const bool lost = StateOfStar(c, s).state != ObjectState::kEnabled;
   if ((!lost && s.state == ObjectState::kEnabled) || !c.grounds.movers[s.formation.star].rests) return;
   End(c, kFormation, FeedbackState::kError, ErrorId::kStarLost, s);
+  AbortBuffered(c, s);
   Context next = c;
   ++next.cycle.count;
   Leave(next, s);
