@@ -336,3 +336,23 @@ def test_a_mover_that_joins_a_formation_gives_its_turn_up() -> None:
     across = c.move_to_position(x=300, y=0, buffer_mode="buffered")
     engine.step(3)
     assert across.active, c.delay
+
+
+@pytest.mark.parametrize("moving", [False, True])
+def test_releases_stay_when_a_move_waits_at_once(moving: bool) -> None:
+    """PL-71, PL-72: what waits instead of being refused is no halt."""
+    engine = Engine(row(6, "ab", ", moves_wait: true"))
+    a, b = enabled(engine)
+    b.move_to_position(**place(5)).wait()
+    if moving:
+        a.move_to_position(**place(2))
+        engine.run(0.1)
+    a.release().wait_final()
+    move = a.move_to_position(**place(5))
+    wait = a.wait(for_release=True)
+    engine.run(0.5)
+    assert move.busy
+    b.move_to_position(x=300, y=360).wait()
+    move.wait()
+    engine.run(0.1)
+    assert wait.done

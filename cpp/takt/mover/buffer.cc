@@ -273,7 +273,9 @@ void WaitInTurn(const Context& c, Ticket ticket, const Command& command, const O
     AbortBuffered(c, s);
   } else {
     const trajectory::Limits limits = StandardOf(c.params.xy);
+    const std::uint32_t releases = s.buffer.releases;
     EndAll(c, false, FeedbackState::kAborted, ErrorId::kNone, s);
+    s.buffer.releases = releases;
     BringToRest(c, &limits, s);
   }
   if (planar::Turn* turn = planar::TurnOf(c.index, c.grounds)) turn->move = UnknownMove(c);
