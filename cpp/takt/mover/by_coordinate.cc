@@ -286,7 +286,7 @@ void EndEach(const Context& c, State& s) noexcept {
   s.endless[kX].on = s.endless[kY].on = false;
 }
 
-void NoteVelocity(const Context& c, State& s) noexcept {
+void NoteVelocity(const Context& c, std::uint64_t cycle, State& s) noexcept {
   const PlaneState at = At(s.plane.motion, Elapsed(c, s.plane.begin));
   const std::array now = {at.x, at.y, Now(c, s.others.back())};
   for (std::size_t i = 0; i < kEndless.size(); ++i) {
@@ -295,7 +295,7 @@ void NoteVelocity(const Context& c, State& s) noexcept {
     e.on = e.on && ticket != 0;
     if (!e.on || e.reached || now[i].acceleration != 0) continue;
     e.reached = std::abs(now[i].velocity - e.velocity) <= 1e-9 * std::abs(e.velocity);
-    if (e.reached) c.feedback.Report({ticket, c.cycle.count, FeedbackState::kActive, true, ErrorId::kNone, 0});
+    if (e.reached) c.feedback.Report({ticket, cycle, FeedbackState::kActive, true, ErrorId::kNone, 0});
   }
 }
 

@@ -159,7 +159,7 @@ void Finish(const Context& now, State& s) {
   const Context c = NextTo(now);
   const auto done = [&](Slot slot) { End(now, slot, FeedbackState::kDone, ErrorId::kNone, s); };
   const bool turned = IsOver(c, s.others.back());
-  NoteVelocity(c, s);
+  NoteVelocity(c, now.cycle.count, s);
   if (s.external.mode != SetpointMode::kAbsolute) {
     const bool there = IsOnTrack(s) ? c.rider().there : IsOver(c, s.plane);
     if (there && (!s.plane.turns || turned)) {
