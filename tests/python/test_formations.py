@@ -149,3 +149,34 @@ def test_a_planet_says_that_what_is_buffered_waits_for_the_end_of_the_formation(
         two.leave_formation().wait()
         waits.wait()
         assert (two.delay, two.blocked_by, two.x) == ("none", None, pytest.approx(900))
+
+
+def test_a_planet_whose_star_is_lost_begins_nothing_by_itself() -> None:
+    """PL-71, PL-73: what is buffered behind the formation is aborted with its error."""
+    with Engine(MACHINE) as engine:
+        star, two = formed(engine), engine.mover("two")
+        behind = two.move_to_position(x=900, y=240, buffer_mode="buffered")
+        star.disable()
+        engine.run(1)
+        assert behind.aborted
+        assert (two.x, two.buffered, two.formation) == (420, 0, 0)
+
+
+@pytest.mark.parametrize("waits", [False, True])
+def test_a_halt_of_a_planet_takes_waits_and_releases_with_it(waits: bool) -> None:
+    """PL-71: as that of any mover."""
+    with Engine(MACHINE) as engine:
+        two = engine.mover("two")
+        two.enable().wait()
+        early = two.wait(for_release=True) if waits else two.release()
+        engine.step(2)
+        star = engine.mover("one")
+        star.enable().wait()
+        two.join_formation(star="one").wait(until="reached")
+        two.halt().wait()
+        if waits:
+            assert early.aborted
+        else:
+            late = two.wait(for_release=True)
+            engine.run(0.1)
+            assert not late.final

@@ -144,6 +144,25 @@ def test_a_master_that_is_switched_off() -> None:
         engine.mover("mover").gear_in_pos_on_track(master="axis", master_sync_position=0, slave_sync_position=0).wait()
 
 
+@pytest.mark.parametrize("off", [False, True])
+def test_a_gear_that_fails_ends_what_is_buffered(off: bool) -> None:
+    """PL-71: at the end of the track, or once the axis is without power, nothing begins by itself."""
+    engine = Engine(ONE_ON_A_LINE)
+    gear = follow_an_axis(engine, 900, velocity=200)
+    mover = engine.mover("mover")
+    engine.run(3)
+    behind = mover.move_on_track(position=0, buffer_mode="buffered")
+    engine.step(2)
+    assert behind.busy
+    if off:
+        engine.axis("axis").power(enable=False).wait()
+    engine.wait(lambda: gear.final, 20)
+    assert gear.error_id == (3019 if off else 3080)
+    engine.run(1)
+    assert behind.aborted
+    assert (mover.buffered, mover.track_velocity) == (0, 0)
+
+
 TWO_TRACKS = f"""
 name: lines
 axes: [{AXIS}]

@@ -218,3 +218,27 @@ def test_the_same_over_lcm(tmp_path: Path) -> None:
             ("move_to_position", "ERROR", 3041),
         ]
         assert all(0 <= record.cycle <= record.begun <= record.changed for record in mover.history())
+
+
+def test_set_position_and_enable_in_one_cycle() -> None:
+    """PL-11: the position that was measured before is no deviation."""
+    engine = takt.Engine("name: plane\naxes: []\nmovers: [{name: one, deviation: 2}]\n")
+    one = engine.mover("one")
+    put, on = one.set_position(x=500, y=100), one.enable()
+    engine.run(0.01)
+    assert put.done
+    assert on.done, on.sentence
+    assert (one.state, one.x, one.actual_x) == ("Enabled", 500, 500)
+
+
+@pytest.mark.parametrize("velocity", [0, 200])
+def test_what_is_reached_is_told_with_its_cycle(engine: takt.Engine, mover: takt.Mover, velocity: float) -> None:
+    """PL-02: a velocity that is reached and a move that is done, each with the cycle in which it came to be so."""
+    if velocity:
+        move = mover.move_velocity_x(velocity=velocity)
+        engine.wait(lambda: move.reached, 5)
+        assert mover.velocity_x == pytest.approx(velocity)
+    else:
+        move = mover.move_x(position=50)
+        engine.wait(lambda: move.done, 5)
+    assert move.cycle == engine.cycle - 1

@@ -246,6 +246,36 @@ def test_by_velocity_it_goes_to_the_edge_of_the_surface(velocity: float) -> None
     within_limits(recorder.recording, "a")
 
 
+def test_a_velocity_that_ends_for_want_of_room_ends_what_is_buffered() -> None:
+    """PL-71."""
+    engine = engine_of(**ON_PARTS)
+    a = engine.mover("a")
+    on = a.move_velocity_x(velocity=400)
+    behind = a.move_to_position(x=200, y=200, buffer_mode="buffered")
+    assert on.wait_final(60).error_id == 3071
+    engine.run(1)
+    assert behind.aborted
+    assert a.x == pytest.approx(EDGE, abs=0.1)
+
+
+def test_a_refused_command_leaves_limited_by() -> None:
+    """PL-03: it says what was reduced of the last command that was carried out."""
+    engine = engine_of(**ON_PARTS)
+    a = engine.mover("a")
+    a.move_to_position(x=800, y=200, velocity=1e6)
+    engine.step(2)
+    assert a.limited_by == "velocity"
+    refused = [
+        a.move_x(position=5000),
+        a.move_relative_y(distance=5000),
+        a.move_to_position(x=5000, y=200),
+        a.move_z(position=99),
+    ]
+    engine.step(2)
+    assert all(command.error_id for command in refused)
+    assert a.limited_by == "velocity"
+
+
 def test_by_velocity_it_goes_as_far_as_its_group_has_room() -> None:
     engine = engine_of(
         {"name": "b", "initial": {"x": 700, "y": 200}},

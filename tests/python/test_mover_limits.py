@@ -224,6 +224,42 @@ def test_movers_that_turn_brake_before_others_within_their_limits(number: int) -
         expect.within_limits(recorder.recording, name)
 
 
+def taken_over(one: takt.Mover, engine: takt.Engine) -> None:
+    one.move_to_position(x=1000, y=0)
+    engine.run(0.2)
+    one.move_x(position=100).wait()
+
+
+def halted(one: takt.Mover, engine: takt.Engine) -> None:
+    one.move_to_position(x=1000, y=0)
+    one.move_z(position=50)
+    one.move_c(position=50)
+    engine.run(0.3)
+    one.halt().wait()
+
+
+def turned_along(one: takt.Mover, engine: takt.Engine) -> None:
+    one.move_to_position(x=1, y=0, c=50, use_orientation=True).wait()
+
+
+@pytest.mark.parametrize("go", [taken_over, halted, turned_along])
+def test_a_standard_above_the_maximum_is_the_maximum(go: Callable[[takt.Mover, takt.Engine], None]) -> None:
+    """PL-03, PL-15: however a motion begins or ends, the maximum is kept."""
+    more = {"velocity": 3000, "acceleration": 20_000, "jerk": 2e6}
+    wide = {"standard": {**more, "velocity": 90}, "lower": -60, "upper": 60}
+    one = {
+        "name": "one",
+        "xy": {"maximum": {"velocity": 1000, "acceleration": 2000, "jerk": 50_000}, "standard": more},
+        "z": {"maximum": {"velocity": 100, "acceleration": 200, "jerk": 20_000}, **wide},
+        "c": {"maximum": {"velocity": 100, "acceleration": 1000, "jerk": 20_000}, **wide},
+    }
+    with takt.Engine({"name": "plane", "axes": [], "movers": [one]}) as engine:
+        engine.mover("one").enable().wait()
+        with engine.record() as recorder:
+            go(engine.mover("one"), engine)
+    expect.within_limits(recorder.recording, "one")
+
+
 def test_set_points_from_outside_may_have_any_jerk() -> None:
     with takt.Engine(MACHINE) as engine, engine.record() as recorder:
         one = engine.mover("one")

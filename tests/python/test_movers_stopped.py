@@ -174,6 +174,22 @@ def test_set_position_in_the_very_first_cycle() -> None:
     assert onto.error_id == 3024
 
 
+def test_set_position_is_kept_in_a_fault_of_the_next_cycle() -> None:
+    """PL-11: the braking that has just ended is not what the mover stops with at its new position."""
+    hall = {"name": "hall", "columns": 6, "rows": 3, "positions": [{"coordinate_system": "cs"}]}
+    start = {"initial": {"x": 120, "y": 120}, "reference": "hall"}
+    engine = engine_of(coordinate_systems=[{"name": "cs"}], parts=[hall], a=start)
+    a = engine.mover("a")
+    a.move_to_position(x=1200, y=120)
+    engine.run(0.3)
+    a.disable().wait()
+    put = a.set_position(x=300, y=500)
+    engine.part("hall").force_disable()
+    engine.run(0.05)
+    assert put.done
+    assert (a.state, a.x, a.y) == ("Error", 300, 500)
+
+
 # --- on tracks ---
 
 

@@ -286,3 +286,73 @@ def test_over_lcm_and_again_from_the_log(tmp_path: Path) -> None:
         session.wait(lambda: {a.waits_for, c.waits_for} in ({0, 1}, {0, 3}), 2)
     result = takt.replay(log)
     assert result.same, result.sentence
+
+
+TRACK_IN_A_GROUP = """
+name: cell
+axes: []
+movers:
+  - {name: a, initial: {x: 2000, y: 2000}}
+  - {name: b, initial: {x: 2300, y: 2000}}
+  - {name: c, initial: {x: 1000, y: 600}}
+tracks: [{name: line, elements: [{from: {x: 2000, y: 2000}, to: {x: 2600, y: 2000}}]}]
+planar_groups: [{name: group, movers: [a, b, c], tracks: [line], moves_wait: true}]
+"""
+
+
+@pytest.mark.parametrize("buffered", [False, True])
+def test_a_move_that_waits_for_its_track_holds_up_no_other_area(buffered: bool) -> None:
+    """PL-72: neither the origin of the plane nor an older target is its own."""
+    engine = Engine(TRACK_IN_A_GROUP)
+    a, b, c = enabled(engine)
+    a.join_track(track="line").wait()
+    along = a.move_on_track(position=500, **({"buffer_mode": "buffered"} if buffered else {}))
+    engine.run(0.01)
+    assert waiting(engine)[0][:2] == ("mover", 2)
+    b.move_to_position(x=2300, y=3000, velocity=50)
+    engine.run(0.5)
+    far = c.move_to_position(x=600, y=1000, buffer_mode="buffered")
+    engine.step(3)
+    assert along.busy
+    assert far.active, c.delay
+    far.wait()
+
+
+def test_a_mover_that_joins_a_formation_gives_its_turn_up() -> None:
+    """PL-72, PL-84: its delay is the formation, and others may have what it waited for."""
+    places = {"a": (0, 0), "s": (0, 300), "b": (500, 0), "c": (500, -400)}
+    movers = [{"name": name, "initial": {"x": x, "y": y}} for name, (x, y) in places.items()]
+    group = {"name": "group", "movers": list(places), "moves_wait": True}
+    engine = Engine({"name": "cell", "axes": [], "movers": movers, "planar_groups": [group]})
+    a, s, b, c = enabled(engine)
+    a.move_to_position(x=500, y=0)
+    engine.run(0.1)
+    assert (a.delay, a.blocked_by) == ("mover", b)
+    a.join_formation(star="s").wait(until="reached")
+    engine.step(2)
+    assert (a.delay, a.blocked_by, a.buffered) == ("formation", s, 1)
+    b.move_to_position(x=500, y=2000, velocity=20)
+    engine.run(12)
+    across = c.move_to_position(x=300, y=0, buffer_mode="buffered")
+    engine.step(3)
+    assert across.active, c.delay
+
+
+@pytest.mark.parametrize("moving", [False, True])
+def test_releases_stay_when_a_move_waits_at_once(moving: bool) -> None:
+    """PL-71, PL-72: what waits instead of being refused is no halt."""
+    engine = Engine(row(6, "ab", ", moves_wait: true"))
+    a, b = enabled(engine)
+    b.move_to_position(**place(5)).wait()
+    if moving:
+        a.move_to_position(**place(2))
+        engine.run(0.1)
+    a.release().wait_final()
+    move = a.move_to_position(**place(5))
+    wait = a.wait(for_release=True)
+    engine.run(0.5)
+    assert move.busy
+    b.move_to_position(x=300, y=360).wait()
+    move.wait()
+    engine.run(0.1)
+    assert wait.done

@@ -73,12 +73,14 @@ bool Begin(const Context& c, Ticket ticket, const Command& command, State& s, Ob
   const Terms terms = TermsOf(c, command, s);
   const Context within = With(c, terms.params);
   const Given given{within, ticket, s};
+  const LimitedBy limited_by = s.limited_by;
   const Answer answer = std::visit(
       [&]<typename T>(const T& body) {
         if (terms.error != ErrorId::kNone) return Refused(terms.error, terms.object);
         return !kAlways<T> && IsAway(c, s) ? Refused(ErrorId::kPartDisabled) : CarryOut(given, body);
       },
       command);
+  if (answer.status.failed()) s.limited_by = limited_by;  // a refused command leaves it
   if (in_the_way && MayBeGone(answer)) {
     *in_the_way = answer.object;
     return false;

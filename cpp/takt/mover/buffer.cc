@@ -171,10 +171,18 @@ void HoldFor(const Context& c, const ObjectInfo& object, Buffer& b) {
   turn->since = mover ? b.held_since + 1 : 0;
 }
 
+// Returns the move of a command that is refused before its own is planned: it asks for no more than the mover covers.
+planar::Move UnknownMove(const Context& c) {
+  return {.target = c.grounds.movers[c.index].pose, .on_track = true};
+}
+
 // Gives the next one its turn. False: it was refused, or waits for `in_the_way`.
 bool BeginInTurn(const Context& c, const Queued& next, State& s, ObjectInfo& in_the_way) {
   planar::Turn* turn = planar::TurnOf(c.index, c.grounds);
-  if (turn) turn->asks = true;
+  if (turn) {
+    turn->asks = true;
+    turn->move = UnknownMove(c);
+  }
   const bool begun = Begin(c, next.ticket, next.command, s, &in_the_way);
   if (turn) turn->asks = false;
   HoldFor(c, in_the_way, s.buffer);
@@ -208,7 +216,7 @@ void GiveTurn(const Context& c, State& s) {
   Buffer& b = s.buffer;
   if (b.count == 0) return;
   PrepareCorner(c, b.waiting[0], s);
-  if (!IsNext(c, b.waiting[0], s)) return;
+  if (!IsNext(c, b.waiting[0], s)) return HoldFor(c, {}, b);
   if (HoldForPart(c, s) || StandsInTheWay(c, s)) return;
   const Queued next = b.waiting[0];
   // What it takes over from without a stop is done when its end is passed; in the plane that is now.
@@ -265,9 +273,12 @@ void WaitInTurn(const Context& c, Ticket ticket, const Command& command, const O
     AbortBuffered(c, s);
   } else {
     const trajectory::Limits limits = StandardOf(c.params.xy);
+    const std::uint32_t releases = s.buffer.releases;
     EndAll(c, false, FeedbackState::kAborted, ErrorId::kNone, s);
+    s.buffer.releases = releases;
     BringToRest(c, &limits, s);
   }
+  if (planar::Turn* turn = planar::TurnOf(c.index, c.grounds)) turn->move = UnknownMove(c);
   Push(ticket, command, s.buffer);
   HoldFor(c, in_the_way, s.buffer);
   Report(c, ticket, FeedbackState::kBusy, ErrorId::kNone, 0, s);

@@ -25,9 +25,8 @@ constexpr int kDoublings = 31;  // of kLittle, up to kFar
 // What X or Y may have by itself.
 PlaneParams ParamsOfEach(const PlaneParams& p) {
   const auto as = [](const Limits& l) { return Dynamics{l.velocity, l.acceleration, l.deceleration, l.jerk}; };
-  const Limits most = LimitsOfEach(p.maximum.limits()), standard = StandardOf(p);
-  return {as(most), as({std::min(standard.velocity, most.velocity), std::min(standard.acceleration, most.acceleration),
-                        std::min(standard.deceleration, most.deceleration), std::min(standard.jerk, most.jerk)})};
+  const Limits most = LimitsOfEach(p.maximum.limits());
+  return {as(most), as(SmallerOf(StandardOf(p), most))};
 }
 
 KinematicState& Of(PlaneState& at, Coordinate which) {
@@ -287,7 +286,7 @@ void EndEach(const Context& c, State& s) noexcept {
   s.endless[kX].on = s.endless[kY].on = false;
 }
 
-void NoteVelocity(const Context& c, State& s) noexcept {
+void NoteVelocity(const Context& c, std::uint64_t cycle, State& s) noexcept {
   const PlaneState at = At(s.plane.motion, Elapsed(c, s.plane.begin));
   const std::array now = {at.x, at.y, Now(c, s.others.back())};
   for (std::size_t i = 0; i < kEndless.size(); ++i) {
@@ -296,7 +295,7 @@ void NoteVelocity(const Context& c, State& s) noexcept {
     e.on = e.on && ticket != 0;
     if (!e.on || e.reached || now[i].acceleration != 0) continue;
     e.reached = std::abs(now[i].velocity - e.velocity) <= 1e-9 * std::abs(e.velocity);
-    if (e.reached) c.feedback.Report({ticket, c.cycle.count, FeedbackState::kActive, true, ErrorId::kNone, 0});
+    if (e.reached) c.feedback.Report({ticket, cycle, FeedbackState::kActive, true, ErrorId::kNone, 0});
   }
 }
 
@@ -307,6 +306,7 @@ void Conclude(const Context& c, Slot slot, State& s) noexcept {
   }
   Endless& e = s.endless[static_cast<std::size_t>(found - std::begin(kSlotOfEndless))];
   End(c, slot, e.on ? FeedbackState::kError : FeedbackState::kDone, e.on ? e.end : ErrorId::kNone, s, e.object);
+  if (e.on) AbortBuffered(c, s);
   e = {};
 }
 

@@ -18,8 +18,8 @@ bool PlanToGoals(const Context& c, const PlaneState& from, PlaneMove& move) noex
 // Moves of X and of Y by itself are over: another command takes over both.
 void EndEach(const Context& c, State& s) noexcept;
 
-// Tells of a move by velocity that it has its velocity.
-void NoteVelocity(const Context& c, State& s) noexcept;
+// Reports, as of this cycle, a move by velocity that has its velocity when that of `c` begins.
+void NoteVelocity(const Context& c, std::uint64_t cycle, State& s) noexcept;
 // A command of X, Y or C alone is over: done, or, of a move by velocity, there is no more room.
 void Conclude(const Context& c, Slot slot, State& s) noexcept;
 

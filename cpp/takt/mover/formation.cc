@@ -33,10 +33,6 @@ bool Turns(const Context& c, const State& s) {
   return !IsOver(c, s.others.back()) || IsMoving(s.set_point[kC]);
 }
 
-Limits Less(const Limits& a, const Limits& b) {
-  return {std::min(a.velocity, b.velocity), std::min(a.acceleration, b.acceleration),
-          std::min(a.deceleration, b.deceleration), std::min(a.jerk, b.jerk)};
-}
 Dynamics DynamicsOf(const Limits& l) {
   return {l.velocity, l.acceleration, l.deceleration, l.jerk};
 }
@@ -70,14 +66,14 @@ void MakeParams(const Context& c, double turning, double moving, MoverParams& bo
     const FormationState& f = c.fleet.states[i].formation;
     const Limits most = its.xy.maximum.limits();
     const double distance = maths::Hypot(f.x, f.y);
-    plane = Less(plane, trajectory::ShareOf(distance > 0 ? moving : 1, most));
-    turn = Less(turn, its.c.maximum.limits());
-    if (distance > 0) turn = Less(turn, TurningAt(distance, trajectory::ShareOf(turning, most)));
+    plane = SmallerOf(plane, trajectory::ShareOf(distance > 0 ? moving : 1, most));
+    turn = SmallerOf(turn, its.c.maximum.limits());
+    if (distance > 0) turn = SmallerOf(turn, TurningAt(distance, trajectory::ShareOf(turning, most)));
     KeepWindow(its.c, f, here, body.c);
   });
-  body.xy.standard = DynamicsOf(Less(plane, StandardOf(own.xy)));
+  body.xy.standard = DynamicsOf(SmallerOf(plane, StandardOf(own.xy)));
   body.xy.maximum = DynamicsOf(plane);
-  body.c.standard = DynamicsOf(Less(turn, StandardOf(own.c)));
+  body.c.standard = DynamicsOf(SmallerOf(turn, StandardOf(own.c)));
   body.c.maximum = DynamicsOf(turn);
 }
 
@@ -242,6 +238,7 @@ void MindStar(const Context& c, State& s) noexcept {
   const bool lost = StateOfStar(c, s).state != ObjectState::kEnabled;
   if ((!lost && s.state == ObjectState::kEnabled) || !c.grounds.movers[s.formation.star].rests) return;
   End(c, kFormation, FeedbackState::kError, ErrorId::kStarLost, s);
+  AbortBuffered(c, s);
   Context next = c;
   ++next.cycle.count;
   Leave(next, s);

@@ -145,6 +145,7 @@ void Lose(const Context& c, ErrorId error, State& s) {
   c.rider().gear = {};
   s.gear = {};
   End(c, kPlane, FeedbackState::kError, error, s);
+  AbortBuffered(c, s);
 }
 
 }  // namespace
@@ -255,7 +256,8 @@ void NoteGear(const Context& c, State& s) noexcept {
   if (rider.gear.end == planar::GearEnd::kWay) {
     c.rider().gear = {};
     s.gear = {};
-    return End(c, kPlane, FeedbackState::kError, ErrorId::kTrackEnd, s);
+    End(c, kPlane, FeedbackState::kError, ErrorId::kTrackEnd, s);
+    return AbortBuffered(c, s);
   }
   if (!IsGeared(c, s) || rider.gear.in_step == s.gear.in_sync) return;
   s.gear.in_sync = rider.gear.in_step;

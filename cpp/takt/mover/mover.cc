@@ -159,7 +159,7 @@ void Finish(const Context& now, State& s) {
   const Context c = NextTo(now);
   const auto done = [&](Slot slot) { End(now, slot, FeedbackState::kDone, ErrorId::kNone, s); };
   const bool turned = IsOver(c, s.others.back());
-  NoteVelocity(c, s);
+  NoteVelocity(c, now.cycle.count, s);
   if (s.external.mode != SetpointMode::kAbsolute) {
     const bool there = IsOnTrack(s) ? c.rider().there : IsOver(c, s.plane);
     if (there && (!s.plane.turns || turned)) {
@@ -214,9 +214,11 @@ void Change(const Context& c, State& s) {
   }
 }
 
-// What is measured is held against the set point of the cycle before.
+// What is measured is held against the set point of the cycle before; not in the cycle in which the mover leaves
+// Disabled, where set_position may have moved the set point since the measurement.
 void Watch(const Context& c, const Inputs& inputs, State& s) {
   if (!c.params.deviation || s.state == ObjectState::kDisabled) return;
+  if (s.state == ObjectState::kEnabling && s.since == c.cycle.count) return;
   const double off =
       maths::Hypot(inputs.actual.x - s.set_point[kX].position, inputs.actual.y - s.set_point[kY].position);
   if (!(off <= *c.params.deviation)) Fail(c, ErrorId::kMoverDeviation, s);

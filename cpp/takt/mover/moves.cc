@@ -89,8 +89,7 @@ template <typename Move>
 Answer MoveOne(const Given& g, const Move& command, std::size_t other, Ask ask) {
   if (const ErrorId why = WhyNot(g.s, ask); why != ErrorId::kNone) return Refused(why);
   const CoordinateParams params = ParamsOf(g.c, g.s, other);
-  LimitedBy limited_by;
-  const Limits limits = LimitsOf(command, params, limited_by);
+  const Limits limits = LimitsOf(command, params, g.s.limited_by);
   if (command.position < params.lower || command.position > params.upper) {
     return Refused(ErrorId::kTargetBehindLimit, ObjectAt(ObjectKind::kMover, g.c.index),
                    std::clamp(command.position, params.lower, params.upper));
@@ -102,7 +101,6 @@ Answer MoveOne(const Given& g, const Move& command, std::size_t other, Ask ask) 
   move.begin = g.c.cycle.count;
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, g.s);
   Take(g, static_cast<Slot>(kMoveZ + other));
-  g.s.limited_by = limited_by;
   return {Status::Ok(), move.profile.duration()};
 }
 
@@ -110,8 +108,7 @@ Answer MoveOne(const Given& g, const Move& command, std::size_t other, Ask ask) 
 
 Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
   State& s = g.s;
-  LimitedBy limited_by;
-  const Limits limits = LimitsOf(command, g.c.params.xy, limited_by);
+  const Limits limits = LimitsOf(command, g.c.params.xy, s.limited_by);
   double duration = 0;
   std::optional<PlaneMove> move = PlanPlane(g, command, limits, duration);
   if (!move) return Refused(ErrorId::kPlanning);
@@ -159,7 +156,6 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
   s.plane.turns = turns_along;
   s.plane.limits = limits;
   s.plane.goes = true;
-  s.limited_by = limited_by;
   Reserve(g.c, s, false);
   return {Status::Ok(), duration};
 }
@@ -234,13 +230,11 @@ Answer TurnTo(const Given& g, const Command& command, Ask ask, const Target& tar
   CoordinateMove move = s.others.back();
   const KinematicState from = Now(g.c, move);
   const CoordinateParams free = Windowed(g.c.params.c, from.position, false);
-  LimitedBy limited_by;
-  const Limits limits = LimitsOf(command, free, limited_by);
+  const Limits limits = LimitsOf(command, free, s.limited_by);
   const double to = target(from, limits);
   if (!PlanCoordinate(g.c.planner, from, to, limits, free, move.profile)) return Refused(ErrorId::kPlanning);
   move.begin = g.c.cycle.count;
   if (const Answer why = WhyNotTurning(g, move); why.status.failed()) return why;
-  s.limited_by = limited_by;
   return PutTurn(g, move, endless);
 }
 

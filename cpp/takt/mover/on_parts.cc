@@ -325,6 +325,7 @@ void PutAt(const planar::Spot& at, State& s) noexcept {
   s.set_point[kY].position = at.origin.y;
   s.plane = {};
   s.plane.motion = StandingAt(at.origin.x, at.origin.y);
+  s.escape = {};
 }
 
 }  // namespace takt::mover

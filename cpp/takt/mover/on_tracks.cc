@@ -272,14 +272,12 @@ Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
   State& s = g.s;
   if (const ErrorId why = WhyNot(s, Ask::kMoveOnTrack); why != ErrorId::kNone) return Refused(why);
   planar::Rider next = g.c.rider();
-  LimitedBy limited_by;
-  next.pace = PaceOf(g.c.params, LimitsOf(command, g.c.params.xy, limited_by), command.dynamics_reduction);
+  next.pace = PaceOf(g.c.params, LimitsOf(command, g.c.params.xy, s.limited_by), command.dynamics_reduction);
   if (const planar::Verdict way = FindWay(g.c, command, s, next); way.error != ErrorId::kNone) {
     return Refused(way);
   }
   const double least = LeastGap(g.c, s, next, command.gap.value_or(g.c.params.gap));
   if (command.gap && *command.gap < least - planar::kSame) return RefusedGap(least);
-  s.limited_by = limited_by;
   next.gap = command.gap.value_or(std::max(g.c.params.gap, least));
   for (const Slot slot : {kHalt, kHaltOnTrack}) End(g.c, slot, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kPlane);

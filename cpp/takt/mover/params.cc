@@ -18,14 +18,15 @@ void describe(Description<PlaneParams>& d) {
   d.named("MoverPlane");
   d.about("X and Y of a mover.");
   d.defaulted<&PlaneParams::maximum>("What the mover can do; commands that want more get this, with a warning.");
-  d.defaulted<&PlaneParams::standard>("Of commands that say nothing; unset: the maximum.");
+  d.defaulted<&PlaneParams::standard>("Of commands that say nothing; never above the maximum. Unset: the maximum.");
 }
 
 void describe(Description<CoordinateParams>& d) {
   d.named("MoverCoordinate");
   d.about("A coordinate of a mover besides X and Y.");
   d.required<&CoordinateParams::maximum>("What the mover can do; commands that want more get this, with a warning.");
-  d.defaulted<&CoordinateParams::standard>("Of commands that say nothing; unset: the maximum.");
+  d.defaulted<&CoordinateParams::standard>(
+      "Of commands that say nothing; never above the maximum. Unset: the maximum.");
   d.required<&CoordinateParams::lower>(kOwn, kPlaces, "Smallest position.");
   d.required<&CoordinateParams::upper>(kOwn, kPlaces, "Largest position.");
   d.rule<&CoordinateParams::upper>("must not lie below lower",

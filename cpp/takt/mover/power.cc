@@ -83,8 +83,9 @@ namespace {
 
 // The star sees it and brings all of the formation to rest, which goes on.
 Answer HaltPlanet(const Given& g) {
-  for (const Slot slot : {kMoveZ, kMoveA, kMoveB}) End(g.c, slot, FeedbackState::kAborted, ErrorId::kNone, g.s);
+  for (const Slot slot : {kMoveZ, kMoveA, kMoveB, kWait}) End(g.c, slot, FeedbackState::kAborted, ErrorId::kNone, g.s);
   AbortBuffered(g.c, g.s);
+  g.s.buffer.releases = 0;
   BringToRest(g.c, nullptr, g.s);
   Take(g, kHalt);
   return {};

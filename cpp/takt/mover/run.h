@@ -1,6 +1,7 @@
 // What commands and the mover's own steps have in common.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "takt/mover/mover.h"
@@ -63,11 +64,18 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
 // Along its track alone, with these dynamics where they do not lead it off the stators, else with the maximum.
 void BringToRestOnTrack(const Context& c, const trajectory::Limits& limits, State& s) noexcept;
 
+// Returns the smaller one of each limit.
+inline trajectory::Limits SmallerOf(const trajectory::Limits& a, const trajectory::Limits& b) noexcept {
+  return {std::min(a.velocity, b.velocity), std::min(a.acceleration, b.acceleration),
+          std::min(a.deceleration, b.deceleration), std::min(a.jerk, b.jerk)};
+}
+
+// Returns the dynamics of commands that give none; never above the maximum.
 inline trajectory::Limits StandardOf(const PlaneParams& p) noexcept {
-  return p.standard.value_or(p.maximum).limits();
+  return SmallerOf(p.standard.value_or(p.maximum).limits(), p.maximum.limits());
 }
 inline trajectory::Limits StandardOf(const CoordinateParams& p) noexcept {
-  return p.standard.value_or(p.maximum).limits();
+  return SmallerOf(p.standard.value_or(p.maximum).limits(), p.maximum.limits());
 }
 
 }  // namespace takt::mover

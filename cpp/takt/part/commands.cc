@@ -7,9 +7,8 @@ namespace takt::part {
 void describe(Description<ActivatePosition>& d) {
   d.about(
       "Brings the part to one of its positions, with all movers that stand on it; done when it is there. Refused "
-      "unless "
-      "nothing moves on it or across its border, and the place is free; the value of the feedback is the number of "
-      "what is in the way.");
+      "unless nothing moves on it or across its border, and the place is free; the object of the feedback is what is "
+      "in the way.");
   d.required<&ActivatePosition::index>(between(1, 1000), "Index of the position, from 1.");
 }
 
