@@ -566,6 +566,16 @@ Status CarryOut(const Context& c, Ticket ticket, const PhasingRelative& p, State
   return ShiftPhase(c, ticket, true, p.phase_shift, p.velocity, p.acceleration, p.deceleration, p.jerk, s);
 }
 
+namespace {
+
+// What the slave is to be in step with has changed while it is on its way there.
+void JoinAnew(const Context& c, State& s) {
+  CouplingState& k = s.coupling;
+  if (k.joining == Joining::kOnCurve) BeginCurve(c, Seen(c, k, k.law.terms[0], PhaseAt(c, k)), s);
+}
+
+}  // namespace
+
 Status CarryOut(const Context& c, Ticket ticket, const CamAdd& command, State& s) noexcept {
   CouplingState& k = s.coupling;
   if (s.active.kind != RequestKind::kCamIn) return Status::Failed(ErrorId::kState);
@@ -592,6 +602,7 @@ Status CarryOut(const Context& c, Ticket ticket, const CamAdd& command, State& s
   added.cam.slave = command.slave_offset;
   if (!command.slave_absolute) added.cam.slave -= ValueAt(law, added.cam, master).y - command.slave_offset;
   *place = added;
+  JoinAnew(c, s);
   Report(c, ticket, FeedbackState::kActive);
   Report(c, ticket, FeedbackState::kDone);
   return Status::Ok();
@@ -602,6 +613,7 @@ Status CarryOut(const Context& c, Ticket ticket, const CamRemove& command, State
   for (AddedCam& added : s.coupling.added) {
     if (added.table == kNoTable || c.machine.cams[added.table].name() != command.cam.view()) continue;
     added = {};
+    JoinAnew(c, s);
     Report(c, ticket, FeedbackState::kActive);
     Report(c, ticket, FeedbackState::kDone);
     return Status::Ok();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "takt/axis/fit.h"
 #include "takt/axis/following.h"
@@ -11,6 +12,8 @@
 namespace takt::axis {
 
 namespace {
+
+constexpr double kGained = 0.05;  // of its velocity, while an axis that speeds up is braked
 
 Status MayGuide(const Context& c, const State& s) {
   if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
@@ -77,11 +80,20 @@ void FollowGuidance(const Context& c, State& s) noexcept {
   if (!AtRest(s)) s.motion.arrived_cycle = c.cycle.count;
 }
 
+double BrakingJerk(const KinematicState& from, double jerk, double own) noexcept {
+  const double most = own > 0 ? own : std::numeric_limits<double>::infinity();
+  double least = jerk;
+  if (jerk > 0 && from.velocity * from.acceleration > 0) {
+    least = std::max(jerk, from.acceleration * from.acceleration / (2 * kGained * std::abs(from.velocity)));
+  }
+  return least < most ? least : own;
+}
+
 trajectory::Limits WithFaultRamp(const Context& c, const State& s) noexcept {
   trajectory::Limits limits = c.params.planner_limits();
   if (s.fault_ramp.deceleration == 0) return limits;
   limits.deceleration = std::min(limits.deceleration, s.fault_ramp.deceleration);
-  limits.jerk = limits.jerk > 0 ? std::min(limits.jerk, s.fault_ramp.jerk) : s.fault_ramp.jerk;
+  limits.jerk = BrakingJerk(s.setpoint, s.fault_ramp.jerk, limits.jerk);
   return limits;
 }
 

@@ -38,6 +38,9 @@ Status Guide(const Context& c, State& s) noexcept;
 bool IsGuided(const State& s) noexcept;
 // The component lets go: an axis that moves comes to rest, in ErrorStop on the ramp of its fault (StopLimits).
 void LetGoOfGuidance(const Context& c, State& s) noexcept;
+// The jerk [u/s³] with which an axis is braked whose ramp has `jerk` and whose own limit is `own` (0: none): where it
+// speeds up, so much more that it gains no more than 5 % of its velocity until it slows down.
+double BrakingJerk(const KinematicState& from, double jerk, double own) noexcept;
 // The axis' own limits, with the ramp for faults where there is one.
 trajectory::Limits WithFaultRamp(const Context& c, const State& s) noexcept;
 // The same; the axis' own limits where that ramp would end beyond the SW limits.

@@ -90,7 +90,7 @@ ErrorId MayControl(const Control& command, const State& s) {
   if (sequence && LacksCam(s, s.settings.cam_sequence_mode)) return ErrorId::kEmptySlot;
   // A slave that would have to come back to where its cam is zero.
   const bool to_nothing = command.scaling_slave == 0.0 && s.inputs.scaling_slave != 0;
-  if (to_nothing && s.state == ModuleState::kSync && WithMaster(s)) return ErrorId::kWouldReverse;
+  if (to_nothing && WithMaster(s)) return ErrorId::kWouldReverse;
   return ErrorId::kNone;
 }
 
@@ -120,6 +120,11 @@ void CarryOut(const Context& c, Ticket ticket, double, const Control& command, a
     if (!ramps) Report(c, ticket, FeedbackState::kDone);
     return;
   }
+  const bool of_clutch = s.request == Action::kSyncIn || s.request == Action::kSyncOut;
+  if (asked == Action::kHome && of_clutch) {  // it would be refused, and the other one lost
+    s.warning = ErrorId::kState;
+    return Report(c, ticket, FeedbackState::kError, ErrorId::kState);
+  }
   for (Ticket& adjusting : s.adjusting) {
     if (adjusting == ticket) adjusting = 0;  // its end is that of the clutch or of homing
   }
@@ -132,6 +137,10 @@ void CarryOut(const Context& c, Ticket ticket, double, const Configure& command,
   if (command.cam_sequence_mode && s.inputs.cam_sequencer && LacksCam(s, *command.cam_sequence_mode)) {
     s.warning = ErrorId::kEmptySlot;
     return Report(c, ticket, FeedbackState::kError, ErrorId::kEmptySlot);
+  }
+  if (command.position_control == PositionControl::kMasterDirection && s.inputs.scaling_slave == 0) {
+    s.warning = ErrorId::kWouldReverse;
+    return Report(c, ticket, FeedbackState::kError, ErrorId::kWouldReverse);
   }
   TakeGiven(command, s.settings);
   Report(c, ticket, FeedbackState::kActive);

@@ -59,7 +59,7 @@ void Refuse(const Context& c, ErrorId error, State& s) {
 void Brake(const Context& c, double deceleration, double jerk, bool hold, axis::State& slave) {
   const trajectory::Limits own = c.slave.params.planner_limits();
   const double within = Within(deceleration, own.deceleration);
-  const double within_jerk = Within(jerk, own.jerk);
+  const double within_jerk = axis::BrakingJerk(slave.setpoint, Within(jerk, own.jerk), own.jerk);
   if (hold || slave.plc == axis::PlcState::kHoming) {  // a search takes no halt
     Tell(c, axis::Stop{.deceleration = within, .jerk = within_jerk, .hold = hold}, slave);
   } else {
@@ -267,7 +267,10 @@ void InStop(const Context& c, axis::State& slave, State& s) {
     return;
   }
   LetGoOfStop(slave, s);
-  if (!slave.loop_closed || slave.active.kind == axis::RequestKind::kNone) Enter(c, ModuleState::kReady, s);
+  using K = axis::RequestKind;
+  const K kind = slave.active.kind;
+  const bool stops = kind == K::kStop || kind == K::kHalt || kind == K::kPower;
+  if (!slave.loop_closed || !stops) Enter(c, ModuleState::kReady, s);  // else a command of its own has taken over
 }
 
 void InReady(const Context& c, axis::State& slave, State& s) {
@@ -322,7 +325,8 @@ void InHoming(const Context& c, const axis::State& slave, State& s) {
 // module's own ramp.
 bool LeavesLimits(const Context& c, const axis::State& slave, const State& s) {
   const axis::AxisLimits& limits = c.slave.params.limits;
-  if (s.clutch.phase != ClutchPhase::kClosed || (!limits.lower && !limits.upper)) return false;
+  const bool on_cam = s.clutch.phase == ClutchPhase::kClosed || s.clutch.phase == ClutchPhase::kWaitingOut;
+  if (!on_cam || (!limits.lower && !limits.upper)) return false;
   const cam::Table& table = TableOf(c, s);
   const double stroke = s.way.profiler.once ? 0 : table.stroke();
   const double sense = s.x.velocity < 0 ? -1 : 1;
