@@ -187,6 +187,37 @@ def test_stops_are_stops(s: takt.Engine) -> None:
         assert (y.state.value, y.error) == ("Standstill", 0)
 
 
+@pytest.mark.parametrize("stop", ["halt", "stop", "power", "interrupt"])
+def test_a_group_that_stops_is_left_to_it(s: takt.Engine, stop: str) -> None:
+    """AX-111: a member's direction that is not enabled any more does not make a hard stop of a gentle one."""
+    portal, x = s.group("portal"), s.axis("x")
+    portal.power().wait()
+    portal.enable().wait()
+    portal.move_linear_absolute(x=400, velocity=200, acceleration=300, deceleration=300)
+    s.run(1.2)
+    ended = portal.power(enable=False) if stop == "power" else getattr(portal, stop)()
+    s.step(20)
+    assert x.set_velocity > 100
+    x.power(enable_positive=False)
+    assert ended.wait().done
+    assert (portal.error, x.error) == (0, 0)
+
+
+@pytest.mark.parametrize("barred", ["left", "right"])
+@pytest.mark.parametrize("stop", ["halt", "stop"])
+def test_a_gantry_that_stops_is_left_to_it(s: takt.Engine, stop: str, barred: str) -> None:
+    """AX-111, AX-101: whichever of them may not move so any more."""
+    left = s.axis("left")
+    left.move_velocity(velocity=200).wait(until="reached")
+    ended = getattr(left, stop)(deceleration=300)
+    s.step(20)
+    assert left.set_velocity > 100
+    s.axis(barred).power(enable_positive=False)
+    assert ended.wait().done
+    s.run(0.1)
+    assert (left.error, s.axis("right").error) == (0, 0)
+
+
 def test_members_of_a_gantry(s: takt.Engine) -> None:
     """AX-111: what one of them may not, none may."""
     left, right = s.axis("left"), s.axis("right")

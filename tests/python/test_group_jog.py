@@ -273,9 +273,11 @@ def test_ends_before_a_zone_that_another_group_has() -> None:
         for group in (left, right):
             group.power().wait()
             group.enable().wait()
-        jog = left.jog(x=100)
-        assert jog.wait_final(5.0).error_id == 3130
-        assert left.x < 95
+        for start in (0, -150, -1000):
+            left.move_linear_absolute(x=start).wait()
+            jog = left.jog(x=100)
+            assert jog.wait_final(20.0).error_id == 3130
+            assert 95 - (95 - start) / 30 < left.x < 95
         assert left.state is takt.GroupState.GROUP_STANDBY
 
 

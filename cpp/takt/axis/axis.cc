@@ -57,18 +57,25 @@ double Standing(const Context& c) {
   return 1e-9 * c.params.limits.velocity;
 }
 
-// The axis is on its way to rest already, by a command.
-bool BrakesAnyway(const State& s) {
+bool BrakesByCommand(const State& s) {
   const RequestKind kind = s.active.kind;
   const bool brakes = kind == RequestKind::kHalt || kind == RequestKind::kStop || kind == RequestKind::kPower ||
                       (kind == RequestKind::kJog && s.jog_sense == 0);
-  return brakes && !s.superimposed;
+  return (brakes && !s.superimposed) || (IsGuided(s) && s.guidance.comes_to_rest);
+}
+
+// The axis is on its way to rest already, by a command: of its own, of what guides it or of the axis that it follows.
+bool BrakesAnyway(const Context& c, const State& s) {
+  if (BrakesByCommand(s)) return true;
+  if (!c.params.follows || !s.coupled) return false;
+  const State& master = *c.master;  // has moved in this cycle already, perhaps to its rest
+  return BrakesByCommand(master) || (master.motion.arrived && master.motion.arrived_cycle == c.cycle.count);
 }
 
 // A motion in a direction that MC_Power does not enable ends as at a limit switch (AX-111). Under torque control it is
 // the torque that counts: what is measured trembles.
 void WatchDirections(const Context& c, State& s) {
-  if (s.plc == PlcState::kErrorStop || BrakesAnyway(s)) return;
+  if (s.plc == PlcState::kErrorStop || BrakesAnyway(c, s)) return;
   const bool torque = s.active.kind == RequestKind::kTorqueControl;
   const double way = torque ? s.active.value : s.setpoint.velocity;
   const double least = torque ? 0 : Standing(c);

@@ -113,6 +113,7 @@ void describe(Description<GuidanceState>& d) {
   d.about("Set points of another component of the machine.");
   d.internal<&GuidanceState::demand>("Where it wants the axis, over all turns.");
   d.internal<&GuidanceState::chase>("Following that.");
+  d.internal<&GuidanceState::comes_to_rest>("The component brakes it, by a command.");
   d.internal<&GuidanceState::brakes_with_others>("The component brings it to rest in a fault.");
 }
 

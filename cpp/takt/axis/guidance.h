@@ -21,6 +21,7 @@ struct GuidanceState {
   // In a fault with the loop closed the axis goes on by the set points, which the component brings to rest; else it
   // brakes by itself.
   bool brakes_with_others = false;
+  bool comes_to_rest = false;  // the component brakes it, by a command
 };
 
 // Ramp on which an axis brakes after a fault, where a component has set one.

@@ -519,8 +519,10 @@ bool MayEnter(const Context& c, State& s) {
   switch (EnterZones(c, s)) {
     case Entry::kWaits:
       if (IsJog(MoveAt(s, s.planning.move))) {  // it does not wait: it ends before the zone
-        const double from = ZonesBeginAt(c.ahead.next, s.zones_wanted);
-        const bool shorter = ShortenJog(from, ErrorId::kZoneTaken, s);
+        const double length = c.ahead.next.segment.length, from = ZonesBeginAt(c.ahead.next, s.zones_wanted);
+        // Tried again over a shorter way, where the places that are looked at lie nearer to one another.
+        const double nearer = from + 1.25 * length / kMostPlaces;
+        const bool shorter = ShortenJog(nearer < 0.9 * length ? nearer : from, ErrorId::kZoneTaken, s);
         s.zones_claimed = s.zones_wanted = s.waits_for = s.waits_zone = 0;
         shorter ? BeginAgain(false, s) : Refuse(c, ErrorId::kZoneTaken, s);
         return true;

@@ -55,7 +55,9 @@ void Demand(const Context& c, const kinematics::JointMotion& motion, State& s) {
   s.joints = motion.position;
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
-    MemberOf(c, s, k).guidance.demand = {motion.position[k] + s.origins[k], motion.velocity[k], motion.acceleration[k]};
+    axis::GuidanceState& guidance = MemberOf(c, s, k).guidance;
+    guidance.demand = {motion.position[k] + s.origins[k], motion.velocity[k], motion.acceleration[k]};
+    guidance.comes_to_rest = s.ends || s.interrupted;
   }
 }
 

@@ -29,20 +29,21 @@ std::uint32_t AxisThatCloses(const Context& c, const State& s, const Directions&
 
 Directions ClosedNow(const Context& c, const State& s) noexcept {
   Directions closed = s.closed;
+  const bool rests = s.ends || s.interrupted;  // a direction that is not enabled does not keep it from that
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
     const axis::State& member = MemberOf(c, s, k);
     // Those of followers of a gantry count for the one that leads.
     const axis::Context own = ContextOf(c, s, k);
-    if (!member.bars_positive && axis::Bars(own, member, 1)) closed.positive |= 1u << k;
-    if (!member.bars_negative && axis::Bars(own, member, -1)) closed.negative |= 1u << k;
+    if (!rests && !member.bars_positive && axis::Bars(own, member, 1)) closed.positive |= 1u << k;
+    if (!rests && !member.bars_negative && axis::Bars(own, member, -1)) closed.negative |= 1u << k;
     // A switch that turns on is a fault of the axis, which all brake for along the path.
     if (member.limit_positive && member.limit_positive_before) closed.positive |= 1u << k;
     if (member.limit_negative && member.limit_negative_before) closed.negative |= 1u << k;
     if (axis::FollowerOnLimit(own, member, 1, true)) closed.positive |= 1u << k;
     if (axis::FollowerOnLimit(own, member, -1, true)) closed.negative |= 1u << k;
     // Likewise a direction that is not enabled any more: the axis looks at it behind the group.
-    if (member.bars_cycle == c.cycle.count) continue;
+    if (rests || member.bars_cycle == c.cycle.count) continue;
     if (member.bars_positive) closed.positive |= 1u << k;
     if (member.bars_negative) closed.negative |= 1u << k;
   }

@@ -55,9 +55,10 @@ void describe(Description<GearInPos>& d) {
   using C = GearInPos;
   d.about(
       "Follows a master's position times a ratio, in step from a given pair of positions on (MC_GearInPos). Reached "
-      "when it is in step. A master that is already past where getting into step begins leaves less way for it; one "
-      "that has passed the place has to come back (on rotary axes: to come round again). Error 3110: a linear master "
-      "has moved away from it instead, by more than master_start_distance and than it can in 1 s.");
+      "when it is in step. A master that is already past where getting into step begins leaves less way for it. With "
+      "master_start_distance one that has passed the place has to come back (on rotary axes: to come round again); "
+      "without it the axis gets into step at once. Error 3110: a linear master has moved away from the place instead, "
+      "by more than master_start_distance and than it can in 1 s.");
   d.required<&C::master>("Name of the master axis.");
   d.defaulted<&C::ratio_numerator>("Own units ...");
   d.defaulted<&C::ratio_denominator>(positive, "... per so many of the master's.");
