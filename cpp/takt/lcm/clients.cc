@@ -94,7 +94,7 @@ Clients::Client* Clients::Admit(const Message& message, std::int64_t now_ns, msg
       return nullptr;
     }
     found = clients_.try_emplace(name).first;
-    found->second.session = session;
+    found->second = FormerGuest({name, session}, found->second);
   }
   Client& client = found->second;
   if (client.session != session) {
@@ -104,8 +104,7 @@ Clients::Client* Clients::Admit(const Message& message, std::int64_t now_ns, msg
       return nullptr;
     }
     Forget(client);
-    client = {};
-    client.session = session;
+    client = FormerGuest({name, session}, client);
   }
   client.last_seen_ns = now_ns;
   return &client;
@@ -126,6 +125,19 @@ Clients::Client* Clients::Guest(const Sender& sender, std::int64_t now_ns) {
   }
   found->second.last_seen_ns = now_ns;
   return &found->second;
+}
+
+Clients::Client Clients::FormerGuest(const Sender& sender, Client& client) {
+  auto guest = guests_.extract(sender);
+  if (guest.empty()) {
+    Client unknown;
+    unknown.session = sender.second;
+    return unknown;
+  }
+  for (auto& [ticket, origin] : origins_) {
+    if (origin.client == &guest.mapped()) origin.client = &client;
+  }
+  return std::move(guest.mapped());
 }
 
 engine::ParsedCommand Clients::Parse(const msgs::command& message) const {

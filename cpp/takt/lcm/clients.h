@@ -99,6 +99,9 @@ class Clients {
   Client* Admit(const Message& message, std::int64_t now_ns, msgs::feedback& refusal);
   // A sender without a place, which may only let go. The one without news for longest makes room.
   Client* Guest(const Sender& sender, std::int64_t now_ns);
+  // What is known of a sender that becomes `client`: as a guest, if it was one; its unfinished commands are of `client`
+  // from now on.
+  Client FormerGuest(const Sender& sender, Client& client);
   bool MakeRoomForClient(std::int64_t now_ns);
   bool MakeRoomForId(Client& client, bool lets_go);
   void Forget(Client& client);
