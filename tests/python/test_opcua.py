@@ -309,6 +309,23 @@ def test_a_jog_goes_on_while_its_client_is_heard(plant: Plant, client: Client) -
     until(lambda: value(client, "x.set_velocity") == 0)
 
 
+def test_a_held_stop_goes_on_behind_its_end(client: Client) -> None:
+    """EN-23: done, or aborted, a held stop holds while its client is heard, until it is released."""
+    powered(client)
+    assert call(client, "x", "move_velocity", 100.0)["error_id"] == 0
+    names = [
+        argument.Name for argument in client.get_node("ns=2;s=x").get_child("2:stop/0:InputArguments").read_value()
+    ]
+    stop = call(client, "x", "stop", *[name == "hold" or None for name in names])
+    until(lambda: value(client, "x.set_velocity") == 0)
+    end = time.monotonic() + 1.2  # longer than the dead man's time
+    while time.monotonic() < end:
+        assert enumeration(client, "x.state")[value(client, "x.state")] == "Stopping"
+        time.sleep(0.05)
+    call(client, "/machine", "release", stop["ticket"])
+    until(lambda: value(client, "x.state") == 1)
+
+
 @pytest.mark.parametrize("how", ["leaves", "is cut off", "hangs"])
 def test_a_jog_ends_with_its_client(plant: Plant, client: Client, how: str, loop: ThreadLoop) -> None:
     """EN-23: a client that goes away in a jog; another one goes on reading."""

@@ -20,7 +20,7 @@ from takt.view.machine import Machine
 RESEND_S = 0.2  # between two tries of a command that is not answered
 REFRESH_S = 2.0  # after which a command that is not finished is asked about: its last answer may have been lost
 GIVEN_UP_S = 2.0
-FINAL = 2  # from this state on a feedback is the last one
+ACTIVE, FINAL, ERROR = 1, 2, 4  # states of a feedback; from FINAL on it is the last one
 
 
 @dataclass
@@ -32,6 +32,12 @@ class Given:
     ticket: int = 0
     held: bool = False  # goes on until it is let go of
     let_go: bool = False  # it is to be let go of as soon as it has a ticket
+    released: bool = False  # its release has been sent
+    active: bool = False  # it has been in control
+
+    def outlasts(self, feedback: msgs.feedback) -> bool:
+        """Whether its hold outlasts this final feedback: that of a stop does, unless it was refused."""
+        return self.held and self.message.verb == "stop" and (self.active or feedback.state != ERROR)
 
 
 class Client(ABC):
@@ -44,6 +50,7 @@ class Client(ABC):
         self._dead_man_s = float(machine.parameters["lcm"]["dead_man_s"])
         self._last_id = 0
         self._given: dict[int, Given] = {}
+        self._holds: list[Given] = []  # stops that are final and hold on
         self._held_at = 0.0  # when it was said last that something is held
         self._beat_at = 0.0
 
@@ -62,13 +69,15 @@ class Client(ABC):
     def release(self) -> None:
         """Lets go of what is held."""
         now = time.monotonic()
-        for given in [one for one in self._given.values() if one.held]:
+        held = [one for one in self._given.values() if one.held] + self._holds
+        self._holds = []
+        for given in held:
             given.held, given.let_go = False, True
             self._let_go(given, now)
 
     def tick(self, now: float) -> None:
         """Beats while something is held and is meant to be; asks again what was not answered."""
-        holding = any(one.held for one in self._given.values())
+        holding = bool(self._holds) or any(one.held for one in self._given.values())
         if holding and now - self._held_at > self._dead_man_s:
             self.release()
         elif holding and now - self._beat_at >= self._dead_man_s / 4:
@@ -90,10 +99,12 @@ class Client(ABC):
             return
         given.answered = True
         given.ticket = message.ticket
+        given.active |= message.state == ACTIVE
         if message.state >= FINAL:
             del self._given[message.id]
-        else:
-            self._let_go(given, time.monotonic())
+            if given.outlasts(message) and not given.released:
+                self._holds.append(given)
+        self._let_go(given, time.monotonic())
         self._became(given.message, message)
 
     def _let_go(self, given: Given, now: float) -> None:
@@ -103,6 +114,10 @@ class Client(ABC):
 
     def _send(self, target: str, verb: str, arguments: str, now: float, held: bool = False) -> int:
         """Gives a command, and returns its number."""
+        if verb == "release":
+            for given in [*self._given.values(), *self._holds]:
+                given.released |= bool(given.ticket) and arguments == to_text({"ticket": given.ticket})
+            self._holds = [given for given in self._holds if not given.released]
         message = msgs.command()
         message.utime = time.time_ns() // 1000
         message.run_id, message.client, message.session = self._machine.run_id, self.name, self._session
