@@ -80,6 +80,7 @@ def test_members_are_not_moved_by_themselves() -> None:
     with portal() as (engine, gantry):
         refused = engine.axis("x").move_absolute(position=5).wait_final()
         assert (refused.error_id, refused.sentence) == (1000, "the axis is a member of a group")
+        assert engine.axis("x").write_output(number=1, value=True).wait().done  # it moves nothing
         gantry.disable().wait()
         engine.axis("x").move_absolute(position=5).wait()
 

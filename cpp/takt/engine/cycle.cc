@@ -189,7 +189,7 @@ bool IsForMembers(const axis::Command& command) {
                std::is_same_v<T, axis::ReadParameter> || std::is_same_v<T, axis::CamTableSelect> ||
                std::is_same_v<T, axis::TouchProbe> || std::is_same_v<T, axis::SetLoad> ||
                std::is_same_v<T, axis::AbortTrigger> || std::is_same_v<T, axis::AbortPassiveHoming> ||
-               std::is_same_v<T, axis::DigitalCamSwitch>;
+               std::is_same_v<T, axis::DigitalCamSwitch> || std::is_same_v<T, axis::WriteOutput>;
       },
       command);
 }

@@ -54,8 +54,8 @@ bool Asks(const group::Command& command) {
       []<typename T>(const T&) {
         return !kIsOneOf<T, group::AddAxis, group::RemoveAxis, group::UngroupAllAxes, group::Enable, group::Disable,
                          group::Reset, group::SetPosition, group::SetOverride, group::SetKinTransform,
-                         group::SetCartesianTransform, group::SetCoordinateTransform, group::SetTool, group::Calibrate,
-                         group::PathChecked, group::PathPlanned>;
+                         group::SetCartesianTransform, group::SetCoordinateTransform, group::SetDynCoordTransform,
+                         group::SetTool, group::Calibrate, group::PathChecked, group::PathPlanned>;
       },
       command);
 }
