@@ -462,6 +462,8 @@ std::string WhyNot(const Machine& machine, const group::Command& command, std::s
     check("axis", sync->axis, NamesOf(machine.axes), "an axis");
   } else if (const auto* add = std::get_if<group::AddAxis>(&command)) {
     check("axis", add->axis, NamesOf(machine.axes), "an axis");
+    const std::string no_member = WhyNoMember(machine, add->axis.view());
+    if (why.empty() && !no_member.empty()) why = "axis: " + no_member;
   } else if (const auto* dynamic = std::get_if<group::SetDynCoordTransform>(&command)) {
     check("carrier", dynamic->carrier, CarriersOf(machine, target), "a belt, another group or a pose");
   } else if (const auto* belt = std::get_if<group::TrackConveyorBelt>(&command)) {

@@ -426,6 +426,7 @@ void Apply(World& w, const Command& command) noexcept {
                    w.flex_cam_states[i]);
   } else if (const auto* for_group = std::get_if<group::Command>(&command.body)) {
     const Wanted wanted = WantedBy(w, *for_group, i);
+    if (wanted.added != axis::kNoAxis && w.module_of[wanted.added] != 0) return refuse(ErrorId::kState);
     if (Changes(wanted) && !MakeOrder(w, wanted)) return refuse(ErrorId::kCouplingLoop);
     group::Apply(ContextOf(w, w.groups[i]), command.ticket, command.lease_s, *for_group, w.group_states[i]);
   } else if (const auto* for_belt = std::get_if<conveyor::Command>(&command.body)) {

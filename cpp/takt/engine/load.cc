@@ -386,13 +386,7 @@ class CrossCheck {
 
   // A member goes by its group alone.
   void CheckMember(const std::string& path, std::string_view name) {
-    for (const axis::AxisParams& axis : machine_.axes) {
-      if (axis.name == name && axis.follows)
-        Add(path, "expected an axis that does not follow another, found " + Quoted(name));
-    }
-    for (const flexcam::FlexCamParams& module : machine_.flex_cams) {
-      if (module.slave == name) Add(path, "expected an axis that no cam module moves, found " + Quoted(name));
-    }
+    if (std::string why = WhyNoMember(machine_, name); !why.empty()) Add(path, why);
   }
 
   // Lists that no axis of the machine can have.
