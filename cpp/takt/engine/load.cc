@@ -174,6 +174,11 @@ class CrossCheck {
       if (module.master) {
         CheckReference(path + ".master", *module.master, any, views, "axis, a belt or a mover");
       }
+      for (const conveyor::BeltParams& belt : machine_.belts) {
+        if (module.master != belt.name || module.slave != belt.axis) continue;
+        Add(path + ".master", "expected another master than a belt on the slave " + Quoted(module.slave) + ", found " +
+                                  Quoted(belt.name));
+      }
       for (const axis::AxisParams& axis : machine_.axes) {
         if (axis.name == module.slave && axis.follows) {
           Add(path + ".slave", "expected an axis that does not follow another, found " + Quoted(module.slave));
