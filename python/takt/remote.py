@@ -348,7 +348,7 @@ class RemoteSession(Session):
         )
         if feedback._final:
             del self._sent[message.id]
-        self._held = [f for f in self._held if not f._final or (f._done and not f._release_is_settled)]
+        self._held = [f for f in self._held if not f._final or (_outlasts_its_end(f) and not f._release_is_settled)]
 
     # --- heartbeats and second tries, on a thread of their own ---
 
@@ -592,6 +592,12 @@ def connect(
     url = url or usual_url()
     name = client if client is not None else f"python-{os.getpid()}-{random.SystemRandom().getrandbits(24):06x}"
     return RemoteSession(url, name, timeout, read_key(key))
+
+
+def _outlasts_its_end(feedback: Feedback) -> bool:
+    """Whether a command that is final still needs its release. Power off, a fault or another stop ends a held stop as
+    aborted or with an error, and leaves its hold."""
+    return feedback._done or (feedback.verb == "stop" and not feedback._refused)
 
 
 def _more(now: dict[str, int], then: dict[str, int]) -> dict[str, int]:

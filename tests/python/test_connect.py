@@ -113,6 +113,74 @@ def test_no_heartbeat_keeps_what_was_let_go_of(tmp_path: Path) -> None:
         assert jog.wait_final(1.0).final
 
 
+@pytest.mark.parametrize("ended", ["power off", "emergency stop"])
+def test_a_hold_outlasts_the_end_of_its_stop(ended: str, tmp_path: Path) -> None:
+    """EN-23, AX-37: what ends a held stop while the axis brakes does not end its hold; the release does."""
+    url = new_url()
+    machine = machine_with("{dead_man_s: 0.3}")  # shorter than between heartbeats that hold nothing
+    with running(tmp_path, url, machine=machine), takt.connect(url) as session:
+        x = session.axis("x")
+        x.power().wait()
+        x.move_velocity(velocity=200.0).wait(until="reached")
+        stop = x.stop(hold=True, deceleration=20.0)
+        stop.wait(until="active")
+        if ended == "power off":
+            x.power(enable=False).wait()
+        else:
+            session.command("machine", "emergency_stop", {}).wait()
+        assert stop.wait_final().aborted
+        x.power().wait()
+        session.run(1.2)
+        assert x.state is takt.PlcState.STOPPING
+        assert x.move_absolute(position=0).wait_final().error_id == 6
+        stop.release()
+        session.wait(lambda: x.state is takt.PlcState.STANDSTILL, 2.0)
+        assert not session._held
+
+
+def test_a_refused_stop_holds_nothing(tmp_path: Path) -> None:
+    """EN-23: neither the client nor the engine keeps up a stop of an axis that is off."""
+    url = new_url()
+    with running(tmp_path, url), takt.connect(url) as session:
+        assert session.axis("x").stop(hold=True).wait_final().error_id == 10
+        assert not session._held
+
+
+def test_a_stop_goes_on_when_its_sender_becomes_a_client(tmp_path: Path) -> None:
+    """EN-22, EN-23, EN-32: a session stops an axis before its name is free. Later its heartbeats keep the hold, and the
+    ids it used stay known."""
+    url = new_url()
+    with running(tmp_path, url), takt.connect(url) as session:
+        x = session.axis("x")
+        x.power().wait()
+        answers: list[msgs.feedback] = []
+        network = lcm.LCM(url)
+        network.subscribe("takt/feedback", lambda _, data: answers.append(msgs.feedback.decode(data)))
+
+        def beat(number: int) -> None:
+            message = msgs.heartbeat()
+            message.client, message.session, message.run_id = "cell", number, session._run_id
+            message.utime = remote._now_us()
+            network.publish("takt/heartbeat", message.encode())
+
+        beat(1)  # the session that has the name
+        session.run(0.1)
+        command = command_for(session)
+        command.client, command.session, command.id, command.utime = "cell", 2, 1, remote._now_us()
+        command.target, command.verb, command.arguments = "x", "stop", "{hold: true}"
+        network.publish("takt/command", command.encode())
+        for _ in range(35):  # the name is free after 2 s
+            beat(2)
+            session.run(0.1)
+        assert x.state is takt.PlcState.STOPPING
+        network.publish("takt/command", command.encode())
+        session.run(0.2)
+        while network.handle_timeout(50):
+            pass
+        assert len({a.ticket for a in answers if a.client == "cell" and a.id == 1}) == 1
+        session.wait(lambda: x.state is takt.PlcState.STANDSTILL, 2.0, what="the end of the lease")
+
+
 def test_states_that_cannot_be_true(tmp_path: Path) -> None:
     """EN-20, bad input: an absurd cycle is counted and ignored; the session's time is not spoilt."""
     url = new_url()

@@ -142,6 +142,54 @@ def test_the_manuals_example(engine: takt.Engine, gantry: takt.Group) -> None:
     assert not track(Execute=False).Done
 
 
+LATE = """\
+name: late
+axes:
+  - {name: w, unit: mm, limits: {velocity: 1000, acceleration: 10000, jerk: 500000}}
+  - {name: x, unit: mm, limits: {velocity: 1000, acceleration: 10000, jerk: 500000}}
+  - {name: y, unit: mm, limits: {velocity: 1000, acceleration: 10000, jerk: 500000}}
+  - {name: drive, unit: mm, limits: {velocity: 500, acceleration: 2000, jerk: 100000}}
+  - {name: f, unit: mm, limits: {velocity: 500, acceleration: 2000, jerk: 100000}}
+groups:
+  - name: gantry
+    axes: [x, y]
+    kinematics: {gantry: {axes: [x, y]}}
+    path: {velocity: 800, acceleration: 8000, jerk: 400000}
+belts:
+  - {name: infeed, axis: drive}
+"""
+
+
+def test_a_member_that_comes_later_moves_behind_its_belt() -> None:
+    """EN-03, GR-02: the axis takes the place of another one in a group that rides on a belt."""
+    with takt.Engine(LATE) as engine:
+        gantry, drive = engine.group("gantry"), engine.axis("drive")
+        gantry.set_dyn_coord_transform(pcs=1, carrier="infeed").wait()
+        gantry.remove_axis(ident=1).wait()
+        gantry.add_axis(axis="w", ident=1).wait()
+        for component in (drive, gantry):
+            component.power().wait()
+        gantry.enable().wait()
+        drive.move_velocity(velocity=200).wait(until="reached")
+        gantry.move_linear_absolute(x=50, y=0, coordinate_system="pcs", pcs=1)
+        engine.run(1.0)
+        assert gantry.x - drive.set_position == pytest.approx(50, abs=1e-6)
+        assert gantry.track_lag == pytest.approx(0, abs=1e-6)
+
+
+def test_a_group_does_not_ride_on_a_member_that_comes_later() -> None:
+    """EN-03, GR-02: 3018, and other couplings go on."""
+    with takt.Engine(LATE) as engine:
+        gantry = engine.group("gantry")
+        gantry.remove_axis(ident=1).wait()
+        gantry.set_dyn_coord_transform(pcs=1, carrier="infeed").wait()
+        assert gantry.add_axis(axis="drive", ident=1).wait_final().error_id == 3018
+        gantry.add_axis(axis="x", ident=1).wait()
+        for name in ("w", "f"):
+            engine.axis(name).power().wait()
+        engine.axis("f").gear_in(master="w").wait(until="reached")
+
+
 def test_refusals(engine: takt.Engine, gantry: takt.Group) -> None:
     """CV-10, CV-13: each has its own number and text."""
     track = plc.MC_TrackConveyorBelt(gantry, ConveyorBelt="infeed", StartDistance=9.0)

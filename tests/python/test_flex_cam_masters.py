@@ -108,6 +108,15 @@ def test_an_unknown_master_is_named() -> None:
         takt.Engine(machine("infed"))
 
 
+@pytest.mark.parametrize("source", ["set_value", "actual_value"])
+def test_a_belt_on_the_slave_is_no_master(source: str) -> None:
+    """CAM-80, EN-10: the slave would follow itself."""
+    wrong = machine("infeed", source).replace("axis: drive", "axis: knife")
+    expected = r"flex_cams\[0\].master: expected another master than a belt on the slave 'knife', found 'infeed'"
+    with pytest.raises(takt.ConfigError, match=expected):
+        takt.Engine(wrong)
+
+
 def test_a_virtual_master_is_none() -> None:
     with takt.Engine(machine("drive").replace("master: drive, ", "")) as engine:
         assert engine.flex_cam("fc").master is None

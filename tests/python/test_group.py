@@ -10,6 +10,7 @@ import pytest
 import takt
 from machines import new_url, running
 from portals import PORTAL, portal
+from seams import MACHINE
 from takt import _core
 
 OUTPUTS = json.loads(_core.reference())["outputs"]["group"]["fields"]
@@ -80,6 +81,7 @@ def test_members_are_not_moved_by_themselves() -> None:
     with portal() as (engine, gantry):
         refused = engine.axis("x").move_absolute(position=5).wait_final()
         assert (refused.error_id, refused.sentence) == (1000, "the axis is a member of a group")
+        assert engine.axis("x").write_output(number=1, value=True).wait().done  # it moves nothing
         gantry.disable().wait()
         engine.axis("x").move_absolute(position=5).wait()
 
@@ -109,6 +111,56 @@ def test_members_come_and_go() -> None:
         gantry.ungroup_all_axes().wait()
         engine.step()
         assert gantry.members == ()
+
+
+def test_no_members_at_run_time_that_the_machine_file_could_not_have() -> None:
+    """GR-02: an axis that follows another, or that a cam module moves, stays out of a group."""
+    with takt.Engine(MACHINE) as engine:
+        portal = engine.group("portal")
+        for axis, why in (("right", "that does not follow another"), ("knife", "that no cam module moves")):
+            refused = portal.add_axis(axis=axis, ident=4).wait_final()
+            assert refused.sentence == f"axis: expected an axis {why}, found '{axis}'"
+        engine.step()
+        assert [axis.name for axis in portal.members] == ["x", "y", "z"]
+
+
+def test_what_another_component_leads_is_not_taken_from_it() -> None:
+    """GR-25, CAM-80: an axis follows one group or cam module at a time."""
+    with takt.Engine(MACHINE) as engine:
+        portal, robot, cutter = engine.group("portal"), engine.group("robot"), engine.flex_cam("cutter")
+        for group in (portal, robot):
+            group.power().wait()
+            group.enable().wait()
+        engine.axis("web").power().wait()
+        cutter.control(regulator_on=True)
+        engine.wait(lambda: engine.axis("knife").powered)
+        synced = portal.sync_axis(axis="knife")
+        synced.wait(until="reached")
+        assert robot.sync_axis(axis="knife").wait_final().error_id == 3005
+        assert cutter.control(sync_cam=True).wait_final().error_id == 3005
+        assert cutter.state is takt.ModuleState.SERVICE
+        assert synced.active
+        engine.axis("knife").halt().wait()  # a command of its own
+        assert synced.aborted
+        cutter.control(sync_cam=False)
+        cutter.control(sync_cam=True).wait(until="active")
+        engine.step()
+        assert portal.sync_axis(axis="knife").wait_final().error_id == 3005
+        assert cutter.state is takt.ModuleState.SYNC
+
+
+def test_sw_limits_that_are_changed_count_for_groups() -> None:
+    """GR-12: wider than in the machine file, then narrower."""
+    with portal() as (engine, gantry):
+        for limit in (400, 100):
+            gantry.disable().wait()
+            engine.axis("x").set_soft_limits(upper=limit).wait()
+            gantry.enable().wait()
+            beyond = gantry.move_linear_absolute(x=limit + 1).wait_final()
+            assert (beyond.error_id, gantry.reason) == (3021, takt.Reason.AXIS_LIMIT)
+            gantry.move_linear_absolute(x=limit - 1).wait()
+            assert engine.axis("x").set_position == pytest.approx(limit - 1)
+            gantry.move_linear_absolute(x=0).wait()
 
 
 def test_interrupted_and_continued() -> None:

@@ -309,6 +309,23 @@ def test_a_jog_goes_on_while_its_client_is_heard(plant: Plant, client: Client) -
     until(lambda: value(client, "x.set_velocity") == 0)
 
 
+def test_a_held_stop_goes_on_behind_its_end(client: Client) -> None:
+    """EN-23: done, or aborted, a held stop holds while its client is heard, until it is released."""
+    powered(client)
+    assert call(client, "x", "move_velocity", 100.0)["error_id"] == 0
+    names = [
+        argument.Name for argument in client.get_node("ns=2;s=x").get_child("2:stop/0:InputArguments").read_value()
+    ]
+    stop = call(client, "x", "stop", *[name == "hold" or None for name in names])
+    until(lambda: value(client, "x.set_velocity") == 0)
+    end = time.monotonic() + 1.2  # longer than the dead man's time
+    while time.monotonic() < end:
+        assert enumeration(client, "x.state")[value(client, "x.state")] == "Stopping"
+        time.sleep(0.05)
+    call(client, "/machine", "release", stop["ticket"])
+    until(lambda: value(client, "x.state") == 1)
+
+
 @pytest.mark.parametrize("how", ["leaves", "is cut off", "hangs"])
 def test_a_jog_ends_with_its_client(plant: Plant, client: Client, how: str, loop: ThreadLoop) -> None:
     """EN-23: a client that goes away in a jog; another one goes on reading."""
@@ -329,19 +346,6 @@ def test_a_jog_ends_with_its_client(plant: Plant, client: Client, how: str, loop
         if how != "leaves":
             with contextlib.suppress(Exception):
                 other.disconnect()
-
-
-def test_a_held_stop_holds_while_its_client_is_heard(plant: Plant, client: Client, loop: ThreadLoop) -> None:
-    """EN-23: also after it is done; it ends with its session."""
-    powered(client)
-    with Client(plant.address, tloop=loop) as other:
-        call(other, "x", "stop", math.nan, math.nan, True)
-        end = time.monotonic() + 1.0  # longer than the dead man's time
-        while time.monotonic() < end:
-            value(other, "x.set_velocity")
-            time.sleep(0.05)
-        assert value(other, "x.state") == enumeration(other, "x.state").index("Stopping")
-    until(lambda: value(client, "x.state") == 1)
 
 
 def test_two_clients_command_beside_each_other(plant: Plant, client: Client, loop: ThreadLoop) -> None:

@@ -63,6 +63,8 @@ def test_while_an_emergency_stop_is_held_no_command_moves_anything() -> None:
             ("picker", "jog"), ("shuttle", "enable"), ("shuttle", "move_to_position"), ("deck", "activate_position"),
         ):  # fmt: skip
             assert must in {key[:2] for key in asked}, must
+        for setting in ("set_coordinate_transform", "set_dyn_coord_transform"):
+            assert ("portal", setting) not in {key[:2] for key in asked}
         for target in ("web", "portal", "cutter", "picker", "shuttle"):
             s.command(target, "reset") if target in ("web", "portal", "shuttle") else None
         s.run(0.5)

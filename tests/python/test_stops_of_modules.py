@@ -8,6 +8,8 @@ from typing import Any
 
 import pytest
 import takt
+from takt import _core
+from takt.arguments import to_text
 
 FAST = {"velocity": 2000, "acceleration": 20000, "jerk": 400000}
 SEARCH = {"method": "switch", "direction": "negative", "velocity": 20}
@@ -102,6 +104,30 @@ STOPS_OF_CAM = {
     "regulator off": lambda _, m: m.control(regulator_on=False),
     "power off": lambda s, _: s.axis("saw").power(enable=False),
 }
+
+
+@pytest.mark.parametrize(
+    ("machine", "name", "releases"),
+    [
+        (CAM, "cut", {"sync_cam": False}),
+        (CAM, "cut", {"virtual_velocity": 0}),
+        (PICK, "picker", {"override_factor": 0}),
+    ],
+)
+def test_what_asks_for_power_does_not_pass_for_a_stop(
+    machine: dict[str, Any], name: str, releases: dict[str, Any]
+) -> None:
+    """AX-100, EN-33: inputs of a module that ask for power and release something are refused in the cycle of an
+    emergency stop, and grow old."""
+    with takt.Engine(machine) as s:
+        s.command("machine", "emergency_stop", {})
+        asked = s.command(name, "control", {"regulator_on": True, **releases})
+        s.run(0.5)
+        assert asked.error_id == 3100
+        assert not any(axis.loop_closed for axis in s.axes.values())
+        kind = s.components[name].KIND
+        assert _core.lets_go(kind, "control", to_text(releases))
+        assert not _core.lets_go(kind, "control", to_text({"regulator_on": True, **releases}))
 
 
 @pytest.mark.parametrize("stop", STOPS_OF_CAM)

@@ -30,7 +30,7 @@ constexpr std::string_view kEnvironment = "environment";
 constexpr std::string_view kPart = "part";
 
 // Which commands stop something, release it or switch it off, with these arguments (EN-32): the one list. All others do
-// not.
+// not, nor does one that asks for power or motion besides: it grows old, and an emergency stop refuses it.
 template <typename T>
 bool Releases(const T&) noexcept {
   return false;
@@ -69,9 +69,10 @@ bool Releases(const axis::DirectOutput& c) noexcept {
   return c.voltage == 0;
 }
 bool Releases(const flexcam::Control& c) noexcept {
-  return !c.enable.value_or(true) || !c.regulator_on.value_or(true) || c.stop.value_or(false) ||
-         c.halt.value_or(false) || c.sync_out_instant.value_or(false) || !c.sync_cam.value_or(true) ||
-         c.virtual_velocity.value_or(1) == 0;
+  const bool releases = !c.enable.value_or(true) || !c.regulator_on.value_or(true) || c.stop.value_or(false) ||
+                        c.halt.value_or(false) || c.sync_out_instant.value_or(false) || !c.sync_cam.value_or(true) ||
+                        c.virtual_velocity.value_or(1) == 0;
+  return releases && !flexcam::AsksToMove(c);
 }
 bool Releases(const flexcam::Jog& c) noexcept {
   return !c.positive && !c.negative;
@@ -99,9 +100,10 @@ bool Releases(const group::SetOverride& c) noexcept {
   return c.velocity_factor == 0;
 }
 bool Releases(const pickplace::Control& c) noexcept {
-  return !c.enable.value_or(true) || !c.regulator_on.value_or(true) || c.path_stop.value_or(false) ||
-         c.path_halt.value_or(false) || c.stop_all.value_or(false) || c.path_interrupt.value_or(false) ||
-         c.abort.value_or(false) || c.override_factor.value_or(1) == 0;
+  const bool releases = !c.enable.value_or(true) || !c.regulator_on.value_or(true) || c.path_stop.value_or(false) ||
+                        c.path_halt.value_or(false) || c.stop_all.value_or(false) || c.path_interrupt.value_or(false) ||
+                        c.abort.value_or(false) || c.override_factor.value_or(1) == 0;
+  return releases && !pickplace::AsksToMove(c);
 }
 bool Releases(const pickplace::Jog& c) noexcept {
   return !c.positive && !c.negative;
@@ -460,6 +462,8 @@ std::string WhyNot(const Machine& machine, const group::Command& command, std::s
     check("axis", sync->axis, NamesOf(machine.axes), "an axis");
   } else if (const auto* add = std::get_if<group::AddAxis>(&command)) {
     check("axis", add->axis, NamesOf(machine.axes), "an axis");
+    const std::string no_member = WhyNoMember(machine, add->axis.view());
+    if (why.empty() && !no_member.empty()) why = "axis: " + no_member;
   } else if (const auto* dynamic = std::get_if<group::SetDynCoordTransform>(&command)) {
     check("carrier", dynamic->carrier, CarriersOf(machine, target), "a belt, another group or a pose");
   } else if (const auto* belt = std::get_if<group::TrackConveyorBelt>(&command)) {

@@ -189,7 +189,7 @@ bool IsForMembers(const axis::Command& command) {
                std::is_same_v<T, axis::ReadParameter> || std::is_same_v<T, axis::CamTableSelect> ||
                std::is_same_v<T, axis::TouchProbe> || std::is_same_v<T, axis::SetLoad> ||
                std::is_same_v<T, axis::AbortTrigger> || std::is_same_v<T, axis::AbortPassiveHoming> ||
-               std::is_same_v<T, axis::DigitalCamSwitch>;
+               std::is_same_v<T, axis::DigitalCamSwitch> || std::is_same_v<T, axis::WriteOutput>;
       },
       command);
 }
@@ -426,6 +426,7 @@ void Apply(World& w, const Command& command) noexcept {
                    w.flex_cam_states[i]);
   } else if (const auto* for_group = std::get_if<group::Command>(&command.body)) {
     const Wanted wanted = WantedBy(w, *for_group, i);
+    if (wanted.added != axis::kNoAxis && w.module_of[wanted.added] != 0) return refuse(ErrorId::kState);
     if (Changes(wanted) && !MakeOrder(w, wanted)) return refuse(ErrorId::kCouplingLoop);
     if (TakesToolAway(*for_group) && IsRidden(w, i)) return refuse(ErrorId::kState);
     group::Apply(ContextOf(w, w.groups[i]), command.ticket, command.lease_s, *for_group, w.group_states[i]);

@@ -34,10 +34,7 @@ bool Asks(const axis::Command& command) {
 bool Asks(const flexcam::Command& command) {
   return std::visit(
       []<typename T>(const T& body) {
-        if constexpr (std::is_same_v<T, flexcam::Control>) {
-          return body.enable.value_or(false) || body.regulator_on.value_or(false) ||
-                 body.home_execute.value_or(false) || body.sync_cam.value_or(false);
-        }
+        if constexpr (std::is_same_v<T, flexcam::Control>) return flexcam::AsksToMove(body);
         return std::is_same_v<T, flexcam::Jog>;
       },
       command);
@@ -46,11 +43,7 @@ bool Asks(const flexcam::Command& command) {
 bool Asks(const pickplace::Command& command) {
   return std::visit(
       []<typename T>(const T& body) {
-        if constexpr (std::is_same_v<T, pickplace::Control>) {
-          return body.enable.value_or(false) || body.regulator_on.value_or(false) ||
-                 body.home_execute.value_or(false) || body.execute.value_or(false) ||
-                 body.return_to_path.value_or(false);
-        }
+        if constexpr (std::is_same_v<T, pickplace::Control>) return pickplace::AsksToMove(body);
         return std::is_same_v<T, pickplace::Jog>;
       },
       command);
@@ -61,8 +54,8 @@ bool Asks(const group::Command& command) {
       []<typename T>(const T&) {
         return !kIsOneOf<T, group::AddAxis, group::RemoveAxis, group::UngroupAllAxes, group::Enable, group::Disable,
                          group::Reset, group::SetPosition, group::SetOverride, group::SetKinTransform,
-                         group::SetCartesianTransform, group::SetCoordinateTransform, group::SetTool, group::Calibrate,
-                         group::PathChecked, group::PathPlanned>;
+                         group::SetCartesianTransform, group::SetCoordinateTransform, group::SetDynCoordTransform,
+                         group::SetTool, group::Calibrate, group::PathChecked, group::PathPlanned>;
       },
       command);
 }

@@ -174,6 +174,11 @@ class CrossCheck {
       if (module.master) {
         CheckReference(path + ".master", *module.master, any, views, "axis, a belt or a mover");
       }
+      for (const conveyor::BeltParams& belt : machine_.belts) {
+        if (module.master != belt.name || module.slave != belt.axis) continue;
+        Add(path + ".master", "expected another master than a belt on the slave " + Quoted(module.slave) + ", found " +
+                                  Quoted(belt.name));
+      }
       for (const axis::AxisParams& axis : machine_.axes) {
         if (axis.name == module.slave && axis.follows) {
           Add(path + ".slave", "expected an axis that does not follow another, found " + Quoted(module.slave));
@@ -386,13 +391,7 @@ class CrossCheck {
 
   // A member goes by its group alone.
   void CheckMember(const std::string& path, std::string_view name) {
-    for (const axis::AxisParams& axis : machine_.axes) {
-      if (axis.name == name && axis.follows)
-        Add(path, "expected an axis that does not follow another, found " + Quoted(name));
-    }
-    for (const flexcam::FlexCamParams& module : machine_.flex_cams) {
-      if (module.slave == name) Add(path, "expected an axis that no cam module moves, found " + Quoted(name));
-    }
+    if (std::string why = WhyNoMember(machine_, name); !why.empty()) Add(path, why);
   }
 
   // Lists that no axis of the machine can have.

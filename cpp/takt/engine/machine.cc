@@ -1,6 +1,7 @@
 #include "takt/engine/machine.h"
 
 #include "takt/core/describe.h"
+#include "takt/core/problem.h"
 
 namespace takt::engine {
 
@@ -67,6 +68,18 @@ bool DriveHomes(const Machine& machine, std::size_t axis) {
     }
   }
   return false;
+}
+
+std::string WhyNoMember(const Machine& machine, std::string_view axis) {
+  for (const axis::AxisParams& params : machine.axes) {
+    if (params.name == axis && params.follows) {
+      return "expected an axis that does not follow another, found " + Quoted(axis);
+    }
+  }
+  for (const flexcam::FlexCamParams& module : machine.flex_cams) {
+    if (module.slave == axis) return "expected an axis that no cam module moves, found " + Quoted(axis);
+  }
+  return {};
 }
 
 void describe(Description<CycleParams>& d) {

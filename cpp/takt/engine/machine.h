@@ -109,6 +109,9 @@ struct Machine {
 const ExternalDrive* ExternalOf(const Machine& machine, std::size_t axis);
 // Returns whether the drive of the axis homes before it is ready for the first time.
 bool DriveHomes(const Machine& machine, std::size_t axis);
+// Returns why the axis of this name cannot be a member of a group: what was expected, and what was found. Empty: it
+// can.
+std::string WhyNoMember(const Machine& machine, std::string_view axis);
 
 // The servo behind `axis` in this machine.
 plant::ServoParams ServoOf(const Machine& machine, std::size_t axis);

@@ -17,6 +17,7 @@ enum class Belts : std::uint8_t { kFirst, kAnywhere };
 // The n-th that is seen is what is looked for.
 struct Nth {
   const World& world;
+  const Wanted& wanted;
   std::uint32_t n;
   std::uint32_t movers;  // the number of all of them
   std::optional<std::uint32_t> found{};
@@ -25,6 +26,8 @@ struct Nth {
     const std::uint32_t first = StepsBefore(world, master);
     if (!found && first != axis::kNoAxis && n-- == 0) found = first;
   }
+  // Number of the group that an axis belongs to, or will; 0: none.
+  std::uint32_t GroupOf(std::uint32_t axis) const { return axis == wanted.added ? wanted.group : world.group_of[axis]; }
 };
 
 void SeeMasters(const axis::CouplingRequest& r, Nth& nth) {
@@ -41,16 +44,17 @@ void SeeMasters(const group::State& s, Nth& nth) {
   }
 }
 
-void SeeMembers(const group::State& s, Nth& nth) {
-  for (const std::uint32_t member : s.members) {
+void SeeMembers(const World& w, std::size_t group, Nth& nth) {
+  for (const std::uint32_t member : w.group_states[group].members) {
     if (member != 0) nth.See(member - 1);
   }
+  if (nth.wanted.group == group + 1) nth.See(nth.wanted.added);
 }
 
 // The axes of belts whose set position counts.
 void SeeBelts(const World& w, Nth& nth) {
   for (const Belt& belt : w.belts) {
-    if (!IsMeasured(belt.params) && w.group_of[belt.axis] == 0) nth.See(belt.axis);
+    if (!IsMeasured(belt.params) && nth.GroupOf(belt.axis) == 0) nth.See(belt.axis);
   }
 }
 
@@ -63,7 +67,7 @@ void SeeCarrier(const World& w, std::uint32_t number, Nth& nth) {
     return;
   }
   i -= w.belts.size();
-  if (i < w.groups.size()) SeeMembers(w.group_states[i], nth);
+  if (i < w.groups.size()) SeeMembers(w, i, nth);
 }
 
 // Of all that a group rides on, or may at any time.
@@ -83,12 +87,12 @@ void SeeCarriers(const World& w, std::size_t group, Nth& nth) {
 }
 
 // The axes that movers follow.
-std::optional<std::uint32_t> MasterOfMovers(const World& w, Nth nth, const Wanted& wanted) {
+std::optional<std::uint32_t> MasterOfMovers(const World& w, Nth nth) {
   for (std::size_t i = 0; i < w.movers.size(); ++i) {
     const planar::Rider& rider = w.streets.riders[i];
     if (rider.on && rider.aim == planar::Aim::kFollow) nth.See(w.mover_states[i].gear.axis);
   }
-  nth.See(wanted.movers);
+  nth.See(nth.wanted.movers);
   return nth.found;
 }
 
@@ -97,27 +101,28 @@ std::optional<std::uint32_t> MasterOfMovers(const World& w, Nth nth, const Wante
 // of the group that it follows itself. Last come those of `wanted`.
 std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k, const Wanted& wanted,
                                       Belts belts) {
-  Nth nth{w, k, static_cast<std::uint32_t>(w.axis_states.size())};
-  if (i == nth.movers) return MasterOfMovers(w, nth, wanted);
+  Nth nth{w, wanted, k, static_cast<std::uint32_t>(w.axis_states.size())};
+  if (i == nth.movers) return MasterOfMovers(w, nth);
   const axis::State& s = w.axis_states[i];
   if (w.axis_masters[i]) nth.See(*w.axis_masters[i]);
   if (w.module_of[i] != 0) nth.See(w.flex_cams[w.module_of[i] - 1].master.value_or(axis::kNoAxis));
   SeeMasters(s.active.coupling, nth);
   for (std::size_t b = 0; b < s.buffered; ++b) SeeMasters(s.buffer[b].coupling, nth);
-  if (w.group_of[i] != 0) SeeMasters(w.group_states[w.group_of[i] - 1], nth);
-  if (w.group_of[i] != 0) SeeCarriers(w, w.group_of[i] - 1, nth);
-  if (w.group_of[i] != 0 && belts == Belts::kFirst) SeeBelts(w, nth);
-  for (const group::State& group : w.group_states) {
-    for (const group::SyncedAxis& synced : group.synced) {
-      if (synced.axis == i + 1) SeeMembers(group, nth);
+  const std::uint32_t group = nth.GroupOf(i);
+  if (group != 0) SeeMasters(w.group_states[group - 1], nth);
+  if (group != 0) SeeCarriers(w, group - 1, nth);
+  if (group != 0 && belts == Belts::kFirst) SeeBelts(w, nth);
+  for (std::size_t leader = 0; leader < w.groups.size(); ++leader) {
+    for (const group::SyncedAxis& synced : w.group_states[leader].synced) {
+      if (synced.axis == i + 1) SeeMembers(w, leader, nth);
     }
   }
   if (wanted.coupling != nullptr && i == wanted.of) SeeMasters(*wanted.coupling, nth);
-  if (wanted.group != 0 && w.group_of[i] == wanted.group) {
+  if (wanted.group != 0 && group == wanted.group) {
     nth.See(wanted.master);
     SeeCarrier(w, wanted.carrier, nth);
   }
-  if (i == wanted.synced) SeeMembers(w.group_states[wanted.group - 1], nth);
+  if (i == wanted.synced) SeeMembers(w, wanted.group - 1, nth);
   return nth.found;
 }
 
@@ -137,6 +142,9 @@ Wanted WantedBy(World& w, const group::Command& command, std::size_t index) noex
     wanted.master = axis::FindAxis(w.axis_params, path->master.view());
   } else if (const auto* sync = std::get_if<group::SyncAxis>(&command)) {
     wanted.synced = axis::FindAxis(w.axis_params, sync->axis.view());
+  } else if (const auto* add = std::get_if<group::AddAxis>(&command)) {
+    const std::uint32_t axis = axis::FindAxis(w.axis_params, add->axis.view());
+    if (axis != axis::kNoAxis && w.group_of[axis] == 0) wanted.added = axis;
   } else if (const auto* transform = std::get_if<group::SetDynCoordTransform>(&command)) {
     wanted.carrier = carrier(transform->carrier);
   } else if (const auto* belt = std::get_if<group::TrackConveyorBelt>(&command)) {

@@ -17,18 +17,19 @@ struct Wanted {
   std::uint32_t master = axis::kNoAxis;  // that its members follow
   std::uint32_t synced = axis::kNoAxis;  // that follows its members
   std::uint32_t carrier = 0;             // number of what it is to ride on; 0: nothing
+  std::uint32_t added = axis::kNoAxis;   // that becomes a member
   std::uint32_t movers = axis::kNoAxis;  // that a mover follows
 };
 
 // Makes the order of the axes anew, with what is wanted. False: there would be a loop; the order stays as it was.
 bool MakeOrder(World& world, const Wanted& wanted = {}) noexcept;
 
-// What a command makes the members of group `index` follow or ride on, or makes follow them.
+// What a command makes the members of group `index` follow or ride on, makes follow them, or makes a member.
 Wanted WantedBy(World& world, const group::Command& command, std::size_t index) noexcept;
 
 inline bool Changes(const Wanted& wanted) noexcept {
   return wanted.master != axis::kNoAxis || wanted.synced != axis::kNoAxis || wanted.carrier != 0 ||
-         wanted.movers != axis::kNoAxis;
+         wanted.added != axis::kNoAxis || wanted.movers != axis::kNoAxis;
 }
 
 }  // namespace takt::engine

@@ -47,16 +47,6 @@ std::uint32_t CamNamed(const Machine& machine, const std::string& name) {
   return IndexNamed(machine.cams, name);
 }
 
-// Kinematics stay within the SW limits of the axes, too.
-void LimitToAxes(const Machine& machine, const group::GroupParams& group, kinematics::Kinematics& kinematics) {
-  for (std::size_t k = 0; k < kinematics.count; ++k) {
-    const axis::AxisLimits& limits = machine.axes[axis::FindAxis(machine.axes, group.axes[k])].limits;
-    kinematics::JointRange& range = kinematics.ranges[k];
-    range.lower = std::max(range.lower, limits.lower.value_or(range.lower));
-    range.upper = std::min(range.upper, limits.upper.value_or(range.upper));
-  }
-}
-
 }  // namespace
 
 mover::Context MoverContext(World& w, std::size_t i) {
@@ -174,10 +164,7 @@ void World::MakeGroups(const Machine& machine) {
     AxesGroup& group = groups.emplace_back();
     group.params = params;
     group.mounting = group::MakeMounting(params);
-    if (params.kinematics) {
-      group.kinematics = kinematics::Make(*params.kinematics).kinematics;
-      LimitToAxes(machine, params, group.kinematics.value());
-    }
+    if (params.kinematics) group.kinematics = kinematics::Make(*params.kinematics).kinematics;
     for (const std::string& axis : params.axes) group.axes.push_back(axis::FindAxis(machine.axes, axis));
     for (const std::uint32_t axis : group.axes) group_of[axis] = static_cast<std::uint32_t>(groups.size());
     group_states.push_back(group::MakeState(group.axes));

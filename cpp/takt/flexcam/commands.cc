@@ -42,6 +42,11 @@ void DescribeInputs(Description<InputsOf<Of>>& d) {
 
 }  // namespace
 
+bool AsksToMove(const Control& c) noexcept {
+  return c.enable.value_or(false) || c.regulator_on.value_or(false) || c.home_execute.value_or(false) ||
+         c.sync_cam.value_or(false);
+}
+
 std::string WhyNot(const Command& command) {
   const auto* set = std::get_if<SetCam>(&command);
   return set && set->cam.empty() ? "cam: expected the name of a cam, found an empty text" : std::string();

@@ -46,6 +46,9 @@ using Inputs = InputsOf<Plain>;
 // Changes inputs. Where it closes or opens the clutch or starts homing, it is done when that is.
 using Control = InputsOf<std::optional>;
 
+// Whether it asks for power or motion.
+bool AsksToMove(const Control& control) noexcept;
+
 // Level-sensitive: give it again to change the levels, both false (or a release) to let go.
 struct Jog {
   bool positive = false;

@@ -415,7 +415,8 @@ void WatchLease(const Context& c, State& s) {
 // READY and SERVICE are one another's: what the slave does by itself is a service.
 void ReadyOrService(const Context& c, const axis::State& slave, State& s) {
   if (s.state != ModuleState::kReady && s.state != ModuleState::kService) return;
-  const bool service = s.inputs.internal_control || IsBusyItself(slave);
+  const bool led = axis::IsGuided(slave);  // by a group: the module itself is in SYNC then
+  const bool service = s.inputs.internal_control || led || IsBusyItself(slave);
   Enter(c, service ? ModuleState::kService : ModuleState::kReady, s);
 }
 

@@ -84,6 +84,7 @@ ErrorId SwitchOffAll(const Context& c, const State& s) noexcept {
 ErrorId Add(const Context& c, const AddAxis& command, State& s) noexcept {
   const std::uint32_t axis = axis::FindAxis(c.axes.params, command.axis.view());
   if (axis == axis::kNoAxis) return ErrorId::kUnknownTarget;
+  if (c.axes.params[axis].follows) return ErrorId::kState;
   if (c.group_of[axis] == c.number) return ErrorId::kGroupMember;
   if (c.group_of[axis] != 0) return ErrorId::kOtherGroupMember;
   const axis::PlcState plc = c.axes.states[axis].plc;

@@ -90,8 +90,10 @@ ErrorId Sync(const Context& c, Ticket ticket, const SyncAxis& command, State& s)
   if (found == axis::kNoAxis) return ErrorId::kUnknownTarget;
   const std::uint32_t axis = found + 1;
   if (c.group_of[axis - 1] != 0) return ErrorId::kGroupMember;
-  const auto free = std::ranges::find_if(s.synced, [&](const SyncedAxis& one) { return one.axis == axis; });
-  const auto place = free != s.synced.end() ? free : std::ranges::find(s.synced, 0u, &SyncedAxis::axis);
+  const auto known = std::ranges::find(s.synced, axis, &SyncedAxis::axis);
+  // Another component leads it: a cam module, another group.
+  if (known == s.synced.end() && axis::IsGuided(c.axes.states[found])) return ErrorId::kState;
+  const auto place = known != s.synced.end() ? known : std::ranges::find(s.synced, 0u, &SyncedAxis::axis);
   if (place == s.synced.end()) return ErrorId::kBufferFull;
   if (place->axis != 0) Report(c, place->ticket, FeedbackState::kAborted);
   *place = {ticket, axis, command.ratio_numerator / command.ratio_denominator, 0, false};

@@ -42,7 +42,7 @@ struct Kinematics {
   std::size_t count = 0;  // of axes
   std::array<JointKind, kMaxJoints> kinds{};
   std::array<JointScale, kMaxJoints> scales{};
-  // From URDF; else free, and to be set from the SW limits of the axes.
+  // From URDF; else free. The SW limits of the axes, which change at run time, are not in here.
   std::array<JointRange, kMaxJoints> ranges{};
 };
 

@@ -62,6 +62,13 @@ bool IsFinalReply(const msgs::feedback& reply) {
   return IsFinal(static_cast<FeedbackState>(reply.state));
 }
 
+// Whether a held stop holds behind its final feedback, however it ended: power off, a fault or another stop ends the
+// command and leaves the hold. One that was never in control holds nothing, nor does one too many.
+bool Holds(const FeedbackEvent& end, const msgs::feedback& before) {
+  const bool began = static_cast<FeedbackState>(before.state) == FeedbackState::kActive;
+  return end.state == FeedbackState::kDone || (began && end.error != ErrorId::kBufferFull);
+}
+
 }  // namespace
 
 Clients::Clients(const engine::Machine& machine, std::int64_t run_id, Submit submit, const ClientLimits& limits,
@@ -94,7 +101,7 @@ Clients::Client* Clients::Admit(const Message& message, std::int64_t now_ns, msg
       return nullptr;
     }
     found = clients_.try_emplace(name).first;
-    found->second.session = session;
+    found->second = FormerGuest({name, session}, found->second);
   }
   Client& client = found->second;
   if (client.session != session) {
@@ -104,8 +111,7 @@ Clients::Client* Clients::Admit(const Message& message, std::int64_t now_ns, msg
       return nullptr;
     }
     Forget(client);
-    client = {};
-    client.session = session;
+    client = FormerGuest({name, session}, client);
   }
   client.last_seen_ns = now_ns;
   return &client;
@@ -126,6 +132,19 @@ Clients::Client* Clients::Guest(const Sender& sender, std::int64_t now_ns) {
   }
   found->second.last_seen_ns = now_ns;
   return &found->second;
+}
+
+Clients::Client Clients::FormerGuest(const Sender& sender, Client& client) {
+  auto guest = guests_.extract(sender);
+  if (guest.empty()) {
+    Client unknown;
+    unknown.session = sender.second;
+    return unknown;
+  }
+  for (auto& [ticket, origin] : origins_) {
+    if (origin.client == &guest.mapped()) origin.client = &client;
+  }
+  return std::move(guest.mapped());
 }
 
 engine::ParsedCommand Clients::Parse(const msgs::command& message) const {
@@ -252,9 +271,9 @@ void Clients::OnFeedback(const FeedbackEvent& event) {
   reply.client = record.last.client;
   reply.session = record.last.session;
   reply.id = id;
-  record.last = reply;
+  const msgs::feedback before = std::exchange(record.last, reply);
   if (IsFinal(event.state)) {
-    const bool in_force = record.stays_in_force && event.state == FeedbackState::kDone;
+    const bool in_force = record.stays_in_force && Holds(event, before);
     if (record.level_sensitive && !in_force) std::erase(client->level_sensitive, event.ticket);
     origins_.erase(found);
   }

@@ -72,7 +72,7 @@ class Clients {
   struct Record {
     msgs::feedback last;  // what was answered last
     bool level_sensitive = false;
-    bool stays_in_force = false;  // after it is done, until released
+    bool stays_in_force = false;  // after its end, until released
   };
   struct Client {
     std::int64_t session = 0;
@@ -99,10 +99,13 @@ class Clients {
   Client* Admit(const Message& message, std::int64_t now_ns, msgs::feedback& refusal);
   // A sender without a place, which may only let go. The one without news for longest makes room.
   Client* Guest(const Sender& sender, std::int64_t now_ns);
+  // What is known of a sender that becomes `client`: as a guest, if it was one; its unfinished commands are of `client`
+  // from now on.
+  Client FormerGuest(const Sender& sender, Client& client);
   bool MakeRoomForClient(std::int64_t now_ns);
   bool MakeRoomForId(Client& client, bool lets_go);
   void Forget(Client& client);
-  // After a release of this ticket, whoever gave it: no heartbeat keeps it in force any more once it is done. Until
+  // After a release of this ticket, whoever gave it: no heartbeat keeps it in force any more once it is final. Until
   // then it is still on its way.
   void LetGo(Ticket ticket);
   engine::ParsedCommand Parse(const msgs::command& message) const;

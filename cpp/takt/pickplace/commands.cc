@@ -47,6 +47,11 @@ void DescribeInputs(Description<InputsOf<Of>>& d) {
 
 }  // namespace
 
+bool AsksToMove(const Control& c) noexcept {
+  return c.enable.value_or(false) || c.regulator_on.value_or(false) || c.home_execute.value_or(false) ||
+         c.execute.value_or(false) || c.return_to_path.value_or(false);
+}
+
 void describe(Description<Inputs>& d) {
   d.named("PickPlaceInputs");
   d.about("Inputs of a pick and place module, as they stand.");

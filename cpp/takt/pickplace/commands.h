@@ -45,6 +45,9 @@ using Inputs = InputsOf<Plain>;
 // ends.
 using Control = InputsOf<std::optional>;
 
+// Whether it asks for power or motion.
+bool AsksToMove(const Control& control) noexcept;
+
 // Level-sensitive: repeat to change the levels; both false, or a release, ends the jog.
 struct Jog {
   bool positive = false;

@@ -20,8 +20,7 @@ from takt.view.machine import Machine
 RESEND_S = 0.2  # between two tries of a command that is not answered
 REFRESH_S = 2.0  # after which a command that is not finished is asked about: its last answer may have been lost
 GIVEN_UP_S = 2.0
-DONE = 2
-FINAL = 2  # from this state on a feedback is the last one
+ACTIVE, FINAL, ERROR = 1, 2, 4  # states of a feedback; from FINAL on it is the last one
 
 
 @dataclass
@@ -33,7 +32,12 @@ class Given:
     ticket: int = 0
     held: bool = False  # goes on until it is let go of
     let_go: bool = False  # it is to be let go of as soon as it has a ticket
-    done: bool = False  # a held stop: it stays in force
+    released: bool = False  # its release has been sent
+    active: bool = False  # it has been in control
+
+    def outlasts(self, feedback: msgs.feedback) -> bool:
+        """Whether its hold outlasts this final feedback: that of a stop does, unless it was refused."""
+        return self.held and self.message.verb == "stop" and (self.active or feedback.state != ERROR)
 
 
 class Client(ABC):
@@ -46,6 +50,7 @@ class Client(ABC):
         self._dead_man_s = float(machine.parameters["lcm"]["dead_man_s"])
         self._last_id = 0
         self._given: dict[int, Given] = {}
+        self._holds: list[Given] = []  # stops that are final and hold on
         self._held_at = 0.0  # when it was said last that something is held
         self._beat_at = 0.0
 
@@ -64,13 +69,15 @@ class Client(ABC):
     def release(self) -> None:
         """Lets go of what is held."""
         now = time.monotonic()
-        for given in [one for one in self._given.values() if one.held]:
+        held = [one for one in self._given.values() if one.held] + self._holds
+        self._holds = []
+        for given in held:
             given.held, given.let_go = False, True
             self._let_go(given, now)
 
     def tick(self, now: float) -> None:
         """Beats while something is held and is meant to be; asks again what was not answered."""
-        holding = any(one.held for one in self._given.values())
+        holding = bool(self._holds) or any(one.held for one in self._given.values())
         if holding and now - self._held_at > self._dead_man_s:
             self.release()
         elif holding and now - self._beat_at >= self._dead_man_s / 4:
@@ -79,7 +86,7 @@ class Client(ABC):
             if not given.answered and now - given.began > GIVEN_UP_S:
                 del self._given[number]
                 self._unanswered(given.message)
-            elif not given.done and now - given.sent > (REFRESH_S if given.answered else RESEND_S):
+            elif now - given.sent > (REFRESH_S if given.answered else RESEND_S):
                 given.sent = now
                 self._network.publish("takt/command", given.message.encode())
 
@@ -92,22 +99,25 @@ class Client(ABC):
             return
         given.answered = True
         given.ticket = message.ticket
-        given.done = message.state == DONE and (given.held or given.let_go) and given.message.verb != "jog"
-        if message.state >= FINAL and not given.done:
+        given.active |= message.state == ACTIVE
+        if message.state >= FINAL:
             del self._given[message.id]
-        else:
-            self._let_go(given, time.monotonic())
+            if given.outlasts(message) and not given.released:
+                self._holds.append(given)
+        self._let_go(given, time.monotonic())
         self._became(given.message, message)
 
     def _let_go(self, given: Given, now: float) -> None:
         if given.let_go and given.ticket:
             given.let_go = False
-            if given.done:
-                del self._given[given.message.id]
             self._send("machine", "release", to_text({"ticket": given.ticket}), now)
 
     def _send(self, target: str, verb: str, arguments: str, now: float, held: bool = False) -> int:
         """Gives a command, and returns its number."""
+        if verb == "release":
+            for given in [*self._given.values(), *self._holds]:
+                given.released |= bool(given.ticket) and arguments == to_text({"ticket": given.ticket})
+            self._holds = [given for given in self._holds if not given.released]
         message = msgs.command()
         message.utime = time.time_ns() // 1000
         message.run_id, message.client, message.session = self._machine.run_id, self.name, self._session

@@ -143,6 +143,8 @@ TEST(CommandQueue, TakesWhatLetsGoOfEveryKind) {
   EXPECT_FALSE(LetsGo("axis", "jog", "{forward: true}"));
   EXPECT_FALSE(LetsGo("axis", "set_override", "{velocity_factor: 0.5}"));
   EXPECT_FALSE(LetsGo("flex_cam", "control", "{sync_cam: true}"));
+  EXPECT_FALSE(LetsGo("flex_cam", "control", "{regulator_on: true, sync_cam: false}"));
+  EXPECT_FALSE(LetsGo("pick_place", "control", "{regulator_on: true, override_factor: 0}"));
   EXPECT_FALSE(LetsGo("axis", "halt", "{no_such: 1}"));
   EXPECT_FALSE(LetsGo("axis", "no_such", ""));
 }
