@@ -92,7 +92,8 @@ void GT_EStop::operator()() noexcept {
 }
 
 void MC_DigitalCamSwitch::operator()() noexcept {
-  if (Enable == level_) return;
+  const bool full = feedback_.failed() && feedback_.error() == ErrorId::kQueueFull;  // then it is tried again
+  if (Enable == level_ && !full) return;
   level_ = enable = Enable;
   const axis::Command command = static_cast<const axis::DigitalCamSwitch&>(*this);
   feedback_.Give(axis_.target(), command);

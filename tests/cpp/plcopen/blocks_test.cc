@@ -185,6 +185,22 @@ TEST_F(Blocks, AFullQueueIsAnError) {
   EXPECT_TRUE(Until(move, [&] { return move.Done(); }));
 }
 
+// AX-50, AX-11: a block of Enable gives its command again as long as the engine has no room for it.
+TEST_F(Blocks, ACamSwitchTriesAgainInAFullQueue) {
+  MC_DigitalCamSwitch cams(x);
+  cams.switches = "none";
+  engine::Command flood;
+  flood.target = 2;
+  flood.body = axis::Command(axis::MoveVelocity{});
+  while (bench.engine.Submit(flood) != 0) {
+  }
+  cams.Enable = true;
+  cams();
+  EXPECT_EQ(cams.ErrorID(), ErrorId::kQueueFull);
+  Step(100);
+  EXPECT_TRUE(Until(cams, [&] { return cams.ErrorID() == ErrorId::kUnknownTarget; }));
+}
+
 // AX-37: Stopping lasts as long as Execute; another stop is refused meanwhile (figure 8.1, note 1).
 TEST_F(Blocks, StopHolds) {
   MC_MoveVelocity ever(x);
