@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from pathlib import Path
 
 import numpy as np
@@ -490,3 +491,20 @@ def test_what_ends_with_set_points_from_outside_names_what_was_in_the_way() -> N
     for feedback in (outside, move):
         assert (feedback.error_id, feedback.object) == (3024, two)
         assert feedback.sentence == "something would touch something else on the way: mover two"
+
+
+def test_a_far_place_on_a_loop_is_planned_as_fast_as_a_near_one() -> None:
+    """PL-12, EN-04: 16 million turns round a circle; a cycle took half a second."""
+    circle = {"shape": "circle", "from": {"x": 10, "y": 0}, "to": {"x": 10, "y": 0}, "center": {"x": 0, "y": 0}}
+    with Engine({"name": "ring", "axes": [], "movers": [{"name": "one", "initial": {"x": 10, "y": 0}}],
+                 "tracks": [{"name": "ring", "closed_loop": True, "elements": [circle]}]}) as engine:  # fmt: skip
+        one, ring = engine.mover("one"), engine.track("ring")
+        ring.enable().wait()
+        one.enable().wait()
+        one.join_track(track="ring").wait()
+        before = time.process_time()
+        move = one.move_on_track(position=1e9)
+        engine.run(0.02)
+        assert time.process_time() - before < 0.1
+        assert not move.final
+        assert one.track_position > 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 import takt
 
@@ -32,7 +33,11 @@ NO_LIMITS = [0.0] * 7
 
 @pytest.fixture
 def engine() -> takt.Engine:
-    engine = takt.Engine(MACHINE)
+    return started()
+
+
+def started(text: str = MACHINE) -> takt.Engine:
+    engine = takt.Engine(text)
     engine.axis("drive").power().wait()
     picker = engine.pick_place("picker")
     picker.configure(max_velocity=NO_LIMITS, max_acceleration=NO_LIMITS, max_jerk=NO_LIMITS).wait()
@@ -93,3 +98,214 @@ def test_aborted_at_rest(engine: takt.Engine) -> None:
     engine.run(0.01)
     assert going.aborted
     assert not picker.path_hold
+
+
+def tool(engine: takt.Engine) -> tuple[float, ...]:
+    """x, y and z, mm, as commanded."""
+    return tuple(engine.axis(name).set_position for name in "xyz")
+
+
+@pytest.mark.parametrize("limits", ["", "lower: -500, upper: 500, "])
+def test_a_key_pressed_again_jogs_on(limits: str) -> None:
+    """PP-03: before the tool rests, and behind the other key; with a SW limit ahead or without."""
+    engine = started(MACHINE.replace("{velocity: 1500", f"{{{limits}velocity: 1500"))
+    picker = engine.pick_place("picker")
+    picker.configure(cartesian_jog_velocity=50, cartesian_jog_deceleration=200).wait()
+    picker.control(select_axis="x").wait()
+    picker.jog(positive=True)
+    engine.run(1)
+    picker.jog()
+    engine.run(0.02)
+    for _ in range(2):
+        picker.jog(positive=True)
+        engine.run(1)
+        assert (picker.state, picker.error, picker.warning) == (takt.PickPlaceState.JOG_POS, 0, 0)
+        assert engine.axis("x").set_velocity == pytest.approx(50)
+        picker.jog(negative=True)
+        engine.run(1)
+        assert (picker.state, engine.axis("x").set_velocity) == (takt.PickPlaceState.JOG_POS, 0)
+    picker.jog().wait()
+    assert picker.state is takt.PickPlaceState.READY
+
+
+LOW = MACHINE.replace("z_distance: 25, sync_time: 0.05", "sync_time: 0.5")
+
+
+def on_its_workpiece(engine: takt.Engine) -> takt.Feedback:
+    """The pick, 0.1 s after the tool has arrived."""
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    belt.axis.move_velocity(velocity=60).wait(until="reached")
+    belt.detect(x=50).wait()
+    picking = picker.execute(1)
+    engine.wait(lambda: picker.in_target, 5)
+    engine.run(0.1)
+    assert picker.synchronised
+    assert not picking.final
+    return picking
+
+
+@pytest.mark.parametrize("stop", ["path_stop", "path_interrupt"])
+def test_a_stop_ends_a_pick_on_its_workpiece(stop: str) -> None:
+    """PP-20, PP-61: without z_distance, too; the tool does not stay with a workpiece that moves on."""
+    engine = started(LOW)
+    picker = engine.pick_place("picker")
+    picking = on_its_workpiece(engine)
+    picker.control(**{stop: True})
+    engine.run(0.01)
+    assert (picking.done, picker.picked, engine.belt("infeed").object_count) == (True, 1, 0)
+    engine.run(0.5)
+    assert not picker.synchronised
+    before = tool(engine)
+    picker.control(**{stop: False})
+    engine.run(0.5)
+    assert picker.state is takt.PickPlaceState.READY
+    assert tool(engine) == before
+    picker.execute().wait()
+
+
+def test_a_group_interrupted_by_itself_stays_the_rest_of_its_time() -> None:
+    """PP-41: the time on the workpiece counts while the tool moves with it."""
+    engine = started(LOW)
+    picker, group = engine.pick_place("picker"), engine.group("portal")
+    picking = on_its_workpiece(engine)
+    group.interrupt()
+    engine.run(1)
+    assert not picker.synchronised
+    assert not picking.final
+    begin = engine.now
+    group.continue_path()
+    picking.wait()
+    assert engine.now - begin == pytest.approx(0.4, abs=0.005)
+
+
+def test_a_way_back_that_is_halted_is_no_way_back(engine: takt.Engine) -> None:
+    """PP-20: return_to_path is done at the path alone."""
+    picker = engine.pick_place("picker")
+    picker.configure(cartesian_jog_velocity=100, cartesian_jog_deceleration=1000).wait()
+    picker.control(select_axis="y").wait()
+    going = picker.execute()
+    engine.run(0.1)
+    picker.control(path_stop=True)
+    engine.run(1)
+    picker.control(path_stop=False).wait()
+    engine.run(0.01)
+    held = tool(engine)
+    picker.jog(positive=True)
+    engine.run(1)
+    picker.jog().wait()
+    picker.configure(path_velocity=50).wait()
+    back = picker.control(return_to_path=True)
+    engine.run(0.2)
+    engine.group("portal").halt().wait()
+    engine.run(0.1)
+    assert back.aborted
+    assert (picker.state, picker.path_hold, picker.off_path) == (takt.PickPlaceState.READY, True, True)
+    assert tool(engine)[1] > held[1] + 10
+    picker.control(return_to_path=False)
+    assert picker.execute().wait_final().error_id == 3031
+    picker.control(return_to_path=True).wait()
+    assert not picker.off_path
+    assert tool(engine) == pytest.approx(held, abs=1e-6)
+    picker.execute().wait()
+    going.wait()
+
+
+@pytest.mark.parametrize("by", ["group", "axis", "homing"])
+def test_a_tool_moved_away_is_not_parked(engine: takt.Engine, by: str) -> None:
+    """PP-42: whatever moves the tool away from its parking position, it parks again."""
+    picker, group = engine.pick_place("picker"), engine.group("portal")
+    engine.axis("drive").move_velocity(velocity=100).wait(until="reached")
+    engine.belt("infeed").detect(x=50).wait()
+    picker.execute(1).wait()
+    engine.wait(lambda: picker.in_park_position and picker.state is takt.PickPlaceState.READY, 5)
+    assert tool(engine) == pytest.approx((300, 200, 20))
+    engine.run(0.1)
+    assert picker.in_park_position
+    if by == "group":
+        group.move_linear_absolute(x=0, y=0, z=100).wait()
+    elif by == "axis":
+        group.disable().wait()
+        engine.axis("x").move_absolute(position=0).wait()
+        group.enable().wait()
+    else:
+        picker.configure(homing_order=[1, 0, 0, 0, 0, 0, 0], home_position=[250.0, 0, 0, 0, 0, 0, 0]).wait()
+        picker.control(home_execute=True).wait()
+    engine.run(0.01)
+    assert tool(engine) != pytest.approx((300, 200, 20))
+    assert not picker.in_park_position
+    picker.execute(1)
+    engine.wait(lambda: picker.in_park_position, 5)
+    assert tool(engine) == pytest.approx((300, 200, 20))
+
+
+@pytest.mark.parametrize("factors", [(0.5, 1, 1), (1, 0.5, 1), (1, 1, 0.5)])
+def test_an_override_of_the_group_switches_gripper_control_off(
+    engine: takt.Engine, factors: tuple[float, float, float]
+) -> None:
+    """PP-21, PP-30."""
+    picker, names = engine.pick_place("picker"), ("velocity_factor", "acceleration_factor", "jerk_factor")
+    picker.configure(gripper_closing_time=0.1).wait()
+    engine.group("portal").set_override(**dict(zip(names, factors, strict=True))).wait()
+
+    def pulses(x_target: float, active: bool) -> int:
+        picker.configure(x_target=x_target).wait()
+        recorder = engine.record()
+        going = picker.execute()
+        engine.run(0.1)
+        assert picker.gripper_control_active == active
+        going.wait()
+        return int(np.sum(recorder.stop()["picker"]["pulse_gripper"]))
+
+    assert pulses(100, active=False) == 0
+    engine.group("portal").set_override().wait()
+    assert pulses(300, active=True) == 1
+
+
+@pytest.mark.parametrize("by", ["module", "group"])
+def test_what_an_override_makes_too_late_is_not_begun(engine: takt.Engine, by: str) -> None:
+    """PP-44: whether a workpiece can be reached goes by the override of the group, whoever gave it."""
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    belt.axis.move_velocity(velocity=100).wait(until="reached")
+    if by == "module":
+        picker.control(override_factor=0.1).wait()
+    else:
+        engine.group("portal").set_override(velocity_factor=0.1).wait()
+    belt.detect(x=450).wait()  # reached within 1.5 s at full speed
+    picker.execute(1)
+    for _ in range(100):
+        engine.run(0.01)
+        assert picker.workpiece == 0
+
+
+def test_what_is_lost_at_a_stop_is_counted_once(engine: takt.Engine) -> None:
+    """PP-63: a workpiece that a stop left behind counts as interrupted; the next one that is lost is missed, too."""
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    picker.configure_belt(lower_limit=10, upper_limit=400).wait()
+    belt.axis.move_velocity(velocity=100).wait(until="reached")
+    belt.detect(x=220).wait()
+    picker.execute(1)
+    engine.run(0.05)
+    assert picker.workpiece == 1
+    picker.control(stop_all=True)
+    engine.run(4.5)
+    assert (picker.missed, picker.missed_interrupted, belt.lost_count) == (1, 1, 1)
+    picker.control(stop_all=False)
+    engine.run(0.3)
+    picker.execute(1)
+    engine.run(0.5)
+    belt.detect(x=550)
+    engine.run(1)
+    assert (picker.missed, picker.missed_too_late, belt.lost_count) == (2, 1, 2)
+
+
+@pytest.mark.parametrize("limits", [(100, 0), (400, 200), (300, 300)])
+def test_a_range_the_wrong_way_round_is_refused(engine: takt.Engine, limits: tuple[float, float]) -> None:
+    """PP-41: in the file and at run time; both 0 leave the belt's range."""
+    lower, upper = limits
+    settings = f"settings: {{lower_limit: {lower}, upper_limit: {upper}, "
+    with pytest.raises(takt.ConfigError, match=r"belts\[0\].settings.upper_limit: must lie above lower_limit"):
+        takt.Engine(MACHINE.replace("settings: {park_x", settings + "park_x"))
+    picker = engine.pick_place("picker")
+    assert picker.configure_belt(lower_limit=lower, upper_limit=upper).wait_final().error_id == 5
+    picker.configure_belt(lower_limit=-100, upper_limit=0).wait()
+    picker.configure_belt(lower_limit=0, upper_limit=0).wait()

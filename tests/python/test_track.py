@@ -192,6 +192,49 @@ def test_what_cannot_be_is_refused_with_a_sentence(empty: Engine) -> None:
         one.position_at(0)
 
 
+def test_tracks_do_not_refer_to_one_another_in_circles() -> None:
+    """PL-23: neither directly nor over a third one; two links to the same track are no circle."""
+    ends = {"a": (100, 300), "b": (0, 100), "c": (300, 500)}
+    lines = [{"name": name, "elements": [{"from": {"x": x0, "y": 0}, "to": {"x": x1, "y": 0}}]}
+             for name, (x0, x1) in ends.items()]  # fmt: skip
+    with Engine({"name": "rows", "axes": [], "tracks": lines}) as engine:
+        a, b, c = (engine.track(name) for name in "abc")
+        b.end_at_track(track="a").wait()
+        refuse(engine, a.start_from_track(track="b"), "its geometry stays until they are cleared")
+        b.end_at_track(track="a").wait()
+        c.start_from_track(track="a").wait()
+        refuse(engine, a.end_at_track(track="c"), "its geometry stays until they are cleared")
+        b.clear().wait()
+        c.clear().wait()
+        a.clear().wait()
+
+
+def test_no_ninth_link_is_lost() -> None:
+    """PL-23, PL-33: links to the same track at other positions of its part count by themselves."""
+    system = {"coordinate_system": "w"}
+    parts = [{"name": name, "positions": [system | {"x": x}, system | {"x": x, "y": 1000}]}
+             for name, x in (("left", 0), ("right", 240))]  # fmt: skip
+
+    def line(name: str, part: str, x0: float, x1: float) -> dict[str, object]:
+        return {"name": name, "part": part, "elements": [{"from": {"x": x0, "y": 120}, "to": {"x": x1, "y": 120}}]}
+
+    tracks = [line("own", "right", 0, 200), *(line(f"t{k}", "left", 20 + k, 240) for k in range(8))]
+    machine = {"name": "m", "axes": [], "coordinate_systems": [{"name": "w"}], "parts": parts, "tracks": tracks}
+    with Engine(machine) as engine:
+        own = engine.track("own")
+
+        def link(track: str, index: int) -> takt.Feedback:
+            only = {"this_position_index": index, "other_position_index": index, "only_there": True}
+            return own.start_from_track(track=track, **only)
+
+        link("t0", 1).wait()
+        for k in range(1, 8):
+            own.start_from_track(track=f"t{k}").wait()
+        refuse(engine, link("t0", 2), "starts from at most 8 tracks")
+        link("t0", 1).wait()
+        own.start_from_track(track="t1").wait()
+
+
 def test_a_track_takes_64_elements(empty: Engine) -> None:
     one = empty.track("one")
     for i in range(64):

@@ -105,6 +105,20 @@ def test_a_line_beside_it_runs() -> None:
         assert robot.in_the_way == ()
 
 
+@pytest.mark.parametrize(
+    ("named", "ignored", "meets"),
+    [("post_2", "post", "post_2"), ("post_2", "post_2", "post"), ("pile_2", "pile", "post")],
+)
+def test_ignore_means_the_obstacle_of_that_name(named: str, ignored: str, meets: str) -> None:
+    """GR-13: a name is that of one thing; only a name that nothing has stands for all that begin with it."""
+    obstacle = f"        - {{name: {named}, cylinder: {{radius: 10, height: 300}}, pose: {{x: 60, z: -1000}}}}\n"
+    pairs = ", ".join(f"[{part}, {ignored}]" for part in ("finger", "lower_arm", "upper_arm"))
+    text = DELTA.replace("      links:", obstacle + "      links:")
+    text = text.replace("      gripper:", f"      ignore: [{pairs}]\n      gripper:")
+    with cell(text) as robot:
+        assert refusal(robot.move_linear_absolute(x=200)).startswith(f"finger meets {meets} ")
+
+
 def test_a_direct_move_and_a_bound() -> None:
     with cell() as robot:
         sentence = refusal(robot.move_direct_absolute(x=200, coordinate_system="mcs"))

@@ -138,7 +138,7 @@ double TimeToGo(const Context& c, const group::State& g, const Order& order, con
   const group::LookAhead& ahead = c.group.ahead;
   const double way = g.begun && ahead.count > 0 ? ahead[ahead.end() - 1].end() - g.pace.now.position : 0;
   const double stopped_s = TimeFor(std::max(0.0, way), order.ramps);
-  return std::max(LongerBy(s) * order.expected_s - TimeGone(c, order), LongerBy(s) * stopped_s);
+  return std::max(LongerBy(g, s) * order.expected_s - TimeGone(c, order), LongerBy(g, s) * stopped_s);
 }
 
 void GiveUp(const Context& c, group::State& g, State& s) noexcept {

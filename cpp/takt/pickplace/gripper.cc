@@ -111,7 +111,7 @@ void StepNextScout(const Context& c, State& s) {
 void StepGripper(const Context& c, const group::State& g, State& s) noexcept {
   if (s.order_count == 0) return;
   Order& order = s.orders[0];
-  if (s.inputs.override_factor != 1) {
+  if (HasOverride(g, s)) {
     order.gripper_off = true;
     s.next_scout = {};
   }

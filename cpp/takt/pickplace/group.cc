@@ -49,6 +49,15 @@ void StopAxes(const Context& c, group::State& g, State& s) noexcept {
   }
 }
 
+bool HasOverride(const group::State& g, const State& s) noexcept {
+  return s.inputs.override_factor != 1 || g.velocity_factor != 1 || g.acceleration_factor != 1 || g.jerk_factor != 1;
+}
+
+double OverrideOf(const group::State& g) noexcept {
+  constexpr double kLeast = 1e-3;
+  return std::clamp(std::min({g.velocity_factor, g.acceleration_factor, g.jerk_factor}), kLeast, 1.0);
+}
+
 Place PresentPlace(const Context& c, const group::State& g) noexcept {
   const group::End end = group::Present(c.group, g);
   Place place{.pose = kinematics::ToPose(end.tool)};

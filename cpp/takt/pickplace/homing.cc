@@ -57,6 +57,7 @@ void BeginHoming(const Context& c, Ticket ticket, group::State& g, State& s) noe
   s.homing = {ticket, 0};
   s.done = false;
   s.at_known = false;
+  s.parked_at = 0;
   s.warning = ErrorId::kNone;
   Enter(PickPlaceState::kHoming, s);
 }

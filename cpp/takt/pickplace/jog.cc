@@ -148,6 +148,22 @@ void EndJog(const Context& c, FeedbackState feedback, ErrorId error, State& s) n
   s.jog = {};
 }
 
+namespace {
+
+// Gives the jog's move, from where the tool is now. False: it is refused, and reported.
+bool BeginMove(const Context& c, group::State& g, State& s) {
+  s.jog_released = false;
+  if (const ErrorId error = GiveMove(c, g, s); error != ErrorId::kNone) {
+    s.warning = error;
+    EndJog(c, FeedbackState::kError, error, s);
+    return false;
+  }
+  s.given = g.done + g.queue.count;
+  return true;
+}
+
+}  // namespace
+
 void BeginJog(const Context& c, group::State& g, State& s) noexcept {
   // What rises is let go of first: a stop would wait for that.
   if (s.jog.ticket == 0 || s.halting || s.lifting || !IsOn(c, g) || !Stands(c, g)) return;
@@ -159,11 +175,7 @@ void BeginJog(const Context& c, group::State& g, State& s) noexcept {
   s.hold.off |= on_path;
   s.at_known = false;
   s.parked_at = 0;
-  if (const ErrorId error = GiveMove(c, g, s); error != ErrorId::kNone) {
-    s.warning = error;
-    return EndJog(c, FeedbackState::kError, error, s);
-  }
-  s.given = g.done + g.queue.count;
+  if (!BeginMove(c, g, s)) return;
   s.back = s.state;
   Enter(s.jog_sense > 0 ? PickPlaceState::kJogPos : PickPlaceState::kJogNeg, s);
 }
@@ -175,7 +187,7 @@ void InJog(const Context& c, group::State& g, State& s) noexcept {
   const bool refused = s.given > g.done + g.queue.count;
   if (!held && !s.halting && !IsFree(c, g)) {
     const group::Halt halt{.deceleration = ramps.deceleration, .jerk = ramps.jerk};
-    s.halting = Tell(c, halt, g) == ErrorId::kNone;
+    s.halting = s.jog_released = Tell(c, halt, g) == ErrorId::kNone;
     s.given = 0;
   }
   if (g.ends && !s.halting && g.reason == kinematics::Reason::kNone) {  // somebody else has stopped it
@@ -185,6 +197,10 @@ void InJog(const Context& c, group::State& g, State& s) noexcept {
   }
   if (!IsFree(c, g)) return;
   s.halting = false;
+  if (held && s.jog_released) {  // the key was pressed again meanwhile
+    if (!BeginMove(c, g, s)) Enter(s.back, s);
+    return;
+  }
   if (held && !refused) {  // it has come to the end of its range
     if (!s.jog_end.any()) s.warning = ErrorId::kUnreachable;
     if (!s.jog_end.any()) return;

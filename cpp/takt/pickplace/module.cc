@@ -116,15 +116,20 @@ void Interrupt(const Context& c, double deceleration, double jerk, group::State&
   Tell(c, group::Interrupt{.deceleration = std::max(deceleration, PathDeceleration(s)), .jerk = jerk}, g);
 }
 
-// On its path; a tool that is low over a belt rises in step first, and its order begins anew from there (PP-61).
+// On its path; a tool that is low over a belt rises in step first, and its order begins anew from there (PP-61). A pick
+// that has arrived ends at once, whatever its height, as with ack_gripper: the tool does not return to that workpiece.
 void StopOnPath(const Context& c, double deceleration, double jerk, group::State& g, State& s) {
-  if (!s.lifting && !IsLow(c, g, s)) return Interrupt(c, deceleration, jerk, g, s);
-  if (s.order_count > 0 && s.orders[0].phase == Phase::kStaying) Complete(c, s);  // as ack_gripper does
+  const bool stays = s.order_count > 0 && s.orders[0].phase == Phase::kStaying;
+  const bool low = s.lifting || IsLow(c, g, s);
+  if (!stays && !low) return Interrupt(c, deceleration, jerk, g, s);
+  if (stays) Complete(c, s);
   s.hold.held = s.order_count > 0 || s.loop.active;
   PathRamps ramps = PathRampsOf(s);
   ramps.deceleration = std::max(deceleration, PathDeceleration(s));
   ramps.jerk = jerk;
-  ComeToRest(c, ramps, g, s);
+  if (low) return ComeToRest(c, ramps, g, s);
+  LosePath(c, g, false, s);
+  HaltGroup(c, g, s, {.deceleration = ramps.deceleration, .jerk = jerk});
 }
 
 void EndReturn(const Context& c, FeedbackState feedback, State& s) {
@@ -211,6 +216,11 @@ void InInterrupt(const Context& c, group::State& g, State& s) {
 }
 
 void InReturn(const Context& c, group::State& g, State& s) {
+  if (g.ends && g.reason != kinematics::Reason::kNone) return Fail(c, TroubleOf(g), g, s);
+  if (g.ends) {  // another command has stopped the group: the tool stays off its path
+    EndReturn(c, FeedbackState::kAborted, s);
+    return Enter(PickPlaceState::kReady, s);
+  }
   if (s.given > g.done + g.queue.count) return Fail(c, TroubleOf(g), g, s);
   if (g.done <= s.hold.move || !IsFree(c, g)) return;
   EndReturn(c, FeedbackState::kDone, s);
@@ -336,7 +346,7 @@ void RunStates(const Context& c, group::State& g, State& s) {
 bool IsTooLate(const Context& c, const group::State& g, const State& s) {
   if (s.order_count == 0 || s.orders[0].workpiece == 0) return false;
   const Order& order = s.orders[0];
-  return !StaysWithin(c, order, TimeToGo(c, g, order, s) + order.own.sync_time, s);
+  return !StaysWithin(c, g, order, TimeToGo(c, g, order, s) + order.own.sync_time);
 }
 
 // Along its path, or away from where it stood.
@@ -387,7 +397,10 @@ State MakeState(const PickPlaceParams& params) noexcept {
 
 void Step(const Context& c, group::State& g, State& s) noexcept {
   s.pulse = false;
-  if (MovesOn(c, g)) s.in_target = false;
+  if (MovesOn(c, g)) {
+    s.in_target = false;
+    if (!s.parking) s.parked_at = 0;
+  }
   SwitchPower(c, g, s);
   SetOverride(c, g, s);
   CloseDirections(c, g, s);

@@ -248,7 +248,7 @@ void Go(const Context& c, group::State& g, State& s) {
     const double left_s = TimeToGo(c, g, order, s);
     const bool descends = g.done == order.last;
     const bool into_zone = descends && g.zone_near;
-    if (into_zone || !StaysWithin(c, order, left_s + order.own.sync_time, s)) GiveUp(c, g, s);
+    if (into_zone || !StaysWithin(c, g, order, left_s + order.own.sync_time)) GiveUp(c, g, s);
     return;
   }
   if (g.reason != kinematics::Reason::kNone) return Fail(c, TroubleOf(g), g, s);
@@ -260,15 +260,16 @@ void Go(const Context& c, group::State& g, State& s) {
   order.stay_cycle = c.group.cycle.count;
 }
 
-void Stay(const Context& c, State& s) {
+void Stay(const Context& c, const group::State& g, State& s) {
   Order& order = s.orders[0];
+  if (g.interrupted) ++order.stay_cycle;  // by another command: the tool stands, the workpiece moves on
   const double period = c.group.cycle.period_s;
   const double wanted = std::round(order.own.sync_time / period);
   const auto cycles = static_cast<std::uint64_t>(std::max(1.0, wanted));
   const std::uint64_t gone = c.group.cycle.count - order.stay_cycle;
   if (s.ack || gone >= cycles) return Complete(c, s);
   const bool there = conveyor::Find(*c.belts[order.belt - 1].state, order.workpiece) != nullptr;
-  if (!there || StaysWithin(c, order, static_cast<double>(cycles - gone) * period, s)) return;
+  if (!there || StaysWithin(c, g, order, static_cast<double>(cycles - gone) * period)) return;
   // Whether the gripper has it is not known: nobody else gets it. What comes next leads up.
   conveyor::Remove(order.workpiece, *c.belts[order.belt - 1].state);
   order.workpiece = 0;
@@ -290,7 +291,7 @@ void StepOrder(const Context& c, group::State& g, State& s) {
     case Phase::kGoing:
       return Go(c, g, s);
     case Phase::kStaying:
-      return Stay(c, s);
+      return Stay(c, g, s);
   }
 }
 
@@ -377,9 +378,9 @@ void Learn(double takes_s, const Order& order, State& s) noexcept {
   s.slowness = slowness > s.slowness ? slowness : std::lerp(s.slowness, slowness, kOneAtATime);
 }
 
-void HaltGroup(const Context& c, group::State& g, State& s) noexcept {
+void HaltGroup(const Context& c, group::State& g, State& s, const group::Halt& halt) noexcept {
   s.lifting = s.rises = false;
-  if (Tell(c, group::Halt{}, g) == ErrorId::kNone) s.halting = true;
+  if (Tell(c, halt, g) == ErrorId::kNone) s.halting = true;
 }
 
 void Accept(const Context& c, Ticket ticket, std::uint32_t belt, State& s) noexcept {

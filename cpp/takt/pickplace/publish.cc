@@ -91,8 +91,8 @@ void PublishOrder(const group::State& g, const State& s, Outputs& out) {
   out.target = order.belt;
   out.workpiece = order.workpiece;
   out.gripper_control_active =
-      order.gripper_time > 0 && !order.gripper_off && !order.pulse_at_end && s.inputs.override_factor == 1;
-  out.synchronised = order.phase == Phase::kStaying;
+      order.gripper_time > 0 && !order.gripper_off && !order.pulse_at_end && !HasOverride(g, s);
+  out.synchronised = order.phase == Phase::kStaying && !g.interrupted;
   if (order.phase != Phase::kGoing) return;
   const std::uint64_t gone = g.done > order.first ? g.done - order.first : 0;
   const auto leg = std::min(order.next_leg + static_cast<std::uint32_t>(gone), order.profile.count);

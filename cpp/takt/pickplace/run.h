@@ -39,6 +39,10 @@ bool Stands(const Context& c, const group::State& g) noexcept;
 bool IsFree(const Context& c, const group::State& g) noexcept;
 // Each axis brakes by itself; the group is disabled, and enabled again once all stand.
 void StopAxes(const Context& c, group::State& g, State& s) noexcept;
+// An override of the module, or one that the group was given by itself, is not 1 (PP-21).
+bool HasOverride(const group::State& g, const State& s) noexcept;
+// The least of the group's override factors, from 1e-3 to 1: no motion takes longer than without it by more than that.
+double OverrideOf(const group::State& g) noexcept;
 // Where the tool is told to be, and Aux1.
 Place PresentPlace(const Context& c, const group::State& g) noexcept;
 // The same place with the tool turned about Z alone, where the mechanism cannot tilt it.
@@ -63,9 +67,9 @@ ErrorId BindWorkpiece(const Context& c, const conveyor::Object& object, group::S
 void GiveBackWorkpiece(const Context& c, Order& order) noexcept;
 // Whether the order's workpiece will be in the range until the tool is up again that leaves it after so long, whatever
 // its belt may do.
-bool StaysWithin(const Context& c, const Order& order, double time_s, const State& s) noexcept;
+bool StaysWithin(const Context& c, const group::State& g, const Order& order, double time_s) noexcept;
 // Of what it was thought to take a profile may take so many times as much now.
-double LongerBy(const State& s) noexcept;
+double LongerBy(const group::State& g, const State& s) noexcept;
 // It was fetched, or something was put there: it is deleted, and what lies in the same place (PP-66).
 void RemoveWorkpiece(const Context& c, Order& order) noexcept;
 // Counts a workpiece that a stop left as missed once it has left the range.
@@ -97,7 +101,7 @@ void EndOrders(const Context& c, FeedbackState feedback, ErrorId error, State& s
 // What was given to the group is lost: orders begin anew, where `kept` from where the path was left.
 void LosePath(const Context& c, const group::State& g, bool kept, State& s) noexcept;
 // The group comes to rest and forgets its moves.
-void HaltGroup(const Context& c, group::State& g, State& s) noexcept;
+void HaltGroup(const Context& c, group::State& g, State& s, const group::Halt& halt = {}) noexcept;
 
 // give_up.cc
 // The workpiece of the order that is gone will not be reached in time: the tool leaves it, and its belt, upwards.

@@ -126,8 +126,11 @@ void DescribeBelt(Description<BeltSettingsOf<Of>>& d) {
   d.template defaulted<&S::sync_time>(unit::s, between(0, 600),
                                       "So long it stays on the workpiece; 0: one cycle. T&P: lrSyncTimeOnBelt.");
   d.template defaulted<&S::lower_limit>(
-      unit::mm, kPositions, "Where the work range begins along X of the belt, deg on a table. T&P: lrLowerSyncLimit.");
-  d.template defaulted<&S::upper_limit>(unit::mm, kPositions, "Where it ends. T&P: lrUpperSyncLimit.");
+      unit::mm, kPositions,
+      "Where the work range begins along X of the belt, deg on a table; both limits 0: that of the belt alone. T&P: "
+      "lrLowerSyncLimit.");
+  d.template defaulted<&S::upper_limit>(unit::mm, kPositions,
+                                        "Where it ends; above lower_limit. T&P: lrUpperSyncLimit.");
   d.template defaulted<&S::lowest_speed>(
       unit::mm_s, kPositions,
       "The belt may come down to this speed along its X while a workpiece is gone for, deg/s on a table; below 0: turn "
@@ -177,6 +180,14 @@ bool TurnsFit(const BeltSettings& s) noexcept {
   return s.turn <= s.every && s.turns <= s.every - s.turn + 1;
 }
 
+bool HasRange(const BeltSettings& s) noexcept {
+  return s.lower_limit != 0 || s.upper_limit != 0;
+}
+
+bool RangeFits(const BeltSettings& s) noexcept {
+  return !HasRange(s) || s.lower_limit < s.upper_limit;
+}
+
 void describe(Description<Settings>& d) {
   d.named("PickPlaceSettings");
   d.about("What is set of a pick and place module.");
@@ -197,6 +208,8 @@ void describe(Description<BeltSettings>& d) {
   DescribeBelt(d);
   d.rule<&BeltSettings::turns>("must not lead beyond every: turn + turns - 1 is at most every",
                                [](const BeltSettings& s) { return TurnsFit(s); });
+  d.rule<&BeltSettings::upper_limit>("must lie above lower_limit, or both must be 0: the range of the belt alone",
+                                     [](const BeltSettings& s) { return RangeFits(s); });
 }
 
 void describe(Description<ConfigureBelt>& d) {

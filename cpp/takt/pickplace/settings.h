@@ -149,6 +149,10 @@ using ConfigureBelt = BeltSettingsOf<std::optional>;
 
 // The workpieces that a module takes in turn are among those of a round.
 bool TurnsFit(const BeltSettings& settings) noexcept;
+// It has a work range of its own; else that of the belt alone counts.
+bool HasRange(const BeltSettings& settings) noexcept;
+// It has none, or lower_limit lies below upper_limit.
+bool RangeFits(const BeltSettings& settings) noexcept;
 
 void describe(Enumeration<PathMode>&);
 void describe(Enumeration<TrackingMode>&);

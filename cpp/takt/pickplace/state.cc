@@ -136,6 +136,7 @@ void describe(Description<State>& d) {
   d.internal<&State::jog_sense>("1 or -1.");
   d.internal<&State::jog_axis>("That moves.");
   d.internal<&State::jog_end>("SW limits at which it ends.");
+  d.internal<&State::jog_released>("Its move was halted because its key was released.");
   d.internal<&State::homing>("Homing.");
   d.internal<&State::override_given>("To the group.");
   d.internal<&State::pulse>("Of the gripper.");

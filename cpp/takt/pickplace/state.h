@@ -146,6 +146,7 @@ struct State {
   std::int8_t jog_sense = 0;
   SelectAxis jog_axis = SelectAxis::kNone;
   group::Directions jog_end;  // SW limits at which the jog ends
+  bool jog_released = false;  // the jog's move was halted because its key was released
   HomingState homing;
   double override_given = 1;
   bool pulse = false;

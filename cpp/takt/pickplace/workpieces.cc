@@ -19,7 +19,6 @@ using kinematics::Frame;
 constexpr int kRounds = 3;
 // From the end of the time on a workpiece until the way up from it begins.
 constexpr double kCyclesBetween = 4;
-constexpr double kLeastOverride = 1e-3;
 constexpr double kSpeedsUp_s = 0.05;
 // Workpieces in a cycle: one after the other they can be reached, or leave the range.
 constexpr std::size_t kTriesWhileWaiting = 2;
@@ -29,7 +28,7 @@ const Belt& BeltOf(const Context& c, const Order& order) {
 }
 
 bool IsInside(const BeltSettings& own, double place) {
-  return own.lower_limit >= own.upper_limit || (place >= own.lower_limit && place <= own.upper_limit);
+  return !HasRange(own) || (place >= own.lower_limit && place <= own.upper_limit);
 }
 
 // PP-66: of the kind, the colour and the quality that are asked for.
@@ -54,8 +53,8 @@ bool MayTake(const Context& c, const Order& order, const State& s) {
   if (own.most_per_minute > 0 && last != 0 && since_s * own.most_per_minute < 60) return false;
   if (own.leave == 0) return true;
   const int sense = belt.state->sense;
-  const double end = own.lower_limit < own.upper_limit ? (sense > 0 ? own.upper_limit : own.lower_limit)
-                                                       : std::numeric_limits<double>::infinity();
+  const double end =
+      HasRange(own) ? (sense > 0 ? own.upper_limit : own.lower_limit) : std::numeric_limits<double>::infinity();
   const auto lies_behind = [&](const Object& object) {
     return object.state == conveyor::ObjectState::kVisible &&
            sense * (conveyor::PlaceOf(*belt.params, *belt.state, object) - end) > 0;
@@ -85,10 +84,6 @@ bool CountsLost(const State& s) {
   return s.state == PickPlaceState::kMovePp || s.state == PickPlaceState::kPreparingPath;
 }
 
-double OverrideOf(const State& s) {
-  return std::clamp(s.inputs.override_factor, kLeastOverride, 1.0);
-}
-
 // What a belt may do from now on. Between these it may change its speed as it likes.
 std::array<double, 2> SpeedsOf(const Belt& belt, const BeltSettings& own) {
   // One that speeds up goes on so for a while.
@@ -99,10 +94,10 @@ std::array<double, 2> SpeedsOf(const Belt& belt, const BeltSettings& own) {
 }
 
 // From the end of the time on a workpiece until the tool is up.
-double TimeUp(const Context& c, const Order& order, const BeltSettings& own, const State& s) {
+double TimeUp(const Context& c, const group::State& g, const Order& order, const BeltSettings& own) {
   // From rest to rest: it does not stop up there, so that there is some time to spare.
   const double lift_s = own.z_distance > 0 ? TimeFor(own.z_distance, order.ramps) : 0;
-  return kCyclesBetween * c.group.cycle.period_s + lift_s / OverrideOf(s);
+  return kCyclesBetween * c.group.cycle.period_s + lift_s / OverrideOf(g);
 }
 
 bool IsInside(const Belt& belt, const BeltSettings& own, double place) {
@@ -113,11 +108,11 @@ bool IsInside(const Belt& belt, const BeltSettings& own, double place) {
 // and goes up again, though the belt changes its speed with the acceleration that is reckoned with. As long as that
 // holds for where the pick is expected to end, it can be given up within the range (PP-61): what the belt does in the
 // time T of that is at most v T + a T²/2.
-bool IsSafe(const Context& c, const Order& order, double place, double speed, const State& s) {
+bool IsSafe(const Context& c, const group::State& g, const Order& order, double place, double speed) {
   const BeltSettings& own = order.own;
   const Belt& belt = BeltOf(c, order);
-  const double brake_s = own.z_distance > 0 ? 0.5 * TimeFor(2 * own.z_distance, order.ramps) / OverrideOf(s) : 0;
-  const double time_s = brake_s + TimeUp(c, order, own, s);
+  const double brake_s = own.z_distance > 0 ? 0.5 * TimeFor(2 * own.z_distance, order.ramps) / OverrideOf(g) : 0;
+  const double time_s = brake_s + TimeUp(c, g, order, own);
   const double travel = 0.5 * own.sudden_acceleration * time_s * time_s;
   const double ahead = own.highest_speed > 0 ? 0 : std::max(0.0, travel - std::max(0.0, -speed) * time_s);
   const double back = own.lowest_speed < 0 ? 0 : std::max(0.0, travel - std::max(0.0, speed) * time_s);
@@ -159,7 +154,7 @@ Meeting Meet(const Context& c, const group::State& g, const Order& order, const 
   const Place to{.system = group::CoordinateSystem::kPcs, .pcs = 1, .pose = GripOn(own), .aux1 = own.aux1_target};
   Meeting meeting;
   for (int i = 0; i < kRounds && meeting.error == ErrorId::kNone; ++i) {
-    meeting.object = ObjectAfter(c, BeltOf(c, order), object, speed * LongerBy(s) * meeting.time_s);
+    meeting.object = ObjectAfter(c, BeltOf(c, order), object, speed * LongerBy(g, s) * meeting.time_s);
     const Systems systems{c.group.mounting.base, start, meeting.object};
     const Profile profile = MakeProfile(from, to, shape, systems);
     meeting.error = profile.error;
@@ -175,9 +170,9 @@ bool IsReachableAt(double speed, const Context& c, const group::State& g, const 
   const BeltSettings& own = order.own;
   const Meeting meeting = Meet(c, g, order, object, speed, s);
   if (meeting.error != ErrorId::kNone) return false;
-  const double travel = speed * (LongerBy(s) * meeting.time_s + own.sync_time + TimeUp(c, order, own, s));
+  const double travel = speed * (LongerBy(g, s) * meeting.time_s + own.sync_time + TimeUp(c, g, order, own));
   const double end = conveyor::PlaceOf(*belt.params, *belt.state, object) + travel;
-  return IsSafe(c, order, end, speed, s) && CanBeAt(c, g, own, meeting.object, s) &&
+  return IsSafe(c, g, order, end, speed) && CanBeAt(c, g, own, meeting.object, s) &&
          CanBeAt(c, g, own, ObjectAfter(c, belt, object, travel), s);
 }
 
@@ -190,8 +185,8 @@ bool IsReachable(const Context& c, const group::State& g, const Order& order, co
 
 }  // namespace
 
-double LongerBy(const State& s) noexcept {
-  return s.slowness / OverrideOf(s);
+double LongerBy(const group::State& g, const State& s) noexcept {
+  return s.slowness / OverrideOf(g);
 }
 
 const Object* ChooseWorkpiece(const Context& c, const group::State& g, const Order& order, State& s) noexcept {
@@ -302,15 +297,15 @@ void RemoveWorkpiece(const Context& c, Order& order) noexcept {
   order.workpiece = 0;
 }
 
-bool StaysWithin(const Context& c, const Order& order, double time_s, const State& s) noexcept {
+bool StaysWithin(const Context& c, const group::State& g, const Order& order, double time_s) noexcept {
   const Belt& belt = BeltOf(c, order);
   const BeltSettings& own = order.own;
   const Object* object = conveyor::Find(*belt.state, order.workpiece);
   if (!object) return false;
   const double place = conveyor::PlaceOf(*belt.params, *belt.state, *object);
-  const double until_s = time_s + TimeUp(c, order, own, s);
+  const double until_s = time_s + TimeUp(c, g, order, own);
   return std::ranges::all_of(SpeedsOf(belt, own),
-                             [&](double speed) { return IsSafe(c, order, place + speed * until_s, speed, s); });
+                             [&](double speed) { return IsSafe(c, g, order, place + speed * until_s, speed); });
 }
 
 void CountLeft(const Context& c, Order& order, State& s) noexcept {
@@ -336,10 +331,10 @@ void CountLost(const Context& c, State& s) noexcept {
     s.refused_before[i] = refused;
     // Of the belts of a tracking mode alone.
     const bool ours = !s.loop.active || s.loop.pick_belt == i + 1 || s.loop.place_belt == i + 1;
+    const std::uint32_t known = std::min(lost - s.lost_before[i], s.counted_before[i]);
+    s.counted_before[i] -= known;
     if (counts && ours) {
-      const std::uint32_t known = std::min(lost - s.lost_before[i], s.counted_before[i]);
       const std::uint32_t fresh = lost - s.lost_before[i] - known;
-      s.counted_before[i] -= known;
       s.counters.too_late += fresh;
       s.counters.missed += fresh;
     }

@@ -135,7 +135,10 @@ Caps CapsAhead(const Network& network, const Start& start, double until, const P
   for (std::uint32_t i = 1; i < start.route->count && gone < until; ++i) {
     gone = AlongTrack(network[start.route->tracks[i]], 0, gone, until, pace, caps);
   }
-  while (road.closed && gone < until && !caps.cut) {
+  // A whole turn that adds no cap is like all turns behind it: long ways round a circle have few caps.
+  std::size_t before = 0;
+  while (road.closed && gone < until && !caps.cut && caps.count != before) {
+    before = caps.count;
     gone = start.direction > 0 ? AlongTrack(road, 0, gone, until, pace, caps)
                                : BackAlongTrack(road, road.length, gone, until, pace, caps);
   }

@@ -72,6 +72,7 @@ void describe(Description<Works>& d) {
   d.internal<&W::count>("So many wait.");
   d.internal<&W::question>("Number of the last question.");
   d.internal<&W::asked>("The first waits for its answer.");
+  d.internal<&W::point>("Where the track of that question starts or ends by a link.");
 }
 
 }  // namespace takt::track

@@ -73,6 +73,7 @@ struct Works {
   std::uint32_t count = 0;
   std::uint64_t question = 0;  // number of the last one
   bool asked = false;          // and the first order waits for its answer
+  planar::TrackPoint point;    // where the track of that question starts or ends by a link: parts may move meanwhile
 };
 
 void describe(Enumeration<OperationMode>&);

@@ -215,6 +215,7 @@ Tracks::Tracks(const std::vector<TrackParams>& all, const planar::Parts* on)
       end_nodes(all.size()),
       starts_at(2 * all.size()),
       ends_at(2 * all.size()),
+      reached(all.size()),
       usages(all.size()),
       desk(all.size(), parts) {
   for (const TrackParams& p : all) part_of.push_back(PartOf(p, parts));

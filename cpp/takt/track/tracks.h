@@ -62,8 +62,9 @@ struct Tracks {
   std::vector<std::uint32_t> end_nodes;
   std::vector<std::uint32_t> starts_at;  // by node: so many tracks
   std::vector<std::uint32_t> ends_at;
-  std::uint64_t changes = 0;  // of ways and links, counted
-  std::vector<Usage> usages;  // of each
+  std::uint64_t changes = 0;          // of ways and links, counted
+  std::vector<std::uint8_t> reached;  // by track: scratch of a search through links
+  std::vector<Usage> usages;          // of each
 
   Desk desk;
   bool sent = false;  // the question has found room in the queue

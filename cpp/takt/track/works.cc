@@ -34,6 +34,26 @@ bool IsInUse(const Tracks& t, std::uint32_t track) {
                              [&](const State& s) { return Holds(s.starts_from, track) || Holds(s.ends_at, track); });
 }
 
+// Whether links lead from one track to another one, over any number of others.
+bool LeadsTo(Tracks& t, std::uint32_t from, std::uint32_t to) {
+  std::ranges::fill(t.reached, std::uint8_t{0});
+  t.reached[from] = 1;
+  bool changed = true;
+  while (changed && t.reached[to] == 0) {
+    changed = false;
+    for (std::size_t i = 0; i < t.states.size(); ++i) {
+      if (t.reached[i] == 0) continue;
+      for (const Links* links : {&t.states[i].starts_from, &t.states[i].ends_at}) {
+        for (const std::uint32_t other : All(*links)) {
+          changed |= t.reached[other] == 0;
+          t.reached[other] = 1;
+        }
+      }
+    }
+  }
+  return t.reached[to] != 0;
+}
+
 // More tracks would start or end there than a network can link at one point.
 bool IsCrowded(const Tracks& t, std::uint32_t a, std::uint32_t b) {
   const auto too_many = [&](const std::vector<std::uint32_t>& at) { return a != b && at[a] + at[b] > planar::kLinks; };
@@ -43,10 +63,19 @@ bool IsCrowded(const Tracks& t, std::uint32_t a, std::uint32_t b) {
 // What is known of an order before anything is made.
 struct Look {
   Problem problem = Problem::kNone;
-  bool makes = false;          // the track has to be made anew ...
-  bool may_be_empty = false;   // ... and need not have a length then
+  bool makes = false;          // the track has to be made anew
   planar::TrackPoint point{};  // where it is to start or end
 };
+
+// With this order the track need not have a length.
+bool MayBeEmpty(OrderKind kind) {
+  return kind != OrderKind::kCloseLoop && kind != OrderKind::kEndAt;
+}
+
+// Indices of the positions of the parts of both tracks where a link is in force; 0: wherever they meet.
+std::pair<std::uint32_t, std::uint32_t> PositionsOf(const Order& order) {
+  return order.only_there ? std::pair(order.own_position, order.other_position) : std::pair(0u, 0u);
+}
 
 Look LookAtLink(const Tracks& t, const Order& order) {
   const State& s = t.states[order.track];
@@ -58,12 +87,13 @@ Look LookAtLink(const Tracks& t, const Order& order) {
   if (!other) return {Problem::kOtherEmpty};
   if (other->closed) return {Problem::kOtherClosed};
   if (sketch.closed) return {Problem::kLinked};
-  if (links.count == kLinks && !Holds(links, order.other)) return {Problem::kTooMany};
+  const auto [own_position, other_position] = PositionsOf(order);
+  if (links.count == kLinks && !Holds(links, order.other, own_position, other_position)) return {Problem::kTooMany};
   if (IsCrowded(t, starts ? t.start_nodes[order.track] : t.end_nodes[order.track],
                 starts ? t.end_nodes[order.other] : t.start_nodes[order.other])) {
     return {Problem::kTooMany};
   }
-  Look look{.makes = true, .may_be_empty = starts, .point = planar::At(*other, starts ? other->length : 0)};
+  Look look{.makes = true, .point = planar::At(*other, starts ? other->length : 0)};
   look.problem = Meet(t.parts, {t.part_of[order.other], order.other_position},
                       {t.part_of[order.track], order.own_position}, look.point);
   if (look.problem != Problem::kNone) return look;
@@ -78,29 +108,28 @@ Look LookAtLink(const Tracks& t, const Order& order) {
   return look;
 }
 
-Look LookAt(const Tracks& t, const Order& order) {
+Look LookAt(Tracks& t, const Order& order) {
   const Sketch& sketch = t.sketches[order.track];
   const bool links = order.kind == OrderKind::kStartFrom || order.kind == OrderKind::kEndAt;
-  Look look{.makes = true, .may_be_empty = true};
+  Look look{.makes = true};
   if (links) {
     look = LookAtLink(t, order);
+    const bool only_links = look.problem == Problem::kNone && !look.makes;
+    if (only_links && LeadsTo(t, order.other, order.track)) return {Problem::kInUse};
     if (look.problem != Problem::kNone || !look.makes) return look;
   }
   if (IsInUse(t, order.track)) return {Problem::kInUse};
   if (links) return look;
   if (order.kind == OrderKind::kClear) return {};
   if (sketch.closed) return {Problem::kClosed};
-  if (order.kind == OrderKind::kCloseLoop) {
-    look.may_be_empty = false;
-    return look;
-  }
+  if (order.kind == OrderKind::kCloseLoop) return look;
   if (sketch.to) return {Problem::kEnded};
   if (sketch.count == kElements) return {Problem::kTooMany};
   return look;
 }
 
-// What the track is given by with this order.
-Sketch With(const Order& order, const Look& look, Sketch sketch) {
+// What the track is given by with this order; a link leads to `point`, in the coordinates of the track's part.
+Sketch With(const Order& order, const planar::TrackPoint& point, Sketch sketch) {
   switch (order.kind) {
     case OrderKind::kAppend:
       sketch.elements[sketch.count++] = order.element;
@@ -112,10 +141,10 @@ Sketch With(const Order& order, const Look& look, Sketch sketch) {
       sketch = {};
       break;
     case OrderKind::kStartFrom:
-      sketch.from = look.point;
+      sketch.from = point;
       break;
     case OrderKind::kEndAt:
-      sketch.to = look.point;
+      sketch.to = point;
       break;
   }
   return sketch;
@@ -136,8 +165,7 @@ void AddLink(Tracks& t, const Order& order) {
   State& s = t.states[order.track];
   if (order.kind != OrderKind::kStartFrom && order.kind != OrderKind::kEndAt) return;
   Links& links = order.kind == OrderKind::kStartFrom ? s.starts_from : s.ends_at;
-  const std::uint32_t own = order.only_there ? order.own_position : 0;
-  const std::uint32_t other = order.only_there ? order.other_position : 0;
+  const auto [own, other] = PositionsOf(order);
   if (!Holds(links, order.other, own, other) && links.count < kLinks) {
     links.tracks[links.count] = order.other;
     links.own_positions[links.count] = own;
@@ -180,7 +208,7 @@ void Send(Tracks& t) {
   const Order& order = t.works.orders[t.works.first];
   const Sketch& sketch = t.sketches[order.track];
   t.sent = t.desk.questions.TryPush({t.works.question, order.track, t.part_of[order.track],
-                                     LargestOn(t.params[order.track]), With(order, LookAt(t, order), sketch)});
+                                     LargestOn(t.params[order.track]), With(order, t.works.point, sketch)});
 }
 
 // Where a track starts or ends, in the coordinates of its part; one that has no length yet where it is to start.
@@ -225,6 +253,7 @@ void StepWorks(const Context& c) noexcept {
     if (look.problem == Problem::kNone && look.makes) {
       ++w.question;
       w.asked = true;
+      w.point = look.point;
       t.sent = false;
       break;
     }
@@ -239,12 +268,11 @@ bool TakeAnswer(const Context& c, std::uint32_t track, const TrackMade& made) no
   Works& w = t.works;
   const Order order = w.orders[w.first];
   if (!w.asked || made.number != w.question || track != order.track) return false;
-  const Look look = LookAt(t, order);
-  const bool empty = made.problem == Problem::kEmpty && look.may_be_empty;
+  const bool empty = made.problem == Problem::kEmpty && MayBeEmpty(order.kind);
   if (made.problem == Problem::kNone || empty) {
     const Delivery way = empty ? Delivery{} : Fetch(t.desk, made.number);
     if (!way.way && !empty) return false;
-    t.SetSketch(track, With(order, look, t.sketches[track]));
+    t.SetSketch(track, With(order, w.point, t.sketches[track]));
     Use(t, track, way);
     AddLink(t, order);
   }

@@ -10,8 +10,8 @@ namespace {
 using kinematics::LinkInfo;
 
 // Names of links share their beginnings: lower_arm_1_a belongs to lower_arm_1 and to lower_arm.
-bool Means(const std::string& name, const std::string& link) {
-  return link == name || link.starts_with(name + "_");
+bool BeginsWith(const std::string& longer, const std::string& name) {
+  return longer.starts_with(name + "_");
 }
 
 std::string NotOneOf(const std::string& found, std::string expected, const std::vector<std::string>& names) {
@@ -26,7 +26,7 @@ std::vector<std::size_t> LinksMeantBy(const std::string& name, const std::vector
     if (links[link].name == name) return {link};
   }
   for (std::size_t link = 0; link < links.size(); ++link) {
-    if (Means(name, links[link].name)) on.push_back(link);
+    if (BeginsWith(links[link].name, name)) on.push_back(link);
   }
   return on;
 }
@@ -95,16 +95,16 @@ class Maker {
   }
 
   bool TakeIgnored() {
-    std::vector<std::string> names = LinkNames();
-    for (const Obstacle& obstacle : cell_.obstacles) names.push_back(obstacle.name);
+    names_ = LinkNames();
+    for (const Obstacle& obstacle : cell_.obstacles) names_.push_back(obstacle.name);
     for (const std::string& name : given_names_) {
-      if (!name.empty()) names.push_back(name);
+      if (!name.empty()) names_.push_back(name);
     }
     for (std::size_t i = 0; i < params_.ignore.size(); ++i) {
       for (const std::string& name : params_.ignore[i]) {
-        if (std::none_of(names.begin(), names.end(), [&](const std::string& known) { return Means(name, known); })) {
+        if (std::none_of(names_.begin(), names_.end(), [&](const std::string& known) { return Means(name, known); })) {
           return Refuse("ignore[" + std::to_string(i) + "]",
-                        NotOneOf(name, "the name of an obstacle, a link or a part of the gripper", names));
+                        NotOneOf(name, "the name of an obstacle, a link or a part of the gripper", names_));
         }
       }
     }
@@ -115,6 +115,12 @@ class Maker {
     std::vector<std::string> names;
     for (const LinkInfo& link : links_) names.push_back(link.name);
     return names;
+  }
+
+  // `name` of `ignore` stands for what is called so; only where nothing is, for all whose names begin with it.
+  bool Means(const std::string& name, const std::string& known) const {
+    const bool exact = std::find(names_.begin(), names_.end(), name) != names_.end();
+    return exact ? known == name : BeginsWith(known, name);
   }
 
   bool Called(const std::string& name, std::size_t body) const {
@@ -174,6 +180,7 @@ class Maker {
   std::vector<LinkInfo> links_;
   std::vector<Part> parts_;
   std::vector<std::string> given_names_;  // of the bodies; empty: none
+  std::vector<std::string> names_;        // that `ignore` may refer to
   Cell cell_;
   std::string path_;
   std::string problem_;

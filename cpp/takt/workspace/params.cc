@@ -101,7 +101,8 @@ void describe(Description<WorkspaceParams>& d) {
   d.rule<&W::gripper>("must each have a name and no `link`",
                       [](const W& w) { return std::all_of(w.gripper.begin(), w.gripper.end(), Named); });
   d.defaulted<&W::ignore>(
-      "Pairs that may meet, by name: of obstacles, of links or what several begin with, of parts of the gripper.");
+      "Pairs that may meet, by name: of obstacles, of links, of parts of the gripper. A name that none of them has "
+      "means all whose names begin with it and an underscore.");
   d.defaulted<&W::self_collisions>(
       "Links and gripper are also checked against one another. Neighbours in the mechanism are not, nor what is nearer "
       "than the margin with all axes of the mechanism at 0.");

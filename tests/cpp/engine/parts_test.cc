@@ -86,6 +86,36 @@ TEST(Parts, TheLiftOfTheManual) {
   EXPECT_EQ(rig.Part("two").state, ObjectState::kDisabled);
 }
 
+// PL-20, PL-33: a part that leaves while a linked track is made does not change where the track starts.
+TEST(Parts, LeaveWhileALinkIsMade) {
+  PartsRig rig(R"(
+name: side by side
+axes: []
+coordinate_systems: [{name: plane}]
+parts:
+  - {name: left, positions: [{coordinate_system: plane}]}
+  - name: right
+    positions: [{coordinate_system: plane, x: 240}, {coordinate_system: plane, y: 500}]
+    travel_time_s: 0.1
+tracks:
+  - {name: from, part: left, elements: [{from: {x: 40, y: 120}, to: {x: 240, y: 120}}]}
+  - {name: own, part: right}
+)");
+  rig.Run();
+  const Ticket link = rig.Give("own", "start_from_track", "{track: from}");
+  rig.engine.RunCycle();
+  const Ticket leaving = rig.Give("right", "activate_position", "{index: 2}");
+  for (int i = 0; i < 3; ++i) rig.engine.RunCycle();
+  EXPECT_EQ(rig.Part("right").position_index, 0u);
+  rig.engine.MakeTracks();  // only now
+  EXPECT_EQ(rig.End(link).state, FeedbackState::kDone);
+  rig.End(leaving);
+  EXPECT_EQ(rig.Do("right", "activate_position", "{index: 1}").state, FeedbackState::kDone);
+  EXPECT_EQ(rig.Do("own", "append_line", "{start_x: 0, start_y: 120, end_x: 200, end_y: 120, reference: right}").state,
+            FeedbackState::kDone);
+  EXPECT_NEAR(rig.engine.tracks().outputs[1].length, 200, 1e-9);
+}
+
 // A simulated lift is nowhere for as long as it takes.
 TEST(Parts, ALiftTakesItsTime) {
   PartsRig rig(With(kLift, "initial_position: 2", "initial_position: 2\n    travel_time_s: 0.05"));
