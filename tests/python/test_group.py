@@ -89,6 +89,21 @@ def test_circles_by_centre_turn_in_the_system_of_the_command(
             assert max(y_sense * places[1]) == pytest.approx(50, abs=1e-3)
 
 
+def test_a_deceleration_left_out_is_that_of_the_group() -> None:
+    """GR-20: whatever acceleration the command gives."""
+    machine = PORTAL.replace("acceleration: 3000, jerk: 60000}", "acceleration: 3000, deceleration: 500, jerk: 60000}")
+    with takt.Engine(machine) as engine:
+        gantry = engine.group("gantry")
+        gantry.power().wait()
+        gantry.enable().wait()
+        for given, least in ((None, -500), (1500, -1500)):
+            with engine.record() as recorder:
+                gantry.move_linear_relative(x=100, acceleration=2000, deceleration=given).wait()
+            along = np.array(recorder.recording["gantry"]["path_acceleration"])
+            assert 1800 < along.max() < 2000.1
+            assert least - 0.1 < along.min() < 0.9 * least
+
+
 def test_product_systems_are_published() -> None:
     """GR-10: sixteen, as they were given; also in recordings."""
     with portal() as (engine, gantry):
