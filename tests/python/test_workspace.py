@@ -217,6 +217,45 @@ def test_a_mesh_stands_in_the_way(tmp_path: Path) -> None:
         assert robot.in_the_way == ("finger", "wall")
 
 
+def text_wall(head: str = "solid wall", number: str = "{}") -> str:
+    """The wall of `write_wall` in mm, as text."""
+    corners = [(100, -300, -1200), (100, 300, -1200), (100, 300, -850), (100, -300, -850)]
+    lines = [head]
+    for triangle in ((0, 1, 2), (0, 2, 3)):
+        lines += ["facet normal 1 0 0", "outer loop"]
+        lines += ["vertex " + " ".join(number.format(c) for c in corners[i]) for i in triangle]
+        lines += ["endloop", "endfacet"]
+    return "\n".join([*lines, "endsolid wall", ""])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        text_wall(number="{:+e}"),
+        text_wall().upper(),
+        text_wall("Solid wall").replace("vertex", "Vertex"),
+        text_wall(" \n solid wall"),
+        "\ufeff" + text_wall(),
+    ],
+    ids=["signs", "capitals", "mixed", "blanks", "mark"],
+)
+def test_text_meshes_as_programs_write_them(text: str, tmp_path: Path) -> None:
+    """GR-13: numbers with a +, keywords of any case, blanks or a byte order mark in front."""
+    (tmp_path / "wall.stl").write_text(text, encoding="utf-8")
+    with cell(WALL.replace("scale: 1000", "scale: 1"), folder=tmp_path) as robot:
+        robot.move_linear_absolute(y=60).wait()
+        assert refusal(robot.move_linear_absolute(x=200)).startswith("finger meets wall ")
+
+
+@pytest.mark.parametrize("number", ["++{}", "+-{}", "+"])
+def test_text_meshes_with_bad_numbers(number: str, tmp_path: Path) -> None:
+    """GR-13: one sign at most."""
+    (tmp_path / "wall.stl").write_text(text_wall(number=number))
+    wrong = "line 4: expected three numbers behind 'vertex'"
+    with pytest.raises(takt.ConfigError, match=wrong), cell(WALL, folder=tmp_path):
+        pass
+
+
 def test_virtual_time_is_the_same_each_time() -> None:
     hashes = []
     for _ in range(2):
