@@ -4,6 +4,7 @@
 #include <map>
 
 #include "takt/core/problem.h"
+#include "takt/kinematics/links.h"
 
 namespace takt::workspace {
 namespace {
@@ -38,15 +39,16 @@ std::string WhyNot(const UrdfShape& shape) {
 
 }  // namespace
 
-UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const std::string& urdf_folder,
-                      kinematics::UrdfPurpose purpose) {
+UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const kinematics::Kinematics& kinematics,
+                      const std::string& urdf_folder, kinematics::UrdfPurpose purpose) {
   UrdfLinks out;
+  const std::vector<kinematics::LinkInfo> links = kinematics::LinksOf(kinematics);
   std::map<std::string, int> named;
   for (const UrdfShape& shape : kinematics::ReadUrdfShapes(serial.urdf, serial.base, serial.tip, purpose)) {
     SolidParams& solid = out.links.emplace_back();
-    solid.link = shape.fixed;
+    solid.link = links[shape.axis].name;
     solid.pose = kinematics::ToPose(shape.pose);
-    if (const int count = ++named[shape.link]; shape.link != shape.fixed || count > 1) {
+    if (const int count = ++named[shape.link]; shape.link != solid.link || count > 1) {
       solid.name = shape.link + (count > 1 ? "#" + std::to_string(count) : "");
     }
     switch (shape.kind) {
