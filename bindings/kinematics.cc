@@ -373,7 +373,7 @@ std::vector<std::string> UrdfSolids(const std::string& urdf, const std::string& 
   std::vector<std::string> solids;
   const kinematics::MakeResult made = kinematics::Make(params);
   if (!made.kinematics) return solids;
-  const workspace::UrdfLinks urdf_links = workspace::LinksOfUrdf(*params.serial, *made.kinematics, folder, purpose);
+  const workspace::UrdfLinks urdf_links = workspace::LinksOfUrdf(*params.serial, *made.kinematics, "", folder, purpose);
   for (const workspace::SolidParams& solid : urdf_links.links)
     solids.push_back(ToJson(TypeOf<workspace::SolidParams>(), &solid).dump());
   return solids;

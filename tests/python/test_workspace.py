@@ -438,6 +438,20 @@ def test_meshes_of_urdf(tmp_path: Path) -> None:
         assert "groups[0].workspace.links" in raised.value.problems[0]
 
 
+def test_meshes_of_a_package_above_the_machine_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """GR-13: package://NAME also where NAME is the folder of the machine file, and the URDF is named from there."""
+    package = tmp_path / "my_robot"
+    (package / "urdf").mkdir(parents=True)
+    (package / "meshes").mkdir()
+    write_wall(package / "meshes" / "wall.stl")
+    (package / "urdf" / "arm.urdf").write_text(urdf_arm("package://my_robot/meshes/wall.stl"))
+    machine = package / "m.yaml"
+    machine.write_text(URDF_CELL.replace("OBSTACLE", "300").replace("sub/", "urdf/"))
+    takt.Engine(machine).close()
+    monkeypatch.chdir(package)
+    takt.Engine("m.yaml").close()
+
+
 def slides(one: str, two: str, more: str = "") -> str:
     """A ball carried by a slide along x, a second one at z 500 by a slide along y on it; `tcp` is fixed to that."""
 

@@ -82,7 +82,7 @@ class Loader {
     } else if (group.workspace) {
       if (params.serial && group.workspace->links.empty()) {
         workspace::UrdfLinks urdf =
-            workspace::LinksOfUrdf(*params.serial, *made.kinematics, urdf_folder);
+            workspace::LinksOfUrdf(*params.serial, *made.kinematics, Folder().string(), urdf_folder);
         group.workspace->links = std::move(urdf.links);
         if (!urdf.problem.empty()) return Add(path + ".workspace.links", urdf.problem);
       }
