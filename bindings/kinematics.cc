@@ -368,10 +368,13 @@ std::vector<std::string> ReasonTexts() {
 std::vector<std::string> UrdfSolids(const std::string& urdf, const std::string& base, const std::string& tip,
                                     const std::string& folder, bool visual) {
   const auto purpose = visual ? kinematics::UrdfPurpose::kVisual : kinematics::UrdfPurpose::kCollision;
-  std::string why;
+  kinematics::KinematicsParams params;
+  params.serial = {urdf, base, tip};
   std::vector<std::string> solids;
-  if (!kinematics::ReadUrdf(urdf, base, tip, why)) return solids;
-  for (const workspace::SolidParams& solid : workspace::LinksOfUrdf({urdf, base, tip}, folder, purpose).links)
+  const kinematics::MakeResult made = kinematics::Make(params);
+  if (!made.kinematics) return solids;
+  const workspace::UrdfLinks urdf_links = workspace::LinksOfUrdf(*params.serial, *made.kinematics, "", folder, purpose);
+  for (const workspace::SolidParams& solid : urdf_links.links)
     solids.push_back(ToJson(TypeOf<workspace::SolidParams>(), &solid).dump());
   return solids;
 }

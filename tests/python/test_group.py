@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import numpy as np
@@ -56,6 +57,52 @@ def test_moves_along_a_line_and_is_recorded() -> None:
         for axis in "xyz":
             assert takt.expect.within_limits(made, axis)
             assert takt.expect.continuous(made, axis)
+
+
+@pytest.mark.parametrize(
+    ("base", "system", "transform", "y_sense"),
+    [
+        ("", "mcs", {}, 1),
+        ("", "pcs", {"a": 180}, -1),
+        ("", "pcs", {"b": 90}, 1),
+        ("base: {x: 1000, a: 180}", "wcs", {}, -1),
+    ],
+)
+def test_circles_by_centre_turn_in_the_system_of_the_command(
+    base: str, system: str, transform: dict[str, float], y_sense: int
+) -> None:
+    """GR-20: without a normal, counterclockwise is about Z of that system: a quarter of a circle and a half of one."""
+    with takt.Engine(PORTAL.replace("base: {x: 1000, c: 90}", base)) as engine:
+        gantry = engine.group("gantry")
+        gantry.power().wait()
+        gantry.enable().wait()
+        if transform:
+            gantry.set_cartesian_transform(**transform).wait()
+        for x, y, turn in ((-50, 50, math.pi / 2), (-100, 0, math.pi)):
+            gantry.move_linear_absolute(x=0, y=0, z=0).wait()
+            with engine.record() as recorder:
+                engine.step()
+                arc = {"circ_mode": "center", "path_choice": "counterclockwise", "aux_x": -50, "x": x, "y": y}
+                gantry.move_circular_relative(coordinate_system=system, **arc).wait()
+            places = np.array([recorder.recording["gantry"][name] for name in "xyz"])
+            length = np.linalg.norm(np.diff(places, axis=1), axis=0).sum()
+            assert length == pytest.approx(50 * turn, rel=1e-3)
+            assert max(y_sense * places[1]) == pytest.approx(50, abs=1e-3)
+
+
+def test_a_deceleration_left_out_is_that_of_the_group() -> None:
+    """GR-20: whatever acceleration the command gives."""
+    machine = PORTAL.replace("acceleration: 3000, jerk: 60000}", "acceleration: 3000, deceleration: 500, jerk: 60000}")
+    with takt.Engine(machine) as engine:
+        gantry = engine.group("gantry")
+        gantry.power().wait()
+        gantry.enable().wait()
+        for given, least in ((None, -500), (1500, -1500)):
+            with engine.record() as recorder:
+                gantry.move_linear_relative(x=100, acceleration=2000, deceleration=given).wait()
+            along = np.array(recorder.recording["gantry"]["path_acceleration"])
+            assert 1800 < along.max() < 2000.1
+            assert least - 0.1 < along.min() < 0.9 * least
 
 
 def test_product_systems_are_published() -> None:

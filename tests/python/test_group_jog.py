@@ -187,6 +187,21 @@ def test_speeds_are_held_to_those_of_jogs() -> None:
             jog.wait()
 
 
+def test_a_deceleration_left_out_is_that_of_the_group() -> None:
+    """GR-48: whatever acceleration the jog gives."""
+    machine = PORTAL.replace("acceleration: 3000, jerk: 60000}", "acceleration: 3000, deceleration: 500, jerk: 60000}")
+    with takt.Engine(machine) as engine:
+        gantry = ready(engine)
+        with engine.record() as recorder:
+            gantry.jog(x=100, acceleration=2000)
+            engine.run(0.3)
+            gantry.jog()
+            engine.run(0.5)
+        along = np.array(recorder.recording["gantry"]["path_acceleration"])
+        assert 1800 < along.max() < 2000.1
+        assert -500.1 < along.min() < -450
+
+
 def test_another_speed_takes_over_without_a_stop_another_direction_behind_one() -> None:
     with portal() as (engine, group):
         with engine.record() as recorder:

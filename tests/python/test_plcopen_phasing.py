@@ -65,6 +65,21 @@ def test_how_far_a_shift_is(s: takt.Engine) -> None:
     assert (y.phase_shift, y.covered_phase_shift) == (0, 0)
 
 
+def test_a_deceleration_left_out_is_that_of_the_axis() -> None:
+    """AX-111: whatever acceleration the command gives."""
+    with takt.Engine(MACHINE.replace("acceleration: 6000,", "acceleration: 6000, deceleration: 1000,")) as engine:
+        for axis in engine.axes.values():
+            axis.power().wait()
+        y = engine.axis("y")
+        y.gear_in(master="x")
+        engine.run(0.1)
+        with engine.record() as recorder:
+            y.phasing_relative(phase_shift=20, velocity=100, acceleration=3000).wait()
+        acceleration = recorder.recording["y"]["set_acceleration"]
+        assert 2000 < max(acceleration) < 3000.1
+        assert -1000.1 < min(acceleration) < -900
+
+
 def test_what_is_refused_covers_nothing(s: takt.Engine) -> None:
     """AX-111: in no state but in a coupling to one master; values that are none."""
     y = s.axis("y")

@@ -311,6 +311,16 @@ def test_urdf_has_its_meshes(tmp_path: Path) -> None:
     assert all(solid["kind"] != "mesh" for solid in nodes["robot.upper"]["solids"])  # a simple one in its place
 
 
+def test_urdf_has_its_meshes_seen_from_a_relative_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """PY-27: of a machine file that is named by a relative path."""
+    (tmp_path / "arm" / "meshes").mkdir(parents=True)
+    (tmp_path / "arm" / "two.urdf").write_text(URDF)
+    (tmp_path / "arm" / "meshes" / "tip.stl").write_text(STL)
+    monkeypatch.chdir(tmp_path)
+    text = one_group(KINDS["serial"]).replace(json.dumps({"urdf": URDF}), "{urdf: arm/two.urdf}")
+    assert "mesh" in kinds(described(text, Path()))
+
+
 def test_urdf_has_what_is_to_be_seen(tmp_path: Path) -> None:
     """PY-27: visuals before shapes for collisions, those before simple solids; of each link for itself."""
     (tmp_path / "cover.stl").write_text(STL)

@@ -231,6 +231,45 @@ def test_a_mesh_stands_in_the_way(tmp_path: Path) -> None:
         assert robot.in_the_way == ("finger", "wall")
 
 
+def text_wall(head: str = "solid wall", number: str = "{}") -> str:
+    """The wall of `write_wall` in mm, as text."""
+    corners = [(100, -300, -1200), (100, 300, -1200), (100, 300, -850), (100, -300, -850)]
+    lines = [head]
+    for triangle in ((0, 1, 2), (0, 2, 3)):
+        lines += ["facet normal 1 0 0", "outer loop"]
+        lines += ["vertex " + " ".join(number.format(c) for c in corners[i]) for i in triangle]
+        lines += ["endloop", "endfacet"]
+    return "\n".join([*lines, "endsolid wall", ""])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        text_wall(number="{:+e}"),
+        text_wall().upper(),
+        text_wall("Solid wall").replace("vertex", "Vertex"),
+        text_wall(" \n solid wall"),
+        "\ufeff" + text_wall(),
+    ],
+    ids=["signs", "capitals", "mixed", "blanks", "mark"],
+)
+def test_text_meshes_as_programs_write_them(text: str, tmp_path: Path) -> None:
+    """GR-13: numbers with a +, keywords of any case, blanks or a byte order mark in front."""
+    (tmp_path / "wall.stl").write_text(text, encoding="utf-8")
+    with cell(WALL.replace("scale: 1000", "scale: 1"), folder=tmp_path) as robot:
+        robot.move_linear_absolute(y=60).wait()
+        assert refusal(robot.move_linear_absolute(x=200)).startswith("finger meets wall ")
+
+
+@pytest.mark.parametrize("number", ["++{}", "+-{}", "+"])
+def test_text_meshes_with_bad_numbers(number: str, tmp_path: Path) -> None:
+    """GR-13: one sign at most."""
+    (tmp_path / "wall.stl").write_text(text_wall(number=number))
+    wrong = "line 4: expected three numbers behind 'vertex'"
+    with pytest.raises(takt.ConfigError, match=wrong), cell(WALL, folder=tmp_path):
+        pass
+
+
 def test_virtual_time_is_the_same_each_time() -> None:
     hashes = []
     for _ in range(2):
@@ -411,3 +450,89 @@ def test_meshes_of_urdf(tmp_path: Path) -> None:
         with pytest.raises(takt.ConfigError, match=problem) as raised:
             takt.Engine(machine)
         assert "groups[0].workspace.links" in raised.value.problems[0]
+
+
+def test_meshes_of_a_package_above_the_machine_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """GR-13: package://NAME also where NAME is the folder of the machine file, and the URDF is named from there."""
+    package = tmp_path / "my_robot"
+    (package / "urdf").mkdir(parents=True)
+    (package / "meshes").mkdir()
+    write_wall(package / "meshes" / "wall.stl")
+    (package / "urdf" / "arm.urdf").write_text(urdf_arm("package://my_robot/meshes/wall.stl"))
+    machine = package / "m.yaml"
+    machine.write_text(URDF_CELL.replace("OBSTACLE", "300").replace("sub/", "urdf/"))
+    takt.Engine(machine).close()
+    monkeypatch.chdir(package)
+    takt.Engine("m.yaml").close()
+
+
+def slides(one: str, two: str, more: str = "") -> str:
+    """A ball carried by a slide along x, a second one at z 500 by a slide along y on it; `tcp` is fixed to that."""
+
+    def link(name: str, z: float) -> str:
+        ball = f'<origin xyz="0 0 {z}"/><geometry><sphere radius="0.02"/></geometry>'
+        return f'<link name="{name}"><collision>{ball}</collision></link>'
+
+    def slide(parent: str, child: str, axis: str) -> str:
+        ends = f'<parent link="{parent}"/><child link="{child}"/><axis xyz="{axis}"/>'
+        limit = '<limit lower="-2" upper="2" effort="1" velocity="1"/>'
+        return f'<joint name="to {child}" type="prismatic">{ends}{limit}</joint>'
+
+    links = f'<link name="root"/>{link(one, 0)}{link(two, 0.5)}<link name="tcp"/>'
+    joints = slide("root", one, "1 0 0") + slide(one, two, "0 1 0")
+    fixed = f'<joint name="f" type="fixed"><parent link="{two}"/><child link="tcp"/><origin xyz="0 0 0.2"/></joint>'
+    return f'<robot name="r">{links}{joints}{fixed}{more}</robot>'
+
+
+@contextmanager
+def slides_cell(urdf: str, posts: str = "") -> Iterator[takt.Group]:
+    limits = "limits: {velocity: 500, acceleration: 5000, jerk: 100000}"
+    with takt.Engine(f"""\
+name: slides
+axes:
+  - {{name: x, {limits}}}
+  - {{name: y, {limits}}}
+groups:
+  - name: robot
+    axes: [x, y]
+    kinematics: {{serial: {{urdf: {json.dumps(urdf, ensure_ascii=False)}, base: root, tip: tcp}}}}
+    path: {{velocity: 100, acceleration: 1000, jerk: 10000}}
+    workspace: {{margin: 1, obstacles: [{posts}]}}
+""") as engine:
+        robot = engine.group("robot")
+        robot.power().wait()
+        robot.enable().wait()
+        yield robot
+
+
+LONG = "x" + "\u00e4" * 30  # 61 bytes: longer than a name of Takt, which would end within a character
+
+
+@pytest.mark.parametrize(
+    ("one", "two"),
+    [("one", "two"), ("one", "tool"), ("base", "two"), ("base", "link_1"), ("tool", "base"), (LONG, LONG + "2")],
+)
+def test_shapes_of_urdf_belong_to_links_of_any_name(one: str, two: str) -> None:
+    """GR-13: of base and tool, too, which mean something else here, and of long ones."""
+    posts = (
+        "{name: first, sphere: {radius: 20}, pose: {x: 150}}, "
+        "{name: second, sphere: {radius: 20}, pose: {y: 150, z: 500}}"
+    )
+    with slides_cell(slides(one, two), posts) as robot:
+        assert refusal(robot.move_direct_absolute(coordinate_system="acs", a1=300)).startswith(f"{one} meets first ")
+        assert refusal(robot.move_direct_absolute(coordinate_system="acs", a2=300)).startswith(f"{two} meets second ")
+        robot.move_direct_absolute(coordinate_system="acs", a1=-300, a2=-300).wait()
+
+
+def test_shapes_of_urdf_above_the_base_stand_still() -> None:
+    """GR-13: a box 200 mm along x, on a table to which a fixed joint holds the base, turned by 90 deg."""
+    table = (
+        '<link name="table"><collision><origin xyz="0.2 0.2 0.4"/><geometry><box size="0.05 0.05 0.05"/></geometry>'
+        '</collision></link><joint name="table" type="fixed"><parent link="table"/><child link="root"/>'
+        '<origin xyz="0.2 0 -0.1" rpy="0 0 1.5707963267948966"/></joint>'
+    )
+    with slides_cell(slides("one", "two", table)) as robot:
+        assert refusal(robot.move_direct_absolute(coordinate_system="acs", a1=300)).startswith("table meets two ")
+        assert robot.blocked_at == pytest.approx(154, abs=0.6)
+        robot.move_direct_absolute(coordinate_system="acs", a2=100).wait()
+        robot.move_direct_absolute(coordinate_system="acs", a1=300).wait()

@@ -395,8 +395,7 @@ Status ShiftPhase(const Context& c, Ticket ticket, bool relative, double shift, 
   const double ratio = std::max(std::abs(k.law.terms[0].ratio), 1e-6);
   const Limits own = c.params.planner_limits();
   const Limits limits = {velocity.value_or(own.velocity / ratio), acceleration.value_or(own.acceleration / ratio),
-                         deceleration.value_or(acceleration.value_or(own.deceleration / ratio)),
-                         jerk.value_or(own.jerk / ratio)};
+                         deceleration.value_or(own.deceleration / ratio), jerk.value_or(own.jerk / ratio)};
   const KinematicState from = k.phase.At(static_cast<double>(c.cycle.count - 1 - k.phase_start) * c.cycle.period_s);
   trajectory::Profile profile;
   const double target = relative ? k.phase.end().position + shift : shift;

@@ -81,7 +81,8 @@ class Loader {
                               " axes of the kinematics, found " + std::to_string(group.axes.size()));
     } else if (group.workspace) {
       if (params.serial && group.workspace->links.empty()) {
-        workspace::UrdfLinks urdf = workspace::LinksOfUrdf(*params.serial, urdf_folder);
+        workspace::UrdfLinks urdf =
+            workspace::LinksOfUrdf(*params.serial, *made.kinematics, Folder().string(), urdf_folder);
         group.workspace->links = std::move(urdf.links);
         if (!urdf.problem.empty()) return Add(path + ".workspace.links", urdf.problem);
       }

@@ -78,7 +78,8 @@ void DescribeCircular(Description<MoveCircular<kReference>>& d) {
   d.template defaulted<&M::aux_y>(unit::mm, kPlaces, "Y of it.");
   d.template defaulted<&M::aux_z>(unit::mm, kPlaces, "Z of it.");
   d.template defaulted<&M::path_choice>("Which of several arcs (PathChoice); none where a point on the way is given.");
-  d.template defaulted<&M::normal_x>(kPlaces, "Normal of the plane, of any length, with a centre; all 0: by itself.");
+  d.template defaulted<&M::normal_x>(kPlaces,
+                                     "Normal of the plane, of any length, with a centre; all 0: that with Z above 0.");
   d.template defaulted<&M::normal_y>(kPlaces, "Y of it.");
   d.template defaulted<&M::normal_z>(kPlaces, "Z of it.");
   d.template defaulted<&M::turns>(at_most(path::kMostTurns), "Whole turns on top.");

@@ -49,8 +49,7 @@ struct RequestMaker {
     r.limits.velocity = m.velocity.value_or(own.velocity);
     r.limits.acceleration = s.acceleration_factor * m.acceleration.value_or(own.acceleration);
     r.limits.deceleration =
-        s.acceleration_factor *
-        m.deceleration.value_or(m.acceleration.value_or(own.deceleration.value_or(own.acceleration)));
+        s.acceleration_factor * m.deceleration.value_or(own.deceleration.value_or(own.acceleration));
     r.limits.jerk = s.jerk_factor * m.jerk.value_or(own.jerk);
     r.transition_mode = m.transition_mode;
     r.transition_parameter = m.transition_parameter;
@@ -125,7 +124,7 @@ struct RequestMaker {
     const PathLimits& own = c.params.path;
     const double deceleration = own.deceleration.value_or(own.acceleration);
     r.limits = {own.velocity, s.acceleration_factor * m.acceleration.value_or(own.acceleration),
-                s.acceleration_factor * m.deceleration.value_or(m.acceleration.value_or(deceleration)),
+                s.acceleration_factor * m.deceleration.value_or(deceleration),
                 s.jerk_factor * m.jerk.value_or(own.jerk)};
     // Speeds of the tool belong to it, those of the axes that move it to ACS.
     const auto first = r.to.begin(), of_axes = first + kToolNumbers;

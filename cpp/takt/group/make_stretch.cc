@@ -96,17 +96,20 @@ ErrorId AlongTool(const Context& c, const Request& move, const Frame& to, const 
   return s.problem == path::Problem::kNone ? ErrorId::kNone : ErrorId::kPathGeometry;
 }
 
-// A circle of a coordinate system, in the MCS.
-path::Circle InBase(const Frame& system, const path::Circle& circle, const KDL::Vector& begin, bool relative) {
-  path::Circle out = circle;
-  const KDL::Vector point = ToVector(circle.auxiliary_point);
-  out.normal = ToTriple(system.M * ToVector(circle.normal));
-  if (circle.mode == path::CircMode::kRadius) {
-    out.auxiliary_point = ToTriple(system.M * point);
-  } else {
-    out.auxiliary_point = ToTriple(relative ? begin + system.M * point : system * point);
+// Computes the arc in the coordinate system of the command, in which a normal left out is chosen. `to`: in that system.
+ErrorId AlongCircle(const Context& c, const Request& move, const Frame& system, const Frame& to,
+                    const path::Auxiliaries& auxiliaries, LookAhead& ahead, State& s) {
+  const path::Point begin{system.Inverse() * ahead.end_tool, Behind(ahead.end_joints, c.kinematics->count)};
+  path::Circle circle = move.circle;
+  if (move.relative && circle.mode != path::CircMode::kRadius) {
+    circle.auxiliary_point = ToTriple(begin.frame.p + ToVector(circle.auxiliary_point));
   }
-  return out;
+  Stretch& stretch = ahead.next;
+  stretch.limits = move.limits;
+  s.problem = path::MakeArc(begin, circle, {to, auxiliaries}, stretch.segment);
+  if (s.problem != path::Problem::kNone) return ErrorId::kPathGeometry;
+  stretch.segment = Moved(system, stretch.segment);
+  return ErrorId::kNone;
 }
 
 // Holds what a spline does not give where it is at its beginning: auxiliary axes, and perhaps the orientation.
@@ -247,7 +250,8 @@ ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element
   if (move.kind == MoveKind::kArch && element > 0) return AlongArch(c, move, static_cast<int>(element), ahead, s);
   const Frame system = StillFrameOf(c, move, ahead);
   if (move.kind == MoveKind::kPath) return AlongPath(c, move, element, system, ahead, s);
-  const Frame to = system * kinematics::ToFrame(PoseOf(move, kinematics::ToPose(system.Inverse() * ahead.end_tool)));
+  const Frame target = kinematics::ToFrame(PoseOf(move, kinematics::ToPose(system.Inverse() * ahead.end_tool)));
+  const Frame to = system * target;
   const kinematics::Joints joints = JointsOf(move, ahead.end_joints);
   if (move.kind == MoveKind::kArch) {
     ahead.arch_begin = {ahead.end_tool, Behind(ahead.end_joints, count)};
@@ -267,9 +271,10 @@ ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element
     ahead.failures = failures.Detail(c.number);
     return s.reason == kinematics::Reason::kSingular ? ErrorId::kSingular : ErrorId::kUnreachable;
   }
-  const path::Circle circle = InBase(system, move.circle, ahead.end_tool.p, move.relative);
-  if (move.kind == MoveKind::kDirect) return Straight(c, move, to, Behind(joints, count), ahead, s);
-  return AlongTool(c, move, to, Behind(joints, count), move.kind == MoveKind::kCircular ? &circle : nullptr, ahead, s);
+  const path::Auxiliaries auxiliaries = Behind(joints, count);
+  if (move.kind == MoveKind::kDirect) return Straight(c, move, to, auxiliaries, ahead, s);
+  if (move.kind == MoveKind::kCircular) return AlongCircle(c, move, system, target, auxiliaries, ahead, s);
+  return AlongTool(c, move, to, auxiliaries, nullptr, ahead, s);
 }
 
 std::size_t ElementsOf(const Context& c, const Request& move) noexcept {

@@ -138,12 +138,26 @@ std::vector<LinkInfo> Describe(const SixAxis& arm) {
   return Describe(arm.chain);
 }
 
-// URDF's own names, but for those that mean something else here.
+// URDF's own names. A link keeps link_N where its own is base or tool, that of another link (as cut to the capacity of
+// a name), or the link_N of another one.
 std::vector<LinkInfo> Describe(const Serial& serial) {
-  std::vector<LinkInfo> all = Describe(serial.chain);
-  for (std::size_t i = 0; i < serial.chain.count; ++i) {
+  const std::vector<LinkInfo> numbered = Describe(serial.chain);
+  std::vector<LinkInfo> all = numbered;
+  const std::size_t count = serial.chain.count;
+  const auto named = serial.links.begin(), end = named + static_cast<std::ptrdiff_t>(count);
+  for (std::size_t i = 0; i < count; ++i) {
     const std::string name(serial.links[i].view());
-    if (!name.empty() && name != kBase && name != kTool) all[i + 1].name = name;
+    const bool single = std::count(named, end, serial.links[i]) == 1;
+    if (!name.empty() && name != kBase && name != kTool && single) all[i + 1].name = name;
+  }
+  // A link that falls back to its number may take it from another one, which then falls back, too.
+  for (std::size_t round = 0; round < count; ++round) {
+    for (std::size_t i = 1; i <= count; ++i) {
+      const bool taken =
+          std::any_of(all.begin() + 1, all.begin() + static_cast<std::ptrdiff_t>(count) + 1,
+                      [&](const LinkInfo& other) { return &other != &all[i] && other.name == all[i].name; });
+      if (taken) all[i].name = numbered[i].name;
+    }
   }
   return all;
 }

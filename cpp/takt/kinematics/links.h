@@ -6,7 +6,8 @@
 //   Delta            upper_arm_1 to 3 (X along the arm, at the motor), lower_arm_1_a to 3_b (X along the rod, at the
 //                    knee; b is the rod on the other side of the arm), platform (level)
 //   six axes         link_1 to link_6; each at its axis, as the axis has turned it
-//   URDF             the same; their names are those of URDF
+//   URDF             the same; their names are those of URDF (40 bytes of them), but link_1 and so on where that would
+//                    be base, tool, or the name of another link
 //
 // In front of them stands base, behind them tool: the frame that Forward gives.
 #pragma once

@@ -67,15 +67,15 @@ enum class UrdfPurpose : std::uint8_t { kCollision, kVisual };
 // A shape that URDF gives a link. Lengths in mm.
 struct UrdfShape {
   enum class Kind : std::uint8_t { kBox, kCylinder, kSphere, kMesh };
-  std::string link;   // as URDF calls it
-  std::string fixed;  // the link of the chain that it goes along with, or base
+  std::string link;      // as URDF calls it
+  std::size_t axis = 0;  // the axis of the chain, counted from 1, whose link carries it; 0: the base carries it
   Kind kind = Kind::kBox;
   std::array<double, 3> size{};  // box: edges; cylinder: radius, length along Z; sphere: radius; mesh: mm for 1 in it
   std::string mesh;              // file, as URDF names it
-  Frame pose;                    // of its middle, or of the mesh, on that link
+  Frame pose;                    // of its middle, or of the mesh, on the link that carries it
 };
 
-// Those of all links that go along with a link of the chain, or with its base, and have no axis of their own between.
+// Those of all links that fixed joints alone connect with a link of the chain or with its base, on either side of it.
 // The arguments are those of ReadUrdf, which must have read them.
 std::vector<UrdfShape> ReadUrdfShapes(const std::string& xml, const std::string& base, const std::string& tip,
                                       UrdfPurpose purpose = UrdfPurpose::kCollision);

@@ -1,6 +1,8 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
+#include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -21,6 +23,13 @@ Frame ToFrame(const KDL::Rotation& rotation, const urdf::Vector3& p) {
 
 Frame OriginOf(const urdf::Joint& joint, const UrdfAngles& angles) {
   return ToFrame(angles.joints.at(joint.name), joint.parent_to_joint_origin_transform.position);
+}
+
+// Cut between two characters of UTF-8.
+Name Cut(const std::string& name) {
+  std::size_t size = std::min(name.size(), Name::kCapacity);
+  while (size > 0 && size < name.size() && (static_cast<unsigned char>(name[size]) & 0xC0) == 0x80) --size;
+  return Name::Of(name.substr(0, size));
 }
 
 std::string Quoted(const std::string& name) {
@@ -80,21 +89,45 @@ std::string OnlyEnd(const urdf::ModelInterface& model, std::string& why) {
   return end;
 }
 
-// What it goes along with, and where it is on that. Empty: with an axis that does not belong to the chain.
-std::string FixedTo(const urdf::ModelInterface& model, const UrdfAngles& angles, const urdf::LinkConstSharedPtr& of,
-                    const std::vector<urdf::JointConstSharedPtr>& way, const std::string& base, Frame& pose) {
+// Returns the pose, seen from `base`, of `base` and of each link above it up to the first joint that moves.
+std::map<std::string, Frame> FixedAbove(const urdf::ModelInterface& model, const UrdfAngles& angles,
+                                        const std::string& base) {
+  std::map<std::string, Frame> poses;
+  Frame pose;
+  urdf::LinkConstSharedPtr link = model.getLink(base);
+  while (link) {
+    poses[link->name] = pose;
+    const urdf::JointConstSharedPtr joint = link->parent_joint;
+    if (!joint || joint->type != urdf::Joint::FIXED) break;
+    pose = pose * OriginOf(*joint, angles).Inverse();
+    link = model.getLink(joint->parent_link_name);
+  }
+  return poses;
+}
+
+// Returns the number of the axis whose link carries link `of`, 0 for the base, and `pose`, that of `of` on this link;
+// nothing if an axis that does not belong to the chain lies between.
+std::optional<std::size_t> CarrierOf(const urdf::ModelInterface& model, const UrdfAngles& angles,
+                                     const urdf::LinkConstSharedPtr& of,
+                                     const std::vector<urdf::JointConstSharedPtr>& axes,
+                                     const std::map<std::string, Frame>& above, Frame& pose) {
   urdf::LinkConstSharedPtr link = of;
   pose = Frame::Identity();
-  while (link->name != base) {
+  for (;;) {
+    if (const auto found = above.find(link->name); found != above.end()) {
+      pose = found->second * pose;
+      return 0;
+    }
     const urdf::JointConstSharedPtr joint = link->parent_joint;
-    if (!joint) return {};
+    if (!joint) return std::nullopt;
     if (joint->type != urdf::Joint::FIXED) {
-      return std::find(way.begin(), way.end(), joint) == way.end() ? std::string() : link->name;
+      const auto axis = std::find(axes.begin(), axes.end(), joint);
+      if (axis == axes.end()) return std::nullopt;
+      return static_cast<std::size_t>(axis - axes.begin()) + 1;
     }
     pose = OriginOf(*joint, angles) * pose;
     link = model.getLink(joint->parent_link_name);
   }
-  return "base";
 }
 
 bool TakeGeometry(const urdf::Geometry& geometry, UrdfShape& shape) {
@@ -125,17 +158,19 @@ std::vector<UrdfShape> ReadUrdfShapes(const std::string& xml, const std::string&
   if (!model) return {};
   std::string why;
   const std::string begin = base.empty() ? model->getRoot()->name : base;
-  const std::vector<urdf::JointConstSharedPtr> way = Way(*model, begin, tip.empty() ? OnlyEnd(*model, why) : tip, why);
+  std::vector<urdf::JointConstSharedPtr> axes = Way(*model, begin, tip.empty() ? OnlyEnd(*model, why) : tip, why);
+  std::erase_if(axes, [](const urdf::JointConstSharedPtr& joint) { return joint->type == urdf::Joint::FIXED; });
   const UrdfAngles angles = ReadUrdfAngles(xml);
+  const std::map<std::string, Frame> above = FixedAbove(*model, angles, begin);
   std::vector<UrdfShape> shapes;
   for (const auto& [name, link] : model->links_) {
     Frame at;
-    const std::string fixed = FixedTo(*model, angles, link, way, begin, at);
-    if (fixed.empty()) continue;
+    const std::optional<std::size_t> axis = CarrierOf(*model, angles, link, axes, above, at);
+    if (!axis) continue;
     const auto take = [&](const auto& given, const std::vector<KDL::Rotation>& rotations) {
       for (std::size_t i = 0; i < given.size(); ++i) {
         const Frame origin = ToFrame(rotations.at(i), given[i]->origin.position);
-        UrdfShape shape{.link = name, .fixed = fixed, .mesh = {}, .pose = at * origin};
+        UrdfShape shape{.link = name, .axis = *axis, .mesh = {}, .pose = at * origin};
         if (given[i]->geometry && TakeGeometry(*given[i]->geometry, shape)) shapes.push_back(shape);
       }
     };
@@ -189,7 +224,7 @@ std::optional<UrdfChain> ReadUrdf(const std::string& xml, const std::string& bas
       const double unit = slides ? kMetre : 1;
       out.limits[out.chain.count] = {joint->limits->lower * unit, joint->limits->upper * unit};
     }
-    out.links[out.chain.count] = Name::Of(joint->child_link_name);
+    out.links[out.chain.count] = Cut(joint->child_link_name);
     Append(out.chain, {rest, axis, slides ? JointKind::kLinear : JointKind::kRotary});
     rest = Frame::Identity();
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -85,7 +86,29 @@ std::string ReadBinary(std::string_view bytes, Builder& builder) {
   return {};
 }
 
-// The text between two `facet`s may be laid out in any way: only its vertices count.
+std::string Lowered(std::string word) {
+  for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return word;
+}
+
+// Whether the text begins with 'solid', in any case, behind a byte order mark and blanks.
+bool BeginsWithSolid(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  constexpr std::string_view kSolid = "solid";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+  return Lowered(std::string(text.substr(0, kSolid.size()))) == kSolid;
+}
+
+// False: not a number. A sign + may lead it.
+bool ReadNumber(std::string_view word, double& number) {
+  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+  const char* const end = word.data() + word.size();
+  const auto [read, error] = std::from_chars(word.data(), end, number);
+  return error == std::errc() && read == end;
+}
+
+// The text between two `facet`s may be laid out in any way: only its vertices count. Keywords may be of any case.
 std::string ReadText(std::string_view text, Builder& builder) {
   std::istringstream lines{std::string(text)};
   std::array<Corner, 3> corners{};
@@ -97,15 +120,14 @@ std::string ReadText(std::string_view text, Builder& builder) {
     std::istringstream words(line);
     std::string word;
     words >> word;
+    word = Lowered(std::move(word));
     const std::string place = "line " + std::to_string(number) + ": ";
     if (word == "vertex") {
       if (vertices == 3) return place + "a facet has more than three vertices";
       for (double& x : corners[vertices]) {
         word.clear();
         words >> word;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
-        if (error != std::errc() || end != word.data() + word.size())
-          return place + "expected three numbers behind 'vertex'";
+        if (!ReadNumber(word, x)) return place + "expected three numbers behind 'vertex'";
       }
       ++vertices;
     } else if (word == "endfacet") {
@@ -129,7 +151,7 @@ std::optional<Mesh> ReadStl(std::string_view bytes, double scale, std::string& w
     why = "more than " + std::to_string(kMaxTriangles) + " triangles";
   } else if (binary) {
     why = ReadBinary(bytes, builder);
-  } else if (bytes.starts_with("solid") && bytes.find('\0') == std::string_view::npos) {
+  } else if (BeginsWithSolid(bytes) && bytes.find('\0') == std::string_view::npos) {
     why = ReadText(bytes, builder);
   } else if (bytes.size() >= kHeader) {
     why = "this is no STL: " + std::to_string(CountOf(bytes)) + " triangles would need " +

@@ -2,8 +2,10 @@
 
 #include <filesystem>
 #include <map>
+#include <system_error>
 
 #include "takt/core/problem.h"
+#include "takt/kinematics/links.h"
 
 namespace takt::workspace {
 namespace {
@@ -13,15 +15,20 @@ using kinematics::UrdfShape;
 constexpr std::string_view kPackage = "package://";
 constexpr std::string_view kFile = "file://";
 
-std::string FileOf(const std::string& mesh, const std::string& urdf_folder) {
+std::string FileOf(const std::string& mesh, const std::string& machine_folder, const std::string& urdf_folder) {
   namespace fs = std::filesystem;
   if (mesh.starts_with(kFile)) return mesh.substr(kFile.size());
   if (!mesh.starts_with(kPackage)) return (fs::path(urdf_folder) / mesh).string();
   const fs::path inside = mesh.substr(kPackage.size());
-  fs::path folder = urdf_folder;
-  for (fs::path above = folder; !above.empty(); above = above.parent_path()) {
-    if (above.filename() == *inside.begin()) return (above.parent_path() / inside).string();
-    if (above == above.parent_path()) break;
+  // A file found by the relative path keeps one, so that the machine can be moved.
+  const fs::path folder = urdf_folder;
+  std::error_code unknown;  // no working directory: only the relative path is searched
+  const fs::path absolute = (fs::current_path(unknown) / machine_folder / folder).lexically_normal();
+  for (const fs::path& begin : {folder, absolute}) {
+    for (fs::path above = begin; !above.empty(); above = above.parent_path()) {
+      if (above.filename() == *inside.begin()) return (above.parent_path() / inside).string();
+      if (above == above.parent_path()) break;
+    }
   }
   return (folder / inside.lexically_relative(*inside.begin())).string();
 }
@@ -38,15 +45,16 @@ std::string WhyNot(const UrdfShape& shape) {
 
 }  // namespace
 
-UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const std::string& urdf_folder,
-                      kinematics::UrdfPurpose purpose) {
+UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const kinematics::Kinematics& kinematics,
+                      const std::string& folder, const std::string& urdf_folder, kinematics::UrdfPurpose purpose) {
   UrdfLinks out;
+  const std::vector<kinematics::LinkInfo> links = kinematics::LinksOf(kinematics);
   std::map<std::string, int> named;
   for (const UrdfShape& shape : kinematics::ReadUrdfShapes(serial.urdf, serial.base, serial.tip, purpose)) {
     SolidParams& solid = out.links.emplace_back();
-    solid.link = shape.fixed;
+    solid.link = links[shape.axis].name;
     solid.pose = kinematics::ToPose(shape.pose);
-    if (const int count = ++named[shape.link]; shape.link != shape.fixed || count > 1) {
+    if (const int count = ++named[shape.link]; shape.link != solid.link || count > 1) {
       solid.name = shape.link + (count > 1 ? "#" + std::to_string(count) : "");
     }
     switch (shape.kind) {
@@ -60,7 +68,7 @@ UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const std::string&
         solid.sphere = {shape.size[0]};
         break;
       case UrdfShape::Kind::kMesh:
-        solid.mesh = {FileOf(shape.mesh, urdf_folder), shape.size[0]};
+        solid.mesh = {FileOf(shape.mesh, folder, urdf_folder), shape.size[0]};
         if (out.problem.empty()) out.problem = WhyNot(shape);
         break;
     }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "takt/kinematics/kinematics.h"
 #include "takt/kinematics/params.h"
 #include "takt/kinematics/serial.h"
 #include "takt/workspace/params.h"
@@ -15,9 +16,11 @@ struct UrdfLinks {
   std::string problem;  // empty: none
 };
 
-// `serial`: with the text of the URDF, and good. `urdf_folder`: of its file, seen from the folder of the machine file;
-// meshes count from there, and package://NAME/ as well, if that folder or one above is called NAME.
-UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const std::string& urdf_folder,
+// `serial`: with the text of the URDF; `kinematics`: made from it. `folder`: of the machine file. `urdf_folder`: of the
+// URDF's file, seen from `folder`; meshes count from there, and package://NAME/ as well, if that folder or one above,
+// up to the root of the file system, is called NAME.
+UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const kinematics::Kinematics& kinematics,
+                      const std::string& folder, const std::string& urdf_folder,
                       kinematics::UrdfPurpose purpose = kinematics::UrdfPurpose::kCollision);
 
 }  // namespace takt::workspace

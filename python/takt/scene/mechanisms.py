@@ -47,7 +47,7 @@ def _given(group: Mapping[str, Any], mechanism: Kinematics, folder: Path | None)
 
 def _of_urdf(mechanism: Kinematics, serial: Mapping[str, Any], folder: Path | None, *, visual: bool) -> Solids:
     """The shapes that a URDF gives links to be seen, or for collisions; none of files that cannot be read."""
-    told = _core.urdf_solids(serial["urdf"], serial["base"], serial["tip"], str(folder or "."), visual)
+    told = _core.urdf_solids(serial["urdf"], serial["base"], serial["tip"], str((folder or Path()).resolve()), visual)
     return _placed(mechanism, [json.loads(one) for one in told], folder)
 
 
