@@ -188,7 +188,7 @@ TEST_F(Blocks, AFullQueueIsAnError) {
 // AX-50, AX-11: a block of Enable gives its command again as long as the engine has no room for it.
 TEST_F(Blocks, ACamSwitchTriesAgainInAFullQueue) {
   MC_DigitalCamSwitch cams(x);
-  cams.switches = "none";
+  cams.switches = Name::Of("none");
   engine::Command flood;
   flood.target = 2;
   flood.body = axis::Command(axis::MoveVelocity{});
