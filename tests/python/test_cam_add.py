@@ -159,3 +159,29 @@ def test_a_table_is_selected_in_its_turn(session):  # CAM-90: ExecutionMode
         session.step()
     assert block.Done
     assert bar.profile_ends == ends + 1
+
+
+@pytest.mark.parametrize("change", ["none", "added", "added and removed"])
+def test_cams_added_on_the_way_into_step(change: str) -> None:
+    """AX-48: in step where it was promised, and without a step of the slave."""
+    gentle = MACHINE.replace(
+        "velocity: 4000, acceleration: 400000, jerk: 80000000", "velocity: 400, acceleration: 4000, jerk: 80000"
+    )
+    assert gentle != MACHINE
+    hump = "[{to: {x: 180, y: 20}, law: modified_sine}, {to: {x: 360, y: 0}, law: modified_sine}]"
+    with takt.Engine(f"{gentle}  - {{name: hump, cyclic: true, segments: {hump}}}\n") as engine:
+        main, bar = engine.axis("main"), engine.axis("bar")
+        main.power().wait()
+        bar.power().wait()
+        main.move_velocity(velocity=90).wait(until="reached")
+        bar.cam_in(master="main", cam="stitch", master_start_distance=120, master_sync_position=300)
+        record = engine.record()
+        engine.wait(lambda: 230 < main.set_position < 232, 9)
+        if change != "none":
+            bar.cam_add(cam="hump").wait()
+        if change == "added and removed":
+            engine.run(0.1)
+            bar.cam_remove(cam="hump").wait()
+        engine.wait(lambda: bar.in_step, 9)
+        assert main.set_position == pytest.approx(300, abs=0.2)
+        assert abs(record.stop()["bar"]["set_acceleration"]).max() < 300

@@ -427,3 +427,85 @@ def test_an_opening_waits_for_ramps_so_a_master_that_comes_back_finds_the_cam(co
         assert rig.module.cam_synchronised
         assert steps_of_speed(record) < 40
         assert np.abs(record["knife"]["set_velocity"]).max() < 1500
+
+
+FIRM = "velocity: 2000, acceleration: 20000, jerk: 2000000"
+
+
+@pytest.mark.parametrize("velocity", [100, 300])
+def test_a_slave_that_is_taken_along_does_not_leave_its_limits_at_once(velocity: float) -> None:
+    """CAM-85: with the default ramps of the module; it goes as fast as the web until the limit is near."""
+    with Rig(LINE, settings=AT_ONCE, limits=FIRM + ", lower: -500, upper: 150") as rig:
+        rig.module.control(sync_cam=True).wait()
+        rig.run(velocity)
+        knife = rig.seconds(0.8)["knife"]
+        assert knife["set_velocity"].max() <= velocity * 1.05
+        assert knife["set_position"].max() == pytest.approx(min(150, 0.8 * velocity), abs=2)
+
+
+@pytest.mark.parametrize("how", ["stop", "halt", "sync_out_instant"])
+def test_a_stop_does_not_speed_the_slave_up(how: str) -> None:
+    """CAM-12: where the cam accelerates it, the gentle jerk of the stop would go on with that for long."""
+    with Rig(hill("up", 300), settings={**AT_ONCE, "stop_jerk": 100_000, "jerk": 100_000}, limits=FIRM) as rig:
+        rig.run(500)
+        rig.module.control(sync_cam=True).wait(timeout=3)
+        rig.engine.wait(lambda: rig.knife.set_velocity > 100 and rig.knife.set_acceleration > 2000, 5)
+        before = rig.knife.set_velocity
+        rig.module.control(**{how: True})
+        assert rig.seconds(1.0)["knife"]["set_velocity"].max() < 1.2 * before
+
+
+def test_a_clutch_that_waits_to_open_brakes_as_gently() -> None:
+    """CAM-85: at a SW limit, with the module's stop_deceleration."""
+    settings = {
+        **{**AT_ONCE, "sync_mode": "ramp_pos", "stop_deceleration": 2000, "stop_jerk": 100_000},
+        **{"master_sync_in_distance": 100, "master_sync_in_position": 200, "master_sync_out_distance": 0.05},
+    }
+    for opens in (False, True):
+        with Rig(LINE, settings=settings, limits=FIRM + ", lower: -500, upper: 500") as rig:
+            rig.module.control(sync_cam=True)
+            rig.run(300)
+            rig.engine.wait(lambda knife=rig.knife: knife.set_position > 430, 5)
+            if opens:
+                rig.module.control(sync_cam=False)
+            knife = rig.seconds(1.0)["knife"]
+            assert knife["set_acceleration"].min() == pytest.approx(-2000, rel=0.01)
+            assert knife["set_position"].max() == pytest.approx(500, abs=0.5)
+
+
+def test_a_refused_homing_leaves_the_clutch_to_open() -> None:
+    """CAM-81: both in one cycle."""
+    settings = {**AT_ONCE, "sync_mode": "ramp_time", "sync_in_time_s": 0.2, "sync_out_time_s": 0.3}
+    with Rig(LINE, settings=settings, limits=FIRM) as rig:
+        rig.run(100)
+        rig.module.control(sync_cam=True).wait(timeout=3)
+        opens, homes = rig.module.control(sync_cam=False), rig.module.control(home_execute=True)
+        rig.engine.run(1)
+        assert homes.error_id == 3005
+        assert opens.done
+        assert rig.module.clutch == "open"
+
+
+def test_a_factor_of_nothing_is_refused_wherever_the_master_leads() -> None:
+    """CAM-82: in each state, and whichever of the two is told first."""
+    settings = {**AT_ONCE, "scaling_mode_slave": "ramp_absolute"}
+    with Rig(LINE, settings={**settings, "position_control": "master_direction"}, limits=FIRM) as rig:
+        assert rig.module.control(scaling_slave=0.0).wait_final().error_id == WOULD_REVERSE
+    with Rig(LINE, settings=settings, limits=FIRM) as rig:
+        assert rig.module.control(scaling_slave=0.0).wait_final().done
+        refused = rig.module.configure(position_control="master_direction").wait_final()
+        assert refused.error_id == WOULD_REVERSE
+
+
+def test_stop_ends_when_a_command_of_the_slave_has_taken_over() -> None:
+    """CAM-10: the state lasts as long as stop or halt is held."""
+    with Rig(LINE, settings=AT_ONCE, limits=FIRM) as rig:
+        rig.knife.move_velocity(velocity=500)
+        rig.engine.run(0.5)
+        rig.module.control(halt=True)
+        rig.engine.run(0.01)
+        rig.module.control(halt=False)
+        rig.engine.run(0.005)
+        rig.knife.move_velocity(velocity=200)
+        rig.engine.run(0.2)
+        assert rig.module.state == "Service"
