@@ -143,6 +143,7 @@ def test_twincat_cnc_tables_close_over_a_turn(tmp_path):  # CAM-92
         ("x;y\n1;1\n0;2\n", None, "odd.txt:3:1: expected x above 1 of the point before, found 0"),
         ("(MasterPos := 0, SlavePos := 0, FunctionType := BESTEHORN), (MasterPos := 1, SlavePos := 1)", None,
          "expected one of the functions"),
+        ("Tabletype = 3\n0 0\n120\n240 5\n", None, ":3: expected as many positions as in the first line, 2, found 1"),
         ("Tabletype = 3\nLines = 3\n1\n2\n", None, "Lines: expected 3 lines of values, found 2"),
         ("f(a := 1)", None, "expected (dX := ..., dY := ...) or (MasterPos := ..., SlavePos := ...), found neither"),
     ],
