@@ -124,6 +124,12 @@ def test_a_key_pressed_again_jogs_on(limits: str) -> None:
         picker.jog(negative=True)
         engine.run(1)
         assert (picker.state, engine.axis("x").set_velocity) == (takt.PickPlaceState.JOG_POS, 0)
+    picker.jog()
+    engine.run(0.02)
+    picker.control(select_axis="y")
+    picker.jog(positive=True)  # a jog of its own
+    engine.run(1)
+    assert [engine.axis(name).set_velocity for name in "xy"] == [0, pytest.approx(50)]
     picker.jog().wait()
     assert picker.state is takt.PickPlaceState.READY
 
@@ -236,6 +242,20 @@ def test_a_tool_moved_away_is_not_parked(engine: takt.Engine, by: str) -> None:
     picker.execute(1)
     engine.wait(lambda: picker.in_park_position, 5)
     assert tool(engine) == pytest.approx((300, 200, 20))
+
+
+def test_an_order_that_waits_parks_again_from_where_the_tool_is(engine: takt.Engine) -> None:
+    """PP-42: it rises first, and begins when the other motion has ended."""
+    picker, group = engine.pick_place("picker"), engine.group("portal")
+    engine.axis("drive").move_velocity(velocity=100).wait(until="reached")
+    picker.execute(1)
+    engine.wait(lambda: picker.in_park_position, 5)
+    group.move_linear_absolute(x=0, y=0, z=-40, velocity=100).wait()
+    record = engine.record("portal")
+    engine.run(2)
+    portal = record.stop()["portal"]
+    assert tool(engine) == pytest.approx((300, 200, 20))
+    assert portal["z"][portal["x"] > 20].min() > -20
 
 
 @pytest.mark.parametrize("factors", [(0.5, 1, 1), (1, 0.5, 1), (1, 1, 0.5)])

@@ -201,7 +201,7 @@ def test_a_blend_that_cuts_a_zone_waits_however_much_is_planned(lines: int) -> N
     assert last.wait().done
 
 
-@pytest.mark.parametrize("what", ["kinematics", "member", "all members", "tool"])
+@pytest.mark.parametrize("what", ["kinematics", "member", "all members", "tool", "position"])
 def test_a_tool_that_carries_another_stays(what: str) -> None:
     """GR-05, GR-30: what takes the tool of a group away, or makes it jump, is refused while another rides on it."""
     engine = enabled(TWO)
@@ -215,6 +215,7 @@ def test_a_tool_that_carries_another_stays(what: str) -> None:
         "member": lambda: left.remove_axis(ident=3),
         "all members": lambda: left.ungroup_all_axes(),
         "tool": lambda: left.set_tool(x=50),
+        "position": lambda: left.define_position(a1=150, coordinate_system="acs"),
     }
     assert commands[what]().wait_final().error_id == NOT_LEGAL
     engine.run(0.5)

@@ -464,6 +464,8 @@ def test_meshes_of_a_package_above_the_machine_file(tmp_path: Path, monkeypatch:
     takt.Engine(machine).close()
     monkeypatch.chdir(package)
     takt.Engine("m.yaml").close()
+    (package / "meshes").rename(package / "urdf" / "meshes")  # a folder of that name is above, but not the mesh
+    takt.Engine("m.yaml").close()
 
 
 def slides(one: str, two: str, more: str = "") -> str:

@@ -73,7 +73,7 @@ double CarrierTravelAt(void* owner, std::uint32_t number, double position) noexc
 bool TakesToolAway(const group::Command& command) noexcept {
   if (const auto* transform = std::get_if<group::SetKinTransform>(&command)) return !transform->enable;
   return std::holds_alternative<group::RemoveAxis>(command) || std::holds_alternative<group::UngroupAllAxes>(command) ||
-         std::holds_alternative<group::SetTool>(command);
+         std::holds_alternative<group::SetTool>(command) || std::holds_alternative<group::SetPosition>(command);
 }
 
 bool IsRidden(const World& w, std::size_t group) noexcept {

@@ -9,7 +9,7 @@ namespace takt::engine {
 // As this group sees them; `rider` must live on. Belts are numbered from 1, groups and poses go on from there.
 group::Carriers CarriersFor(Rider& rider) noexcept;
 
-// A command of a group after which it has no tool, or another one.
+// A command of a group after which its tool is nowhere, or elsewhere by a jump.
 bool TakesToolAway(const group::Command& command) noexcept;
 // Whether another group rides on the tool of this one.
 bool IsRidden(const World& w, std::size_t group) noexcept;

@@ -152,6 +152,7 @@ namespace {
 
 // Gives the jog's move, from where the tool is now. False: it is refused, and reported.
 bool BeginMove(const Context& c, group::State& g, State& s) {
+  s.jog_axis = s.inputs.select_axis;
   s.jog_released = false;
   if (const ErrorId error = GiveMove(c, g, s); error != ErrorId::kNone) {
     s.warning = error;
@@ -168,7 +169,6 @@ void BeginJog(const Context& c, group::State& g, State& s) noexcept {
   // What rises is let go of first: a stop would wait for that.
   if (s.jog.ticket == 0 || s.halting || s.lifting || !IsOn(c, g) || !Stands(c, g)) return;
   if (!s.jog.keys.positive && !s.jog.keys.negative) return EndJog(c, FeedbackState::kDone, ErrorId::kNone, s);
-  s.jog_axis = s.inputs.select_axis;
   s.jog_sense = s.jog.keys.positive ? 1 : -1;
   const bool on_path = s.hold.held && g.interrupted;
   if (s.hold.held) LosePath(c, g, on_path, s);

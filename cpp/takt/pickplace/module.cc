@@ -399,7 +399,7 @@ void Step(const Context& c, group::State& g, State& s) noexcept {
   s.pulse = false;
   if (MovesOn(c, g)) {
     s.in_target = false;
-    if (!s.parking) s.parked_at = 0;
+    if (!s.parking && s.parked_at != 0) ForgetPlace(s);  // a motion of others
   }
   SwitchPower(c, g, s);
   SetOverride(c, g, s);

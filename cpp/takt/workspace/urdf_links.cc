@@ -23,10 +23,11 @@ std::string FileOf(const std::string& mesh, const std::string& machine_folder, c
   // A file found by the relative path keeps one, so that the machine can be moved.
   const fs::path folder = urdf_folder;
   std::error_code unknown;  // no working directory: only the relative path is searched
-  const fs::path absolute = (fs::current_path(unknown) / machine_folder / folder).lexically_normal();
-  for (const fs::path& begin : {folder, absolute}) {
+  const fs::path base = fs::current_path(unknown) / machine_folder;
+  for (const fs::path& begin : {folder, (base / folder).lexically_normal()}) {
     for (fs::path above = begin; !above.empty(); above = above.parent_path()) {
-      if (above.filename() == *inside.begin()) return (above.parent_path() / inside).string();
+      const fs::path file = above.parent_path() / inside;
+      if (above.filename() == *inside.begin() && fs::exists(base / file, unknown)) return file.string();
       if (above == above.parent_path()) break;
     }
   }

@@ -173,7 +173,8 @@ def _best(task: Task, hops: tuple[Hop, ...], pace: float, effort: int) -> tuple[
 
 def _velocity(parameters: Mapping[str, object]) -> float:
     xy: Mapping[str, Mapping[str, float] | None] = parameters["xy"]  # type: ignore[assignment]
-    return float((xy.get("standard") or xy["maximum"] or {"velocity": 1.0})["velocity"])
+    given = [limits["velocity"] for limits in (xy.get("standard"), xy["maximum"]) if limits]
+    return float(min(given, default=1.0))
 
 
 def _aside(task: Task, names: Sequence[str]) -> str:
