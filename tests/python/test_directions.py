@@ -203,6 +203,44 @@ def test_a_group_that_stops_is_left_to_it(s: takt.Engine, stop: str) -> None:
     assert (portal.error, x.error) == (0, 0)
 
 
+def test_a_path_that_is_continued_before_the_tool_rests_is_kept(s: takt.Engine) -> None:
+    """AX-111: a direction that was taken away while it braked is a fault then, braked for along the path."""
+    portal, x = s.group("portal"), s.axis("x")
+    portal.power().wait()
+    portal.enable().wait()
+    portal.move_linear_absolute(x=400, y=80, velocity=200)
+    s.run(0.5)
+    record = s.record("portal")
+    portal.interrupt()
+    s.step(5)
+    x.power(enable_positive=False)
+    s.step(5)
+    portal.continue_path()
+    s.run(1)
+    table = record.stop()["portal"]
+    assert abs(table["y"] - 0.2 * table["x"]).max() < 1e-9
+    assert (x.error, portal.state.value) == (DIRECTION, "GroupErrorStop")
+
+
+@pytest.mark.parametrize("before", ["halt", "interrupt"])
+def test_a_stream_behind_a_stop_minds_directions(s: takt.Engine, before: str) -> None:
+    """AX-111, AX-114."""
+    portal, x = s.group("portal"), s.axis("x")
+    portal.power().wait()
+    portal.enable().wait()
+    portal.move_linear_absolute(x=400, velocity=200)
+    s.run(0.5)
+    getattr(portal, before)()
+    s.step(20 if before == "halt" else 500)
+    stream = portal.stream()
+    portal.stream_point(x=portal.x + 200, y=0, z=0)
+    s.wait(lambda: x.set_velocity > 20, 5)
+    x.power(enable_positive=False)
+    assert stream.wait_final().error_id == DIRECTION
+    s.run(0.5)
+    assert (x.error, portal.state.value) == (DIRECTION, "GroupErrorStop")
+
+
 @pytest.mark.parametrize("barred", ["left", "right"])
 @pytest.mark.parametrize("stop", ["halt", "stop"])
 def test_a_gantry_that_stops_is_left_to_it(s: takt.Engine, stop: str, barred: str) -> None:

@@ -110,6 +110,21 @@ def test_positions_are_defined_for_all_or_for_none() -> None:
     assert engine.axis("aux").set_position == pytest.approx(7)
 
 
+def test_positions_are_defined_beside_an_axis_outside_its_limits() -> None:
+    """GR-06: as after the start, before anything has its reference."""
+    away = TURNED.replace(
+        f"name: aux, unit: mm, {LIMITS}", f"name: aux, unit: mm, {LIMITS[:-1]}, lower: 50, upper: 500}}"
+    )
+    assert away != TURNED
+    engine = enabled(away)
+    gantry = engine.group("gantry")
+    assert gantry.define_position(coordinate_system="mcs", x=10).wait_final().done
+    assert gantry.define_position(coordinate_system="mcs", x=20, a5=100).wait_final().done
+    engine.run(0.01)
+    assert gantry.pose[0] == pytest.approx(20)
+    assert engine.axis("aux").set_position == pytest.approx(100)
+
+
 def running_belt(speed: float = 100) -> tuple[takt.Engine, takt.Group, takt.Axis]:
     engine = enabled(ON_BELT)
     drive = engine.axis("drive")

@@ -132,7 +132,7 @@ void WatchSquaring(const Context& c, State& s) {
   skew.commanded += s.follow_offset - offset;  // nothing moves by it
   s.follow_offset = offset;
   ShiftCoordinates(ratio * c.master->setpoint.position - Due(c, s), s);  // it is called as its master is
-  s.homing.renamed = 0;
+  s.homing.renamed = ratio * c.master->homing.renamed;
   s.homing.homed = true;
   const Status status = MayMove(c, s, SenseOfStraightening(s));
   if (status.failed()) return Fail(c, status.error, false, s);

@@ -120,13 +120,13 @@ void CarryOut(const Context& c, Ticket ticket, double, const Control& command, a
     if (!ramps) Report(c, ticket, FeedbackState::kDone);
     return;
   }
+  for (Ticket& adjusting : s.adjusting) {
+    if (adjusting == ticket) adjusting = 0;  // its end is that of the clutch or of homing
+  }
   const bool of_clutch = s.request == Action::kSyncIn || s.request == Action::kSyncOut;
   if (asked == Action::kHome && of_clutch) {  // it would be refused, and the other one lost
     s.warning = ErrorId::kState;
     return Report(c, ticket, FeedbackState::kError, ErrorId::kState);
-  }
-  for (Ticket& adjusting : s.adjusting) {
-    if (adjusting == ticket) adjusting = 0;  // its end is that of the clutch or of homing
   }
   if (s.request != Action::kNone) Report(c, s.request_ticket, FeedbackState::kAborted);
   s.request = asked;

@@ -286,7 +286,7 @@ struct Applier {
       double* const numbers[] = {&pose.x, &pose.y, &pose.z, &pose.a, &pose.b, &pose.c};
       for (std::size_t i = 0; i < kToolNumbers; ++i) *numbers[i] = tool[i].value_or(*numbers[i]);
       s.reason = JointsAt(c, system * kinematics::ToFrame(pose), end.joints, end.joints);
-      if (s.reason == kinematics::Reason::kNone && !WithinRanges(c, s, end.joints)) {
+      if (s.reason == kinematics::Reason::kNone && !WithinRanges(c, s, end.joints, moved)) {
         s.reason = kinematics::Reason::kAxisLimit;
       }
       if (s.reason != kinematics::Reason::kNone) return Refuse(ErrorId::kUnreachable);

@@ -293,7 +293,9 @@ void FollowStream(const Context& c, State& s) noexcept {
   s.joints = next.position;
   for (std::size_t i = 0; i < kMaxAxes; ++i) {
     if (s.members[i] == 0) continue;
-    MemberOf(c, s, i).guidance.demand = {next.position[i] + s.origins[i], next.velocity[i], next.acceleration[i]};
+    axis::GuidanceState& guidance = MemberOf(c, s, i).guidance;
+    guidance.demand = {next.position[i] + s.origins[i], next.velocity[i], next.acceleration[i]};
+    guidance.comes_to_rest = false;
   }
   if (!in_step || k.reached) return;
   k.reached = true;

@@ -29,10 +29,12 @@ std::uint32_t AxisThatCloses(const Context& c, const State& s, const Directions&
 
 Directions ClosedNow(const Context& c, const State& s) noexcept {
   Directions closed = s.closed;
-  const bool rests = s.ends || s.interrupted;  // a direction that is not enabled does not keep it from that
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
     const axis::State& member = MemberOf(c, s, k);
+    // A direction that is not enabled does not keep it from coming to rest. Gone on with before that, the axis looks at
+    // it first.
+    const bool rests = s.ends || s.interrupted || (s.begun && member.guidance.comes_to_rest);
     // Those of followers of a gantry count for the one that leads.
     const axis::Context own = ContextOf(c, s, k);
     if (!rests && !member.bars_positive && axis::Bars(own, member, 1)) closed.positive |= 1u << k;

@@ -166,9 +166,9 @@ Failures FailuresAt(const Context& c, const State& s, const Frame& tcp, kinemati
   return failures;
 }
 
-bool WithinRanges(const Context& c, const State& s, const kinematics::Joints& joints) noexcept {
+bool WithinRanges(const Context& c, const State& s, const kinematics::Joints& joints, std::size_t count) noexcept {
   const std::size_t moved = InKinematics(c, s);
-  for (std::size_t k = 0; k < kMaxAxes; ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     if (s.members[k] == 0) continue;
     const kinematics::JointRange range = RangeOf(c, s, k, moved);
     if (joints[k] < range.lower || joints[k] > range.upper) return false;

@@ -44,8 +44,9 @@ Failures FailuresAt(const Context& c, const State& s, const Frame& tcp, kinemati
                     const kinematics::Joints& near) noexcept;
 // The first member that is out of its range.
 Failures FailuresOf(const Context& c, const State& s, const kinematics::Joints& joints) noexcept;
-// Whether all members are within their SW limits and those of the kinematics.
-bool WithinRanges(const Context& c, const State& s, const kinematics::Joints& joints) noexcept;
+// Whether the members in the first `count` places are within their SW limits and those of the kinematics.
+bool WithinRanges(const Context& c, const State& s, const kinematics::Joints& joints,
+                  std::size_t count = kMaxAxes) noexcept;
 
 // Where a plan ends.
 struct End {
