@@ -247,9 +247,10 @@ class _Content:
                 values.append((i, [number for number in numbers if number is not None]))
         if head.get("lines") not in (None, str(len(values))):
             self._add(None, f"Lines: expected {head['lines']} lines of values, found {len(values)}")
-        for i, row in values:
-            if len(row) != len(values[0][1]):
-                self._add(i, f"expected as many positions as in the first line, {len(values[0][1])}, found {len(row)}")
+        count = len(values[0][1]) if values else 0
+        for i, positions in values:
+            if len(positions) != count:
+                self._add(i, f"expected as many positions as in the first line, {count}, found {len(positions)}")
         function = head.get("functiontype", "1")
         if function not in ("1", "4", "5"):
             self._add(None, f"Functiontype: expected 1 (linear), 4 (line, poly5) or 5 (poly5, line), found {function}")
