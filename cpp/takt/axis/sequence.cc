@@ -143,7 +143,7 @@ void GiveWay(const Context& c, State& s) {
   if (s.buffered == 0) return;
   const Ticket ticket = s.active.ticket;
   if (Couples(s.active.kind)) Uncouple(c, false, s);
-  // Beneath a superimposed motion the next command may have to wait: the axis goes on as it moves now.
+  // Beneath a superimposed motion the next command may have to wait: the axis keeps its present velocity.
   if (FollowsDemand(s.active.kind)) {
     StartMotion(Profile{s.setpoint}, s.setpoint.position, FromThisCycle(c), s);
   }

@@ -38,7 +38,7 @@ inline double Elapsed(const Context& c, const State& s) noexcept {
 
 void StartMotion(const trajectory::Profile& profile, double target, const MotionStart& start, State& s) noexcept;
 void StartMotion(const Plan& plan, const MotionStart& start, State& s) noexcept;
-// An axis at rest stays where its set point is, whatever gave it so far.
+// Holds an axis at rest at its present set point, which may come from a coupling, a stream or a superimposed motion.
 void StandStill(const Context& c, State& s) noexcept;
 
 // Puts a request in control of the motion there is ...

@@ -348,8 +348,11 @@ bool Check(const Context& c, State& s) {
   if (!IsAnswered(c, s)) return false;
   const PathChecked& answer = s.answer;
   if (answer.trouble == workspace::Trouble::kNone) {
-    if (!IsPath(s)) EnterNext(c, s);
-    if (IsPath(s)) s.planning.stage = Stage::kIdle;
+    if (IsPath(s)) {
+      s.planning.stage = Stage::kIdle;
+    } else {
+      EnterNext(c, s);
+    }
     return true;
   }
   const double free = answer.place - kFreeBefore;

@@ -32,8 +32,8 @@ Directions ClosedNow(const Context& c, const State& s) noexcept {
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
     const axis::State& member = MemberOf(c, s, k);
-    // A direction that is not enabled does not keep it from coming to rest. Gone on with before that, the axis looks at
-    // it first.
+    // While the group brakes by a command, directions that are not enabled are ignored. If the path is continued before
+    // it rests, the axis reports the fault in the next cycle, and the group brakes along the path.
     const bool rests = s.ends || s.interrupted || (s.begun && member.guidance.comes_to_rest);
     // Those of followers of a gantry count for the one that leads.
     const axis::Context own = ContextOf(c, s, k);

@@ -105,7 +105,7 @@ class Clients {
   bool MakeRoomForClient(std::int64_t now_ns);
   bool MakeRoomForId(Client& client, bool lets_go);
   void Forget(Client& client);
-  // After a release of this ticket, whoever gave it: no heartbeat keeps it in force any more once it is final. Until
+  // After a release of this ticket by any client: no heartbeat keeps it in force any more once it is final. Until
   // then it is still on its way.
   void LetGo(Ticket ticket);
   engine::ParsedCommand Parse(const msgs::command& message) const;
