@@ -266,8 +266,8 @@ def test_a_mover_that_fails_is_named_and_the_others_rest_in_places() -> None:
     assert (engine.mover("a").x, engine.mover("a").y) == pytest.approx(at((3, 0)), abs=1e-6)
 
 
-def test_a_mover_that_was_sent_ahead_by_time_rests_where_it_is_its_turn() -> None:
-    """PL-72: one that passes first fails; the other stops before its place, and stays there when that is free."""
+def sent_ahead() -> tuple[Engine, takt.SurfaceJourney]:
+    """b crosses the way of a, which is sent over the crossing ahead by time."""
     dynamics = {"maximum": {"velocity": 1000, "acceleration": 5000, "jerk": 100000}}
     movers = [
         {"name": name, "width": SIDE, "height": SIDE, "xy": dynamics, "initial": {"x": at(cell)[0], "y": at(cell)[1]}}
@@ -277,10 +277,15 @@ def test_a_mover_that_was_sent_ahead_by_time_rests_where_it_is_its_turn() -> Non
     engine = Engine(
         {"name": "s", "axes": [], "movers": movers, "environments": [{"name": "floor", "stators": stators}]}
     )
-    a, b = engine.mover("a"), engine.mover("b")
-    for feedback in [a.enable(), b.enable()]:
+    for feedback in [engine.mover("a").enable(), engine.mover("b").enable()]:
         feedback.wait()
-    journey = takt.SurfaceJourney(engine, takt.plan_surface(engine, {"a": at((2, 0)), "b": at((5, 1))}))
+    return engine, takt.SurfaceJourney(engine, takt.plan_surface(engine, {"a": at((2, 0)), "b": at((5, 1))}))
+
+
+def test_a_mover_that_was_sent_ahead_by_time_rests_where_it_is_its_turn() -> None:
+    """PL-72: one that passes first fails; the other stops before its place, and stays there when that is free."""
+    engine, journey = sent_ahead()
+    a, b = engine.mover("a"), engine.mover("b")
     engine.wait(lambda: journey.scan() or engine.now > 0.3)
     b.disable()
     with pytest.raises(takt.RoutingError, match="mover b is Disabling on its way"):
@@ -292,6 +297,34 @@ def test_a_mover_that_was_sent_ahead_by_time_rests_where_it_is_its_turn() -> Non
     b.move_to_position(x=x, y=y).wait()
     engine.run(1)
     assert (a.x, a.y) == pytest.approx(at((2, 2)), abs=1e-6)
+
+
+@pytest.mark.parametrize("interrupted", [False, True])
+def test_a_journey_that_is_not_waited_for_any_more_rests_where_it_is_its_turn(interrupted: bool) -> None:
+    """PL-72: the time allowed is over, or the wait is broken off: no mover goes on by time alone; `wait` continues."""
+    engine, journey = sent_ahead()
+    a, b = engine.mover("a"), engine.mover("b")
+    if interrupted:
+        scan = journey.scan
+
+        def interrupt() -> bool:
+            if engine.now > 0.3:
+                raise KeyboardInterrupt
+            return scan()
+
+        journey.scan = interrupt  # type: ignore[method-assign]
+        with pytest.raises(KeyboardInterrupt):
+            journey.wait()
+        journey.scan = scan  # type: ignore[method-assign]
+    else:
+        with pytest.raises(takt.TimeoutError, match=r"not there within 0\.3 s: a .*, b"):
+            journey.wait(0.3)
+    b.halt().wait()
+    engine.run(3)
+    assert (a.x, a.y) == pytest.approx(at((2, 2)), abs=1e-6)
+    journey.wait()
+    assert (a.x, a.y) == pytest.approx(at((2, 0)), abs=1e-6)
+    assert (b.x, b.y) == pytest.approx(at((5, 1)), abs=1e-6)
 
 
 def test_the_same_plan_each_time() -> None:

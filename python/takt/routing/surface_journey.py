@@ -95,12 +95,16 @@ class SurfaceJourney:
     def _check(self) -> None:
         for one in self._left:
             if (sentence := one.fault()) is not None:
-                self._interrupted = True
-                for other in self._left:
-                    other.grant()
-                    if other.is_told:
-                        other.stop_where_granted(self._dynamics)
+                self._come_to_rest()
                 raise RoutingError(sentence, one.mover.name)
+
+    def _come_to_rest(self) -> None:
+        """Each where it was its turn; `scan` goes on from there."""
+        self._interrupted = True
+        for one in self._left:
+            one.grant()
+            if one.is_told:
+                one.stop_where_granted(self._dynamics)
 
     def _go_on_again(self) -> None:
         for one in self._left:
@@ -113,12 +117,21 @@ class SurfaceJourney:
         self._interrupted = False
 
     def wait(self, timeout: float = DEFAULT_TIMEOUT_S) -> SurfaceJourney:
-        """Lets engine time pass until all are there."""
+        """Lets engine time pass until all are there.
+
+        If that is not within `timeout` [s] (TimeoutError, says which are late and why) or is broken off, all come to
+        rest where it was their turn, and a further `wait` goes on.
+        """
         try:
             self.session.wait(self.scan, timeout)
         except TimeoutError:
             late = [t.mover.name + self._reason(t) for t in self._left]
+            self._come_to_rest()
             raise TimeoutError(f"not there within {timeout:g} s: {', '.join(late)}") from None
+        except BaseException:
+            if not self._interrupted:
+                self._come_to_rest()
+            raise
         self.session._catch_up(max((t.feedback.cycle for t in self._all if t.feedback), default=0))
         return self
 
