@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import random
 import re
 from pathlib import Path
 from typing import Any
@@ -81,6 +82,22 @@ def test_a_whole_log(tmp_path: Path) -> None:
     shown = page(run)
     assert shown["meta"]["lost samples"] == "none"
     assert shown["trouble"] == ""
+
+
+@pytest.mark.parametrize("gone", [0, 7])
+def test_messages_in_another_order_are_not_lost(gone: int, tmp_path: Path) -> None:
+    """A datagram may overtake others or come twice."""
+    whole = write(tmp_path / "whole.log", {"takt/axis/feed": range(100, 100 + gone)})
+    events = [(one.channel, one.data) for one in lcm.EventLog(str(whole), "r")]
+    chance = random.Random(gone)
+    mixed = sorted(range(1, len(events)), key=lambda i: i + chance.uniform(0, 40))
+    mixed += chance.sample(mixed, 20)
+    log = lcm.EventLog(str(tmp_path / "mixed.log"), "w", overwrite=True)
+    for channel, data in [events[0], *(events[i] for i in mixed)]:
+        log.write_event(1, channel, data)
+    log.close()
+    losses = takt.read_log(tmp_path / "mixed.log").meta["losses"]
+    assert losses == ({"takt/axis/feed": gone} if gone else {})
 
 
 @pytest.mark.parametrize("channel", CHANNELS)

@@ -9,7 +9,6 @@
 #include <cstring>
 #include <map>
 #include <numbers>
-#include <sstream>
 
 #include "takt/core/maths.h"
 #include "takt/core/read_file.h"
@@ -22,6 +21,7 @@ using KDL::Vector;
 constexpr std::size_t kHeader = 84;  // bytes: a text and the number of triangles
 constexpr std::size_t kRecord = 50;  // bytes: a normal, three corners, two bytes more
 constexpr std::size_t kMostBytes = 256'000'000;
+constexpr std::string_view kSpaces = " \t\r\n\f\v";
 static_assert(std::endian::native == std::endian::little, "STL counts so");
 
 using Corner = std::array<double, 3>;
@@ -108,36 +108,59 @@ bool ReadNumber(std::string_view word, double& number) {
   return error == std::errc() && read == end;
 }
 
-// The text between two `facet`s may be laid out in any way: only its vertices count. Keywords may be of any case.
+// The words of a text, and the lines they are in, whatever ends these: LF, CR LF or CR.
+class Words {
+ public:
+  explicit Words(std::string_view text) : text_(text) {}
+
+  // Returns the next word; empty at the end.
+  std::string_view Next() {
+    const auto is_space = [](char c) { return kSpaces.find(c) != std::string_view::npos; };
+    for (; at_ < text_.size() && is_space(text_[at_]); ++at_) {
+      const bool within = text_[at_] == '\r' && at_ + 1 < text_.size() && text_[at_ + 1] == '\n';
+      if (text_[at_] == '\n' || (text_[at_] == '\r' && !within)) ++line_;
+    }
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && !is_space(text_[at_])) ++at_;
+    return text_.substr(begin, at_ - begin);
+  }
+  std::string Place() const { return "line " + std::to_string(line_) + ": "; }
+
+ private:
+  std::string_view text_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+};
+
+// The text may be laid out in any way: only the vertices of each `facet` count. Keywords may be of any case.
 std::string ReadText(std::string_view text, Builder& builder) {
-  std::istringstream lines{std::string(text)};
+  Words words(text);
   std::array<Corner, 3> corners{};
   std::size_t vertices = 0;
   std::size_t triangles = 0;
-  int number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    std::istringstream words(line);
-    std::string word;
-    words >> word;
-    word = Lowered(std::move(word));
-    const std::string place = "line " + std::to_string(number) + ": ";
-    if (word == "vertex") {
-      if (vertices == 3) return place + "a facet has more than three vertices";
+  bool in_facet = false;  // else a word may be part of the name
+  for (std::string_view next = words.Next(); !next.empty(); next = words.Next()) {
+    const std::string word = Lowered(std::string(next));
+    if (word == "facet") {
+      if (vertices > 0) return words.Place() + "a facet begins within another";
+      in_facet = true;
+    } else if (word == "vertex" && in_facet) {
+      if (vertices == 3) return words.Place() + "a facet has more than three vertices";
+      const std::string place = words.Place();
       for (double& x : corners[vertices]) {
-        word.clear();
-        words >> word;
-        if (!ReadNumber(word, x)) return place + "expected three numbers behind 'vertex'";
+        if (!ReadNumber(words.Next(), x)) return place + "expected three numbers behind 'vertex'";
       }
       ++vertices;
-    } else if (word == "endfacet") {
-      if (vertices != 3) return place + "a facet has " + std::to_string(vertices) + " vertices instead of three";
+    } else if (word == "endfacet" && in_facet) {
+      if (vertices != 3)
+        return words.Place() + "a facet has " + std::to_string(vertices) + " vertices instead of three";
       if (++triangles > kMaxTriangles) return "more than " + std::to_string(kMaxTriangles) + " triangles";
-      if (!builder.Add(corners)) return place + "a facet has a vertex that is no number";
+      if (!builder.Add(corners)) return words.Place() + "a facet has a vertex that is no number";
       vertices = 0;
+      in_facet = false;
     }
   }
-  return vertices == 0 ? std::string() : "the text ends within a facet";
+  return in_facet ? "the text ends within a facet" : std::string();
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -51,6 +52,17 @@ TEST(Stl, IsReadAsProgramsWriteIt) {
       1, why);
   ASSERT_TRUE(mesh) << why;
   EXPECT_EQ(mesh->vertices[1].x(), 15);
+  // Old line ends, all in one line, a name that holds keywords.
+  const std::string words =
+      "solid vertex 1 facet normal 0 0 1 outer loop vertex 0 0 0 vertex 15 0 0 vertex 0 -2 0 "
+      "endloop endfacet endsolid vertex";
+  for (const char end : {'\r', ' ', '\t'}) {
+    std::string text = words;
+    std::ranges::replace(text, ' ', end);
+    const std::optional<Mesh> same = ReadStl(text, 1, why);
+    ASSERT_TRUE(same) << why;
+    EXPECT_EQ(same->vertices, mesh->vertices);
+  }
 }
 
 // GR-13
@@ -70,6 +82,8 @@ TEST(Stl, SaysWhatIsWrong) {
   EXPECT_EQ(WhyNot("solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 nan\nendfacet\n"),
             "line 6: a facet has a vertex that is no number");
   EXPECT_EQ(WhyNot("solid\nfacet\nvertex 0 0 0\n"), "the text ends within a facet");
+  EXPECT_EQ(WhyNot("solid\rfacet\rvertex 0 0\r"), "line 3: expected three numbers behind 'vertex'");
+  EXPECT_EQ(WhyNot("solid\nfacet\nvertex 0 0 0\nfacet\n"), "line 4: a facet begins within another");
   EXPECT_EQ(WhyNot("solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 2 0 0\nendfacet\n"),
             "this STL holds no triangles");
   std::string infinite = Binary(BoxFacets(1, 1, 1));
