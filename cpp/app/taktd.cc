@@ -106,7 +106,7 @@ int Run(const Options& options, MachineFile file) {
     checks.Run();
     return !drives || drives->Ready();
   };
-  if (drives) scheduler.later_ns = [&] { return drives->TakeLaterNs(); };
+  if (drives) scheduler.later_ns = [&] { return drives->TakeCycleShiftNs(); };
 
   std::cout << Greeting(machine, scheduler.pace);
   if (!file.url.empty())

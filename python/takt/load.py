@@ -7,6 +7,7 @@ print(found.machine_file())
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,8 +30,20 @@ class Load:
     coulomb_friction: float
     viscous_friction: float  # torque per u/s
     load_torque: float
-    left: float  # RMS of the residual torque
-    of: float  # RMS of the reported torque
+    residual_rms: float  # of the torque that the model does not explain
+    torque_rms: float  # of the reported torque
+
+    @property
+    def left(self) -> float:
+        """Former name of `residual_rms`."""
+        warnings.warn("Load.left is called residual_rms now", DeprecationWarning, stacklevel=2)
+        return self.residual_rms
+
+    @property
+    def of(self) -> float:
+        """Former name of `torque_rms`."""
+        warnings.warn("Load.of is called torque_rms now", DeprecationWarning, stacklevel=2)
+        return self.torque_rms
 
     def machine_file(self) -> str:
         """Returns the line `drive: torque_offset` for the machine file."""

@@ -66,7 +66,11 @@ def test_the_load_of_a_servo_is_identified_and_told_to_its_drive() -> None:
     assert found.coulomb_friction == pytest.approx(1.5, rel=0.15)
     assert found.viscous_friction == pytest.approx(0.004, rel=0.25)
     assert found.load_torque == pytest.approx(4, rel=0.03)
-    assert found.left < 0.05 * found.of
+    assert found.residual_rms < 0.05 * found.torque_rms
+    with pytest.warns(DeprecationWarning, match="residual_rms now"):
+        assert found.left == found.residual_rms
+    with pytest.warns(DeprecationWarning, match="torque_rms now"):
+        assert found.of == found.torque_rms
     told = yaml.safe_load(found.machine_file())["drive"]["torque_offset"]
     after = up_and_down(with_offset(SERVO, told), "z")
     assert error(after, "z") < 0.25 * error(before, "z")

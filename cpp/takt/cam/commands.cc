@@ -30,7 +30,7 @@ MakingProblem ProblemOf(double code) noexcept {
   return static_cast<MakingProblem>(Bits(code, 0, kOfProblem));
 }
 
-std::string SentenceOf(double code) {
+std::string MessageOf(double code) {
   const std::string expected = std::to_string(Bits(code, kOfProblem, kOfExpected));
   const std::string found = std::to_string(Bits(code, kOfProblem + kOfExpected, kOfFound));
   switch (ProblemOf(code)) {

@@ -89,7 +89,7 @@ enum class MakingProblem : std::uint8_t {
 double CodeOf(MakingProblem problem, std::size_t expected = 0, std::size_t found = 0) noexcept;
 MakingProblem ProblemOf(double code) noexcept;
 // Returns the message for a user; empty for kNone. Not for the cycle.
-std::string SentenceOf(double code);
+std::string MessageOf(double code);
 
 void describe(Description<BeginCam>&);
 void describe(Description<AddCamPoints>&);

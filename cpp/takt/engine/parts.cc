@@ -301,7 +301,7 @@ void StepParts(World& w) noexcept {
     Show(w, i);
     for (std::size_t k = 0; gone && k < w.movers.size(); ++k) {
       if (w.mover_states[k].part != i) continue;
-      mover::Carry(MoverContext(w, k), from, w.surface.spot(i), w.mover_inputs[k], w.mover_states[k]);
+      mover::ShiftWithPart(MoverContext(w, k), from, w.surface.spot(i), w.mover_inputs[k], w.mover_states[k]);
     }
   }
   for (std::uint32_t i = 0; i < w.parts.size(); ++i) {

@@ -55,7 +55,7 @@ std::string StatorSentence(double value) {
 }
 
 std::string CamSentence(double value) {
-  const std::string sentence = cam::SentenceOf(value);
+  const std::string sentence = cam::MessageOf(value);
   return sentence.empty() ? std::string(ErrorText(ErrorId::kCamMaking)) : sentence;
 }
 

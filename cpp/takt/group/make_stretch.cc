@@ -290,7 +290,7 @@ kinematics::Reason AxesOn(const Context& c, const State& s, const Stretch& stret
   }
   const KinematicState along = {way, 1, 0};
   const bool carried = IsCarried(c.ahead, stretch);
-  const path::MovingFrame tool = carried ? ToolThen(c, stretch, along, true) : path::At(stretch.segment, way);
+  const path::MovingFrame tool = carried ? PredictedTool(c, stretch, along, true) : path::At(stretch.segment, way);
   return AxesFor(c, s, stretch, tool, along, near, motion);
 }
 
@@ -302,7 +302,7 @@ std::uint64_t FailuresOn(const Context& c, const State& s, const Stretch& stretc
   for (std::size_t k = c.kinematics->count; k < kMaxAxes; ++k) from[k] = behind[k - c.kinematics->count];
   const KinematicState along = {way, 1, 0};
   const bool carried = IsCarried(c.ahead, stretch);
-  const path::MovingFrame tool = carried ? ToolThen(c, stretch, along, true) : path::At(stretch.segment, way);
+  const path::MovingFrame tool = carried ? PredictedTool(c, stretch, along, true) : path::At(stretch.segment, way);
   return FailuresAt(c, s, tool.GetFrame(), reason, from).Detail(c.number);
 }
 
@@ -390,12 +390,12 @@ kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& str
   }
   const bool carried = IsCarried(c.ahead, stretch);
   const KinematicState along = {way, 1, 0}, resting = {way, 0, 0};
-  point.slopes = SlopesOf(c, motion, carried ? ToolThen(c, stretch, along, true) : path::At(stretch.segment, way));
+  point.slopes = SlopesOf(c, motion, carried ? PredictedTool(c, stretch, along, true) : path::At(stretch.segment, way));
   if (!carried) return reason;
   std::array<trajectory::PathSlopes, 2> with;
   for (std::size_t i = 0; i < 2; ++i) {
     const KinematicState& one = i == 0 ? along : resting;
-    const path::MovingFrame tool = ToolThen(c, stretch, one, false);
+    const path::MovingFrame tool = PredictedTool(c, stretch, one, false);
     kinematics::JointMotion moved;
     reason = AxesFor(c, s, stretch, tool, one, motion.position, moved);
     if (reason != kinematics::Reason::kNone) return reason;

@@ -268,7 +268,7 @@ bool IsClosed(const Context& c, const Stretch& stretch, double way, const trajec
     s.refused = TakenOf(closed, s, velocity, nullptr, kTowardsAlong);
   } else {
     const path::MovingFrame tool =
-        IsCarried(c.ahead, stretch) ? ToolThen(c, stretch, {way, 1, 0}, true) : path::At(stretch.segment, way);
+        IsCarried(c.ahead, stretch) ? PredictedTool(c, stretch, {way, 1, 0}, true) : path::At(stretch.segment, way);
     s.refused = TakenOf(closed, s, velocity, &tool, kTowardsAlong);
   }
   return s.refused.any();

@@ -184,7 +184,7 @@ MovingFrame ToolNow(const Context& c, const State& s, const Stretch& stretch, co
   });
 }
 
-MovingFrame ToolThen(const Context& c, const Stretch& stretch, const KinematicState& way, bool still) noexcept {
+MovingFrame PredictedTool(const Context& c, const Stretch& stretch, const KinematicState& way, bool still) noexcept {
   const double length = stretch.to - stretch.from;
   const double x = length > 0 ? std::clamp((way.position - stretch.from) / length, 0.0, 1.0) : 1;
   const double then = std::lerp(stretch.eta_begin, stretch.eta_end, x) - Now(c);

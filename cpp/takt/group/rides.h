@@ -46,7 +46,7 @@ KinematicState ShareAt(const LookAhead& ahead, const Stretch& stretch, double wa
 // The tool on a stretch for a motion along its segment, with what carries it as it is now; clutches included.
 MovingFrame ToolNow(const Context& c, const State& s, const Stretch& stretch, const KinematicState& way) noexcept;
 // The same with carriers extrapolated to the expected arrival at `way.position`. `still`: their velocities set to 0.
-MovingFrame ToolThen(const Context& c, const Stretch& stretch, const KinematicState& way, bool still) noexcept;
+MovingFrame PredictedTool(const Context& c, const Stretch& stretch, const KinematicState& way, bool still) noexcept;
 // Updates LookAhead::unsteady; once per cycle.
 void WatchCarriers(const Context& c, const State& s) noexcept;
 // Returns whether a carrier of the stretch has accelerated within the last 3 s (WatchCarriers).

@@ -75,7 +75,7 @@ bool Drives::Ready() {
   while (waiting_ && !AllAnswered()) {
     const std::int64_t at = SteadyNs();
     if (at >= give_up_ns_) {
-      GoOnWithout();
+      GiveUpMissingDrives();
       break;
     }
     if (at >= send_again_ns_) {
@@ -108,7 +108,7 @@ bool Drives::AllAnswered() const {
   return true;
 }
 
-void Drives::GoOnWithout() {
+void Drives::GiveUpMissingDrives() {
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     Line& line = lines_[i];
     if (line.given_up || Answered(i) || ++line.misses < gate_.missing_cycles(i)) continue;
@@ -152,15 +152,15 @@ void Drives::Receive(const Heard& heard) {
   if (!sample) return;
   if (!engine_.drive_samples().TryPush(*sample)) engine_.CountRefusedSample();
   if (options_.real_time) {
-    if (sample->later_s != 0 && !leads_) leads_ = sample->axis;
-    if (leads_ == sample->axis) later_ns_ = std::llround(std::clamp(sample->later_s, -1.0, 1.0) * 1e9);
+    if (sample->later_s != 0 && !clock_axis_) clock_axis_ = sample->axis;
+    if (clock_axis_ == sample->axis) later_ns_ = std::llround(std::clamp(sample->later_s, -1.0, 1.0) * 1e9);
     return;
   }
   Line& line = lines_[gate_.DriveOf(sample->axis)];
   line.given_up = false;
 }
 
-std::int64_t Drives::TakeLaterNs() {
+std::int64_t Drives::TakeCycleShiftNs() {
   return later_ns_.exchange(0);
 }
 

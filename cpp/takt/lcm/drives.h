@@ -51,7 +51,7 @@ class Drives {
 
   // Real time: returns and clears by how much later the cycles should begin for the clock of a bus [ns], +-1e9; 0:
   // nothing new. From the newest answer; only the first drive that sends a value other than 0 counts.
-  std::int64_t TakeLaterNs();
+  std::int64_t TakeCycleShiftNs();
 
  private:
   // One drive.
@@ -73,7 +73,7 @@ class Drives {
   void ReceiveThread();
   bool Answered(std::size_t drive) const;
   bool AllAnswered() const;
-  void GoOnWithout();
+  void GiveUpMissingDrives();
 
   engine::Engine& engine_;
   const DrivesOptions options_;
@@ -92,7 +92,7 @@ class Drives {
   // Real time.
   std::atomic<bool> stop_{false};
   std::atomic<std::int64_t> later_ns_{0};
-  std::optional<std::uint32_t> leads_;  // axis of the drive that says it
+  std::optional<std::uint32_t> clock_axis_;  // of the drive whose bus gives the clock
   std::thread sender_, receiver_;
 };
 

@@ -58,7 +58,7 @@ Publisher::Publisher(engine::Engine& engine, Clients& clients, Outlet* network, 
     shape_channels_.push_back({.name = ShapeChannel(track.name)});
   }
   shapes_.resize(shape_channels_.size());
-  coming_.resize(shape_channels_.size());
+  partial_shapes_.resize(shape_channels_.size());
   thread_ = std::thread([this] { Run(); });
 }
 
@@ -108,7 +108,7 @@ bool Publisher::Drain() {
     auto message = ToMessage(piece, engine_.machine());
     ToBoth(cam_channel_, message);
   });
-  any |= Take(engine_.track_places(), [this](const engine::TrackPlaces& places) { AddPlaces(places); });
+  any |= Take(engine_.track_places(), [this](const engine::TrackPlaces& places) { AppendShapePoints(places); });
   return any | DrainStates(static_cast<engine::PublishedKinds*>(nullptr));
 }
 
@@ -135,8 +135,8 @@ bool Publisher::DrainStatesOf(std::vector<Channel>& channels) {
   });
 }
 
-void Publisher::AddPlaces(const engine::TrackPlaces& places) {
-  msgs::track_shape& shape = coming_[places.track];
+void Publisher::AppendShapePoints(const engine::TrackPlaces& places) {
+  msgs::track_shape& shape = partial_shapes_[places.track];
   if (places.first == 0) shape = {};
   Add(places, engine_.machine(), shape);
   if (places.first + places.count < places.total) return;

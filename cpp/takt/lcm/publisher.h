@@ -56,7 +56,7 @@ class Publisher {
   template <typename Outputs>
   bool DrainStatesOf(std::vector<Channel>& channels);
   // Appends points to the shape of their track; sends it once it is complete.
-  void AddPlaces(const engine::TrackPlaces& places);
+  void AppendShapePoints(const engine::TrackPlaces& places);
   void PublishReplies();
   void PublishMachine();
   void PublishFigures(const engine::EngineFigures& figures);
@@ -87,7 +87,7 @@ class Publisher {
   std::vector<Channel> trail_channels_;               // by mover
   std::vector<Channel> shape_channels_;               // by track
   std::vector<msgs::track_shape> shapes_;             // complete, by track; sent again for later subscribers
-  std::vector<msgs::track_shape> coming_;             // incomplete, by track
+  std::vector<msgs::track_shape> partial_shapes_;     // by track
   Channel engine_channel_, machine_channel_, feedback_channel_, cam_channel_;
   std::int64_t next_machine_ns_ = 0;
   std::int64_t next_flush_ns_ = 0;  // of the log

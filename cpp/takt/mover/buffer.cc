@@ -39,7 +39,7 @@ std::optional<MoveToPosition> MoveOf(const Context& c, const Command& command, c
   const auto* move = std::get_if<MoveToPosition>(&command);
   if (!move) return {};
   MoveToPosition to = *move;
-  if (ToItsSystem(c, s, move->reference, to.x, to.y) != ErrorId::kNone) return {};
+  if (ToMoverSystem(c, s, move->reference, to.x, to.y) != ErrorId::kNone) return {};
   return to;
 }
 

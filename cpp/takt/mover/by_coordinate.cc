@@ -102,7 +102,7 @@ std::optional<Plan> PlanEach(const Context& c, const State& s, Coordinate which,
 
 // Why X and Y may not move so: none.
 planar::Verdict WhyNotSo(const Context& c, const State& s, const PlaneMove& move) {
-  if (const ErrorId why = WhyNotOn(c, s, CoverOf(c, move, s.others.back())); why != ErrorId::kNone) {
+  if (const ErrorId why = DiagnoseCover(c, s, CoverOf(c, move, s.others.back())); why != ErrorId::kNone) {
     const Answer answer = RefusedThere(s, why);
     return {why, answer.object};
   }
@@ -195,7 +195,7 @@ MoveToPosition Unsigned(const Command& command) {
 Answer MoveTo(const Given& g, Coordinate which, const auto& command) {
   if (const ErrorId why = WhyNot(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
   double x = command.position, y = command.position;
-  if (const ErrorId why = ToItsSystem(g.c, g.s, command.reference, x, y); why != ErrorId::kNone) return Refused(why);
+  if (const ErrorId why = ToMoverSystem(g.c, g.s, command.reference, x, y); why != ErrorId::kNone) return Refused(why);
   return MoveEach(g, which, {true, which == kX ? x : y, LimitsOfEachIn(g, command)});
 }
 

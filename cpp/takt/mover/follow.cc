@@ -194,11 +194,11 @@ ErrorId Follow(const Context& c, SetPoint& at, State& s, ObjectInfo& object) noe
   const PlaneState off = OffTrack(s, external.given, Elapsed(c, s.plane.begin) + c.cycle.period_s);
   if (IsOnTrack(s)) {
     const PlacesOff places = PlacesOffTrack(c, off);
-    if (const ErrorId why = WhyNotOn(c, s, CoverOf(c, s, places)); why != ErrorId::kNone) return why;
+    if (const ErrorId why = DiagnoseCover(c, s, CoverOf(c, s, places)); why != ErrorId::kNone) return why;
     object = TakeStopOff(c, places, to);
     if (!object) object = TakeCourseOff(c, s, to);
   } else {
-    if (const ErrorId why = WhyNotOn(c, s, CoverOfStop(c, to)); why != ErrorId::kNone) return why;
+    if (const ErrorId why = DiagnoseCover(c, s, CoverOfStop(c, to)); why != ErrorId::kNone) return why;
     if (external.mode == SetpointMode::kRelative) object = TakeStop(c, s, to);
     if (!object) object = TakeCourse(c, to, s);
   }

@@ -190,7 +190,7 @@ Terms TermsOf(const Context& c, const Command& command, State& s) noexcept {
   if (!is_move) return terms;
   const planar::Place from{s.set_point[kX].position, s.set_point[kY].position};
   planar::Place to = move ? planar::Place{move->x, move->y} : from;
-  if (move && ToItsSystem(c, s, move->reference, to.x, to.y) != ErrorId::kNone) return terms;
+  if (move && ToMoverSystem(c, s, move->reference, to.x, to.y) != ErrorId::kNone) return terms;
   const bool moves = !IsPlaneResting(c, s), turns = Turns(c, s);
   const bool is_to_move = one || to.x != from.x || to.y != from.y;
   const bool is_to_turn = turn || (move && TurnsAlong(*move) && *move->c != s.set_point[kC].position);

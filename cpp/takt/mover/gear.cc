@@ -122,7 +122,7 @@ Answer Couple(const Given& g, const Gear& command, Rider& next, std::uint32_t ax
   next.aim = planar::Aim::kFollow;
   const double least = LeastGap(g.c, s, next, command.gap.value_or(g.c.params.gap));
   if (command.gap && *command.gap < least - planar::kSame) return RefusedGap(least);
-  if (const ErrorId why = WhyNotAlong(g.c, s, next, s.others.back()); why != ErrorId::kNone) return Refused(why);
+  if (const ErrorId why = DiagnoseRoute(g.c, s, next, s.others.back()); why != ErrorId::kNone) return Refused(why);
   next.planned = next.there = false;
   next.waits = planar::Waits::kNot;
   next.waits_for = kNobody;

@@ -43,7 +43,7 @@ std::optional<PlaneMove> PlanPlane(const Given& g, const MoveToPosition& to, con
     const PlaneState corner{{from.corner_x, 0, 0}, {from.corner_y, 0, 0}};
     const PlaneState now = At(from.motion, Elapsed(c, from.begin));
     if (PlanRound(c.planner, now, corner, to.x, to.y, from.share, even, round.motion) &&
-        WhyNotOn(c, g.s, CoverOf(c, round, g.s.others.back())) == ErrorId::kNone) {
+        DiagnoseCover(c, g.s, CoverOf(c, round, g.s.others.back())) == ErrorId::kNone) {
       duration = DurationOf(round.motion);
       return round;
     }
@@ -141,7 +141,7 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
     PlanRest(g.c.planner, turned, StandardOf(free), ParamsOf(g.c, s, kOthers.size() - 1), turn.profile);
     turn.begin = g.c.cycle.count;
   }
-  if (const ErrorId why = WhyNotOn(g.c, s, CoverOf(g.c, *move, turn)); why != ErrorId::kNone) {
+  if (const ErrorId why = DiagnoseCover(g.c, s, CoverOf(g.c, *move, turn)); why != ErrorId::kNone) {
     return RefusedThere(s, why);
   }
   if (const ObjectInfo object = InTheWay(g.c, *move, turn, false)) return Refused(ErrorId::kCollision, object);
@@ -163,7 +163,7 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
 Answer CarryOut(const Given& g, const MoveToPosition& command) noexcept {
   if (const ErrorId why = WhyNot(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
   MoveToPosition to = command;
-  const ErrorId why = ToItsSystem(g.c, g.s, command.reference, to.x, to.y);
+  const ErrorId why = ToMoverSystem(g.c, g.s, command.reference, to.x, to.y);
   return why == ErrorId::kNone ? MoveTo(g, to) : Refused(why);
 }
 
@@ -196,9 +196,9 @@ Answer WhyNotTurning(const Given& g, const CoordinateMove& move) {
   const State& s = g.s;
   if (!IsInside(g.c, move) && (IsStar(g.c) || !IsPlaneResting(g.c, s))) return Refused(ErrorId::kOutsideWindow);
   if (!IsOnTrack(s)) {
-    const ErrorId why = WhyNotOn(g.c, s, CoverOf(g.c, s.plane, move));
+    const ErrorId why = DiagnoseCover(g.c, s, CoverOf(g.c, s.plane, move));
     if (why != ErrorId::kNone) return RefusedThere(s, why);
-  } else if (const ErrorId why = WhyNotAlong(g.c, s, g.c.rider(), move); why != ErrorId::kNone) {
+  } else if (const ErrorId why = DiagnoseRoute(g.c, s, g.c.rider(), move); why != ErrorId::kNone) {
     return Refused(why);
   }
   if (const ObjectInfo object = InTheWay(g.c, s.plane, move, IsOnTrack(s))) return Refused(ErrorId::kCollision, object);

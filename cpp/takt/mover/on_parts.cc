@@ -90,7 +90,7 @@ void AddStop(const Context& c, const SetPoint& at, Cover& out) {
   Add(AreaOf(c, {std::min(turned, stop), std::max(turned, stop)}), rest, 0, out);
 }
 
-ErrorId WhyNotOn(const planar::Parts& parts, std::uint32_t system, const Area& area) {
+ErrorId DiagnoseCover(const planar::Parts& parts, std::uint32_t system, const Area& area) {
   if (!planar::Carries(parts, system, area)) return ErrorId::kOffStators;
   for (std::uint32_t i = 0; i < parts.all.size(); ++i) {
     const planar::PartNow& now = parts.now[i];
@@ -102,7 +102,7 @@ ErrorId WhyNotOn(const planar::Parts& parts, std::uint32_t system, const Area& a
 
 }  // namespace
 
-ErrorId ToItsSystem(const Context& c, const State& s, const Name& reference, double& x, double& y) noexcept {
+ErrorId ToMoverSystem(const Context& c, const State& s, const Name& reference, double& x, double& y) noexcept {
   const std::optional<planar::Spot> from = planar::Resolve(PartsOf(c), reference.view());
   if (!from || from->system != s.system) return ErrorId::kReference;
   x += from->origin.x;
@@ -178,15 +178,15 @@ Cover CoverOf(const Area& kind, const PlaneMotion& motion, double t) noexcept {
   return cover;
 }
 
-ErrorId WhyNotOn(const Context& c, const State& s, const Cover& cover) noexcept {
+ErrorId DiagnoseCover(const Context& c, const State& s, const Cover& cover) noexcept {
   const planar::Parts& parts = PartsOf(c);
   ErrorId why = ErrorId::kNone;
   if (parts.none()) return why;
   for (const Area& area : cover.all()) {
-    if (why == ErrorId::kNone) why = WhyNotOn(parts, s.system, area);
+    if (why == ErrorId::kNone) why = DiagnoseCover(parts, s.system, area);
     EachPlanet(c, [&](std::uint32_t i) {
       const planar::Arm arm = ArmOf(c.fleet.params[i], c.fleet.states[i].formation);
-      if (why == ErrorId::kNone) why = WhyNotOn(parts, s.system, planar::AreaOf(arm, area));
+      if (why == ErrorId::kNone) why = DiagnoseCover(parts, s.system, planar::AreaOf(arm, area));
     });
   }
   return why;
@@ -197,19 +197,19 @@ namespace {
 constexpr double kFlush = 0.01;  // mm: so exactly a way is held against the border
 
 // By halves, until what the bend adds is small enough to leave out.
-ErrorId WhyNotOn(const planar::Parts& parts, std::uint32_t system, const planar::Road& road, double from, double to,
-                 const Area& kind) {
+ErrorId DiagnoseCover(const planar::Parts& parts, std::uint32_t system, const planar::Road& road, double from,
+                      double to, const Area& kind) {
   const double length = to - from, curvature = 1.01 * planar::PeakCurvature(*road.track, from, to);
   const double stray = curvature * length * length / 8;
   Area area = kind;
   area.places = {planar::At(*road.track, from).place + road.origin, planar::At(*road.track, to).place + road.origin};
   area.count = length > 0 ? 2 : 1;
   area.margin = stray > kFlush ? stray : 0;
-  const ErrorId why = WhyNotOn(parts, system, area);
+  const ErrorId why = DiagnoseCover(parts, system, area);
   if (why == ErrorId::kNone || stray <= kFlush) return why;
   const double middle = from + length / 2;
-  const ErrorId first = WhyNotOn(parts, system, road, from, middle, kind);
-  return first != ErrorId::kNone ? first : WhyNotOn(parts, system, road, middle, to, kind);
+  const ErrorId first = DiagnoseCover(parts, system, road, from, middle, kind);
+  return first != ErrorId::kNone ? first : DiagnoseCover(parts, system, road, middle, to, kind);
 }
 
 Area KindOnTrack(const Context& c, const State& s, const CoordinateMove& turn) {
@@ -220,7 +220,8 @@ Area KindOnTrack(const Context& c, const State& s, const CoordinateMove& turn) {
 
 }  // namespace
 
-ErrorId WhyNotAlong(const Context& c, const State& s, const planar::Rider& rider, const CoordinateMove& turn) noexcept {
+ErrorId DiagnoseRoute(const Context& c, const State& s, const planar::Rider& rider,
+                      const CoordinateMove& turn) noexcept {
   const planar::Parts& parts = PartsOf(c);
   if (parts.none()) return ErrorId::kNone;
   const planar::Network& network = c.streets.network;
@@ -228,7 +229,7 @@ ErrorId WhyNotAlong(const Context& c, const State& s, const planar::Rider& rider
   const Area kind = KindOnTrack(c, s, turn);
   ErrorId why = ErrorId::kNone;
   planar::EachStretch(network, rider.route, way.from, way.to, [&](std::uint32_t track, double from, double to) {
-    if (why == ErrorId::kNone) why = WhyNotOn(parts, s.system, network[track], from, to, kind);
+    if (why == ErrorId::kNone) why = DiagnoseCover(parts, s.system, network[track], from, to, kind);
   });
   return why;
 }
@@ -294,7 +295,8 @@ void Locate(const Context& c, State& s) noexcept {
                         : planar::PartAt(parts, s.system, {s.set_point[kX].position, s.set_point[kY].position}, s.part);
 }
 
-void Carry(const Context& c, const planar::Spot& from, const planar::Spot& to, Inputs& inputs, State& s) noexcept {
+void ShiftWithPart(const Context& c, const planar::Spot& from, const planar::Spot& to, Inputs& inputs,
+                   State& s) noexcept {
   const planar::Place by = to.origin - from.origin;
   inputs.actual.x += by.x;
   inputs.actual.y += by.y;

@@ -15,7 +15,7 @@ namespace takt::mover {
 
 // Brings coordinates with a reference into the coordinate system where the mover is. kReference: there is no such
 // reference, or it is of another coordinate system.
-ErrorId ToItsSystem(const Context& c, const State& s, const Name& reference, double& x, double& y) noexcept;
+ErrorId ToMoverSystem(const Context& c, const State& s, const Name& reference, double& x, double& y) noexcept;
 
 // What a mover covers of the plane; tracks apart.
 struct Cover {
@@ -44,10 +44,11 @@ Cover CoverOf(const planar::Area& kind, const PlaneMotion& motion, double t) noe
 
 // Returns kOffStators or kPartDisabled where the cover, that of planets of its formation included, leaves the stators
 // or touches a part that is neither enabled nor about to be; else kNone.
-ErrorId WhyNotOn(const Context& c, const State& s, const Cover& cover) noexcept;
+ErrorId DiagnoseCover(const Context& c, const State& s, const Cover& cover) noexcept;
 
 // The same for the route of a mover on tracks (planar::WayOf), with its present angle and those of `turn`.
-ErrorId WhyNotAlong(const Context& c, const State& s, const planar::Rider& rider, const CoordinateMove& turn) noexcept;
+ErrorId DiagnoseRoute(const Context& c, const State& s, const planar::Rider& rider,
+                      const CoordinateMove& turn) noexcept;
 // Returns whether the route of a mover on a track leads over the part; off tracks false.
 bool LeadsOver(const Context& c, const State& s, std::uint32_t part) noexcept;
 
@@ -67,7 +68,8 @@ bool NeedsParts(const State& s) noexcept;
 void Locate(const Context& c, State& s) noexcept;
 
 // Shifts set and actual position from one spot to the other, as the part under the mover has. Requires: at rest.
-void Carry(const Context& c, const planar::Spot& from, const planar::Spot& to, Inputs& inputs, State& s) noexcept;
+void ShiftWithPart(const Context& c, const planar::Spot& from, const planar::Spot& to, Inputs& inputs,
+                   State& s) noexcept;
 
 // Returns the area of a mover at `place` [mm] with the angle `c` [deg].
 planar::Area AreaAt(const MoverParams& params, const planar::Place& place, double c) noexcept;

@@ -181,7 +181,7 @@ Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
   if (!IsPlaneResting(g.c, s)) return Refused(ErrorId::kCommandMode);
   if (streets.uses[s.track].moving > 0) return Refused(ErrorId::kTrackMode, TrackOf(s.track));
   double x = command.x, y = command.y;
-  if (const ErrorId why = ToItsSystem(g.c, s, command.reference, x, y); why != ErrorId::kNone) return Refused(why);
+  if (const ErrorId why = ToMoverSystem(g.c, s, command.reference, x, y); why != ErrorId::kNone) return Refused(why);
   s.plane = {};
   // Without what set points from outside add.
   const planar::Place at = streets.At(s.track, g.c.rider().at.position).place;
@@ -255,7 +255,7 @@ planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const Stat
                                command.modulo_tolerance};
   if (!planar::Send(streets.network, streets.search, to, rider)) return NoWayTo(c, to, rider);
   const planar::Verdict route = AskRoute(c, rider.route);
-  return route.error == ErrorId::kNone ? planar::Verdict{WhyNotAlong(c, s, rider, s.others.back()), {}} : route;
+  return route.error == ErrorId::kNone ? planar::Verdict{DiagnoseRoute(c, s, rider, s.others.back()), {}} : route;
 }
 
 std::uint32_t PartAwaited(const Context& c, const Command& command, const State& s) noexcept {

@@ -96,7 +96,7 @@ bool Stays(const Context& c, const State& s, const PlaneMotion& motion) {
   PlaneMove move;
   move.motion = motion;
   move.begin = c.cycle.count;
-  return WhyNotOn(c, s, CoverOf(c, move, s.others.back())) == ErrorId::kNone;
+  return DiagnoseCover(c, s, CoverOf(c, move, s.others.back())) == ErrorId::kNone;
 }
 
 // On a track: what set points from outside have added comes to rest by itself, and goes back to nothing once the mover
@@ -182,7 +182,7 @@ bool LeadsAway(const Context& c, const trajectory::Limits& softly, const Coordin
   if (!IsOnTrack(s)) return false;
   planar::Rider then = c.rider();
   RestOnTrack(&softly, then);
-  return WhyNotAlong(c, s, then, turn) != ErrorId::kNone;
+  return DiagnoseRoute(c, s, then, turn) != ErrorId::kNone;
 }
 
 }  // namespace

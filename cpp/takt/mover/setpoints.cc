@@ -27,7 +27,7 @@ Answer CarryOut(const Given& g, const SetExternalSetpoint& p) noexcept {
   if (external.mode == SetpointMode::kNone) return Refused(ErrorId::kCommandMode);
   double x = p.x, y = p.y;
   if (external.mode == SetpointMode::kAbsolute) {
-    const ErrorId why = ToItsSystem(g.c, g.s, p.reference, x, y);
+    const ErrorId why = ToMoverSystem(g.c, g.s, p.reference, x, y);
     if (why != ErrorId::kNone) return Refused(why);
   }
   external.given = {{{x, p.velocity_x, p.acceleration_x},

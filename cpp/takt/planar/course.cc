@@ -69,7 +69,7 @@ struct Turned {
   double margin = 0;  // mm, for what turns, and for what is off the track
 };
 
-Turned TurnedAt(const Network& network, const Rolling& r, double s) {
+Turned TurnedAt(const Network& network, const BrakingMover& r, double s) {
   const Route& route = r.rider.route;
   std::uint32_t k = 0;
   while (k + 1 < route.count && s > network[route.tracks[k]].length) s -= network[route.tracks[k++]].length;
@@ -177,7 +177,7 @@ bool ApartByOrder(const Network& network, const Rider& behind, const Braking& be
   return chord >= MostReach(half_width, half_height, seen - bend, seen + bend) - kSame;
 }
 
-bool ApartInTime(const Network& network, const Rolling& a, const Rolling& b, double period_s) noexcept {
+bool ApartInTime(const Network& network, const BrakingMover& a, const BrakingMover& b, double period_s) noexcept {
   const double end = std::max(a.braking.ends_s.back(), b.braking.ends_s.back());
   const double closing = MostSpeed(a.braking) + MostSpeed(b.braking);
   double t = 0;

@@ -122,14 +122,13 @@ Course CourseOn(const Network& network, const Rider& rider, double from, double 
 bool ApartByOrder(const Network& network, const Rider& behind, const Braking& behind_brakes, const Area& behind_kind,
                   const Braking& ahead_brakes, const Area& ahead_kind, double apart) noexcept;
 
-// A braking mover on a track.
-struct Rolling {
+struct BrakingMover {
   const Rider& rider;
   const Braking& braking;
   const Area& kind;
 };
 // Returns true if two braking movers never overlap, checked by conservative advancement in whole cycles; false if they
 // do, or if the instants that it looks at do not suffice.
-bool ApartInTime(const Network& network, const Rolling& a, const Rolling& b, double period_s) noexcept;
+bool ApartInTime(const Network& network, const BrakingMover& a, const BrakingMover& b, double period_s) noexcept;
 
 }  // namespace takt::planar

@@ -101,7 +101,7 @@ class Esc:
         m[_SII_CONTROL] = 0x40  # 8 bytes at once
         self._maps: list[tuple[int, int, int, int]] = []
         self._outbox: list[bytes] = []
-        self._letter = b""  # message delivered last, for a repeat request
+        self._mailbox_message = b""  # message delivered last, for a repeat request
         self._received: bytes | None = None
         self._heard = self._sent = 0  # mailbox counters: last received, last sent
         self.waiting = False
@@ -162,7 +162,7 @@ class Esc:
             self.waiting = False
             self.device.entered(state, before)
             if state == SAFE_OPERATIONAL:
-                self._lay_ready(self.device.cycle(None))
+                self._put_inputs(self.device.cycle(None))
 
     @property
     def watchdog_s(self) -> float:
@@ -189,7 +189,7 @@ class Esc:
     def _active(self, manager: int) -> bool:
         return bool(self.memory[_SYNC_MANAGERS + 8 * manager + 6] & 1)
 
-    def _lay_ready(self, inputs: bytes) -> None:
+    def _put_inputs(self, inputs: bytes) -> None:
         begin, length = self._area(3)
         self.memory[begin : begin + length] = inputs[:length].ljust(length, b"\0")
 
@@ -198,7 +198,7 @@ class Esc:
         self.waiting = False
         begin, length = self._area(2)
         operational = self.state == OPERATIONAL
-        self._lay_ready(self.device.cycle(bytes(self.memory[begin : begin + length]) if operational else None))
+        self._put_inputs(self.device.cycle(bytes(self.memory[begin : begin + length]) if operational else None))
 
     # --- mailbox ---
 
@@ -223,12 +223,12 @@ class Esc:
     def _deliver(self) -> None:
         status = _SYNC_MANAGERS + 8 + 5
         if self._outbox and not self.memory[status] & _MAILBOX_FULL:
-            self._letter = self._outbox.pop(0)
-            self._put_letter()
+            self._mailbox_message = self._outbox.pop(0)
+            self._put_mailbox_message()
 
-    def _put_letter(self) -> None:
+    def _put_mailbox_message(self) -> None:
         begin, length = self._area(1)
-        self.memory[begin : begin + length] = self._letter[:length].ljust(length, b"\0")
+        self.memory[begin : begin + length] = self._mailbox_message[:length].ljust(length, b"\0")
         self.memory[_SYNC_MANAGERS + 8 + 5] |= _MAILBOX_FULL
 
     def _repetition(self) -> None:
@@ -236,11 +236,11 @@ class Esc:
         at = _SYNC_MANAGERS + 8 + 6
         if (self.memory[at] ^ self.memory[at + 1]) & 2:
             self.memory[at + 1] ^= 2
-            if self._letter:
+            if self._mailbox_message:
                 if self.memory[at - 1] & _MAILBOX_FULL:
                     begin, length = self._area(1)
                     self._outbox.insert(0, bytes(self.memory[begin : begin + length]))
-                self._put_letter()
+                self._put_mailbox_message()
 
     # --- memory ---
 

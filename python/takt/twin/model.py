@@ -198,7 +198,7 @@ class _Builder:
         base[:3, 3] = pose["x"], pose["y"], pose["z"]
         return Tool(group["name"], kinematics, rows, site, body, base)
 
-    def weigh(self, model: Any, joints: Sequence[Joint]) -> None:
+    def add_drive_trains(self, model: Any, joints: Sequence[Joint]) -> None:
         """Gives the joints motors, gears and friction."""
         for joint, told in zip(joints, self.twin["axes"], strict=True):
             model.dof_armature[joint.velocity] += told["rotor_inertia"]
@@ -214,7 +214,7 @@ class _Builder:
         servos = self.machine["simulation"]["servos"]
         return float(next((s["mechanics"]["start_position"] for s in servos if s["axis"] == axis), 0.0))
 
-    def lag_of(self, axis: str) -> float:
+    def time_constant_of(self, axis: str) -> float:
         """Time constant of the velocity loop of its drive."""
         servos = self.machine["simulation"]["servos"]
         return float(next((s["drive"]["velocity_time_constant_s"] for s in servos if s["axis"] == axis), 0.001))
@@ -279,7 +279,7 @@ class _Builder:
         self.mujoco.mj_forward(model, data)
         self.problems.end()
         held = np.diag(np.linalg.inv(gained))
-        shares = [1 - math.exp(-self.step_s / self.lag_of(joint.axis)) for joint in joints]
+        shares = [1 - math.exp(-self.step_s / self.time_constant_of(joint.axis)) for joint in joints]
         swing = float(np.abs(np.linalg.eigvals(gained * held)).max())
         return np.asarray(held * min(1.0, STABLE / (max(shares) * swing)))
 
@@ -321,7 +321,7 @@ class _Builder:
         tools = [self.tool_of(model, group, parts.tools[group["name"]], "twin.mechanisms") for group in self.groups]
         self.problems.end()
         fitting = [joint for joint in joints if joint is not None]
-        self.weigh(model, fitting)
+        self.add_drive_trains(model, fitting)
         data = self.mujoco.MjData(model)
         for joint in fitting:
             data.qpos[joint.position] = (self.start_of(joint.axis) - joint.zero) / joint.scale
@@ -427,7 +427,7 @@ class _Builder:
                 self.problems.add(f"twin.axes[{number}].joint", f"expected each joint once, found '{name}' again")
         self.problems.end()
         fitting = [joint for joint in joints if joint is not None]
-        self.weigh(model, fitting)
+        self.add_drive_trains(model, fitting)
         data = self.mujoco.MjData(model)
         for joint in fitting:
             data.qpos[joint.position] = (self.start_of(joint.axis) - joint.zero) / joint.scale
