@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 import takt
@@ -182,3 +182,32 @@ def test_a_section_that_cannot_work_is_refused(section: str, why: str) -> None:
     machine = WITH_SWITCHES.replace("requires_reference: true\n", f"requires_reference: true\n    homing: {section}\n")
     with pytest.raises(takt.ConfigError, match=why):
         takt.Engine(machine)
+
+
+@pytest.mark.parametrize("mode", ["buffered", "blending_low", "blending_high", "blending_next", "blending_previous"])
+@pytest.mark.parametrize("how", ["flying", "set_position"])
+def test_a_reference_in_passing_before_a_blend(how: str, mode: Literal["buffered", "blending_low"]) -> None:
+    """AX-62, AX-18: the move to blend into lies elsewhere now, on the other side: the axis does not pass its target."""
+    machine = {
+        "name": "passing",
+        "axes": [
+            {"name": "x", "limits": {"velocity": 100, "acceleration": 1000, "jerk": 20000, "lower": -100, "upper": 91}}
+        ],
+        "simulation": {"servos": [{"axis": "x", "switches": {"reference": {"from": 20, "to": 25}}}]},
+    }
+    with takt.Engine(machine) as s:
+        x = s.axis("x")
+        x.power().wait()
+        if how == "flying":
+            x.step_ref_flying_switch(set_position=50)
+        first = x.move_absolute(position=60, velocity=50)
+        second = x.move_absolute(position=70, velocity=50, buffer_mode=mode)
+        s.run(0.5)
+        if how == "set_position":
+            x.define_position(position=30, relative=True)
+        with s.record("x") as recorder:
+            second.wait()
+        assert first.done
+        assert (x.set_position, x.error) == (pytest.approx(70), 0)
+        assert max(recorder.recording["x"]["set_position"]) == pytest.approx(90, abs=1e-9)
+        takt.expect.within_limits(recorder.recording, "x")

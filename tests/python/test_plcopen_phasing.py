@@ -59,6 +59,7 @@ def test_how_far_a_shift_is(s: takt.Engine) -> None:
     begun = y.phase_shift - y.covered_phase_shift
     run(s, again, 0.6)
     assert again.Done
+    assert again.CoveredPhaseShift == pytest.approx(2)  # and nothing of the one before
     assert y.phase_shift - again.CoveredPhaseShift == pytest.approx(begun)
     y.gear_out().wait()
     s.step()

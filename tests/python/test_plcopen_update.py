@@ -17,6 +17,7 @@ from takt.plcopen import (
     MC_MoveRelative,
     MC_MoveSuperimposed,
     MC_MoveVelocity,
+    MC_PhasingAbsolute,
     MC_PositionProfile,
     MC_TorqueControl,
     MC_VelocityProfile,
@@ -327,3 +328,119 @@ def test_what_is_not_there_cannot_be_changed(s: takt.Engine, verb: str, argument
     x.power(enable=False).wait()
     assert s.command("x", verb, arguments | {"update": True}).wait_final().final
     assert x.state.value == "Disabled"
+
+
+MODES = ("buffered", "blending_low", "blending_previous", "blending_next", "blending_high")
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize(
+    ("block_of", "first", "then", "ends"),
+    [
+        (MC_MoveAbsolute, {"Position": 60.0, "Velocity": 100.0}, {"Velocity": 120.0}, 75.0),
+        (MC_MoveAbsolute, {"Position": 60.0, "Velocity": 100.0}, {"Position": 85.0}, 100.0),
+        (MC_MoveRelative, {"Distance": 60.0, "Velocity": 100.0}, {"Distance": 40.0}, 55.0),
+        (MC_MoveAdditive, {"Distance": 60.0, "Velocity": 100.0}, {"Distance": 50.0}, 65.0),
+        (MC_PositionProfile, {"TimePosition": "way"}, {"Offset": 5.0}, 70.0),
+    ],
+)
+def test_what_waits_behind_a_change_stays(
+    s: takt.Engine, mode: Any, block_of: Any, first: dict[str, Any], then: dict[str, Any], ends: float
+) -> None:
+    """AX-111: a change is no new command: one that waits comes after it, whatever it is, and in its mode."""
+    x = s.axis("x")
+    block = block_of(x, ContinuousUpdate=True)
+    with s.record("x") as recorder:
+        run(s, block, 0.1, **first)
+        behind = MC_MoveRelative(x, Distance=15.0, Velocity=80.0, BufferMode=mode)
+        for i in range(4000):
+            block(Execute=True, **({} if i < 50 else then))
+            behind(Execute=True)
+            s.step()
+    assert block.Done
+    assert behind.Done
+    assert x.set_position == pytest.approx(ends)
+    takt.expect.within_limits(recorder.recording, "x")
+
+
+@pytest.mark.parametrize("behind_of", [MC_MoveAbsolute, MC_MoveVelocity])
+def test_what_waits_behind_a_velocity_that_changes_stays(s: takt.Engine, behind_of: Any) -> None:
+    """AX-111: it takes over once the new velocity is reached."""
+    x = s.axis("x")
+    block = MC_MoveVelocity(x, Velocity=100.0, ContinuousUpdate=True)
+    run(s, block, 0.03)
+    given = {"Position": 100.0} if behind_of is MC_MoveAbsolute else {}
+    behind = behind_of(x, Velocity=50.0, BufferMode="buffered", **given)
+    velocities = []
+    for _ in range(3000):
+        block(Execute=True, Velocity=150.0)
+        behind(Execute=True)
+        s.step()
+        velocities.append(x.set_velocity)
+    assert block.CommandAborted
+    assert max(velocities) == pytest.approx(150)
+    assert behind.Done if behind_of is MC_MoveAbsolute else behind.InVelocity
+
+
+@pytest.mark.parametrize("kind", ["velocity", "absolute", "table", "gear", "cam"])
+def test_what_is_on_top_of_a_change_stays(s: takt.Engine, kind: str) -> None:
+    """AX-111: a superimposed motion goes on, and adds all of its distance."""
+    x, y = s.axis("x"), s.axis("y")
+    x.move_velocity(velocity=50).wait(until="reached")
+    block, first, then = {
+        "velocity": (MC_MoveVelocity(y, ContinuousUpdate=True), {"Velocity": 50.0}, {"Velocity": 60.0}),
+        "absolute": (MC_MoveAbsolute(y, ContinuousUpdate=True, Velocity=50.0), {"Position": 90.0}, {"Position": 95.0}),
+        "table": (MC_PositionProfile(y, ContinuousUpdate=True), {"TimePosition": "way"}, {"Offset": 5.0}),
+        "gear": (MC_GearIn(y, Master=x, ContinuousUpdate=True), {"RatioNumerator": 1.0}, {"RatioNumerator": 1.5}),
+        "cam": (
+            MC_CamIn(y, Master=x, ContinuousUpdate=True, CamTableID=SelectedCam("hill")),
+            {"SlaveOffset": 0.0},
+            {"SlaveOffset": 5.0},
+        ),
+    }[kind]
+    with s.record() as recorder:
+        run(s, block, 0.2, **first)
+        top = MC_MoveSuperimposed(y, Distance=12.0, VelocityDiff=30.0)
+        for i in range(1500):
+            block(Execute=True, **({} if i < 100 else then))
+            top(Execute=True)
+            s.step()
+    assert not block.CommandAborted
+    assert top.Done
+    assert top.CoveredDistance == pytest.approx(12)
+    if kind == "absolute":
+        run(s, block, 1.5)
+        assert y.set_position == pytest.approx(107)
+    if kind == "table":
+        run(s, block, 1.5)
+        assert y.set_position == pytest.approx(67)
+    takt.expect.within_limits(recorder.recording, "y")
+
+
+@pytest.mark.parametrize("done", [True, False])
+def test_a_phase_stays_when_the_ratio_changes(s: takt.Engine, done: bool) -> None:
+    """AX-111: one that is there, and one on its way, which goes on once the slave is in gear again."""
+    x, y = s.axis("x"), s.axis("y")
+    x.move_velocity(velocity=40).wait(until="reached")
+    gear = MC_GearIn(y, Master=x, ContinuousUpdate=True)
+    run(s, gear, 0.4, RatioNumerator=1.0)
+    shift = MC_PhasingAbsolute(y, Master=x, PhaseShift=10.0, Velocity=20.0)
+    with s.record() as recorder:
+        for _ in range(1000 if done else 250):
+            gear(Execute=True)
+            shift(Execute=True)
+            s.step()
+        assert bool(shift().Done) is done
+        for _ in range(1200):
+            gear(Execute=True, RatioNumerator=1.5)
+            shift(Execute=True)
+            s.step()
+    assert gear.InGear
+    assert shift.Done
+    assert y.phase_shift == pytest.approx(10)
+    r = recorder.recording
+    # Only what was left of it came after the change.
+    lag = r["y"]["set_position"] - 1.5 * r["x"]["set_position"]
+    rest = 0.0 if done else lag[-1] - lag[r["y"]["phase_shift"] > r["y"]["phase_shift"][300]][0]
+    assert rest == pytest.approx(0.0 if done else 1.5 * (10 - r["y"]["phase_shift"][300]), abs=0.2)
+    takt.expect.within_limits(r, "y")

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "takt/axis/cam_switch.h"
+#include "takt/axis/fit.h"
 #include "takt/axis/following.h"
 #include "takt/axis/guidance.h"
 #include "takt/axis/override.h"
@@ -76,30 +77,49 @@ bool ComesTooLate(const Request& r, const State& s) {
   return r.update && now != r.kind && !adds;
 }
 
-// A request that changes the one in control: the same table, and the same master, followed in another way.
-bool IsUpdate(const Request& r, const State& s) {
+// Whether a request that changes the one in control keeps its place in the same table; others begin anew.
+bool KeepsPlace(const Request& r, const State& s) {
   const Request& now = s.active;
-  const bool kept = FollowsTable(r.kind) || r.kind == RequestKind::kCamIn;  // others begin anew
+  const bool kept = FollowsTable(r.kind) || r.kind == RequestKind::kCamIn;
   return kept && r.kind == now.kind && r.table.index == now.table.index &&
          r.coupling.terms[0].master == now.coupling.terms[0].master &&
          r.coupling.terms[0].source == now.coupling.terms[0].source && r.coupling.periodic == now.coupling.periodic;
 }
 
-void Update(const Context& c, const Request& r, State& s) {
-  Report(c, s.active.ticket, FeedbackState::kAborted, ErrorId::kNone, s.reported);
-  AbortBuffer(c, s);
-  KeepCovered(s);
-  AbortOverlay(c, FeedbackState::kAborted, ErrorId::kNone, s);
-  FollowsTable(r.kind) ? UpdateTable(c, r, s) : UpdateCam(c, r, s);
+// Changes the command in control (AX-111): what waits behind it and what is on top of it stay.
+Status Change(const Context& c, const Request& r, State& s) {
+  const Beneath base(s);
+  if (FollowsDemand(r.kind)) {
+    if (const Status status = MayFollow(c, r, s); status.failed()) return status;
+    const bool gear = r.kind == RequestKind::kGearIn || r.kind == RequestKind::kCombineAxes;
+    if (!gear && !KeepsPlace(r, s)) {
+      EndActive(c, FeedbackState::kAborted, ErrorId::kNone, s);
+      BeginFollowing(c, r, FromCycleBefore(c), s);
+      return Status::Ok();
+    }
+    Report(c, s.active.ticket, FeedbackState::kAborted, ErrorId::kNone, s.reported);
+    gear ? UpdateGear(c, r, s) : FollowsTable(r.kind) ? UpdateTable(c, r, s) : UpdateCam(c, r, s);
+    return Status::Ok();
+  }
+  Plan plan;
+  const Surroundings around = SurroundingsOf(c, s);
+  const Status status = PlanRequest(c.params, around, c.planner, s.setpoint, r, BlendingQueue(s), plan);
+  if (status.failed()) return status;
+  if (r.positions() && !Inside(c.params.limits, plan.target + AddedAtEnd(s))) {
+    return Status::Failed(ErrorId::kTargetBehindLimit);
+  }
+  EndActive(c, FeedbackState::kAborted, ErrorId::kNone, s);
+  TakeControl(c, r, plan, FromCycleBefore(c), s);
+  return Status::Ok();
 }
 
 Status TakeOver(const Context& c, const Request& r, State& s) {
   if (Homes(r.kind)) return BeginHoming(c, r, true, s);
   if (s.plc == PlcState::kHoming && !MayFollowStep(r.kind)) return Status::Failed(ErrorId::kState);
+  if (r.update) return Change(c, r, s);
   if (FollowsDemand(r.kind)) {
     const Status status = MayFollow(c, r, s);
     if (status.failed()) return status;
-    if (r.update && IsUpdate(r, s)) return Update(c, r, s), Status::Ok();
     AbortAll(c, s);
     BeginFollowing(c, r, FromCycleBefore(c), s);
     return Status::Ok();

@@ -95,18 +95,14 @@ double NextAhead(double turn, double position, double from, double sense) {
   return position + turn * (sense < 0 ? std::floor(turns) : std::ceil(turns));
 }
 
-// Where the slave is to be when both are in step, over all turns, if it goes on to about `expected` meanwhile.
-double SlaveSync(const AxisParams& p, double position, double expected, SyncMode mode) {
+// Where the slave is to be when both are in step, over all turns, if it goes on to about `expected` meanwhile. `sense`:
+// of its travel then; catching up is further in that sense, slowing down less far.
+double SlaveSync(const AxisParams& p, double position, double expected, SyncMode mode, double sense) {
   if (!p.rotary()) return position;
   const double turns = (expected - position) / p.modulus;
-  switch (mode) {
-    case SyncMode::kCatchUp:
-      return position + p.modulus * std::ceil(turns);
-    case SyncMode::kSlowDown:
-      return position + p.modulus * std::floor(turns);
-    default:
-      return position + p.modulus * std::round(turns);
-  }
+  if (mode == SyncMode::kShortest) return position + p.modulus * std::round(turns);
+  const bool upwards = (mode == SyncMode::kCatchUp) == (sense >= 0);
+  return position + p.modulus * (upwards ? std::ceil(turns) : std::floor(turns));
 }
 
 // Returns the velocity limit of a master, in its unit per second.
@@ -164,17 +160,18 @@ KinematicState DemandOf(const cam::Value& at, const KinematicState& master) {
 }
 
 // Moves the place where both are in step to the turn, or for a relative cam the place, that lies at hand if the slave
-// goes on to about `expected` meanwhile.
-void PlaceSlave(const Context& c, double expected, State& s) {
+// goes on to about `expected` meanwhile. `master_sense`: of the master's travel.
+void PlaceSlave(const Context& c, double expected, double master_sense, State& s) {
   CouplingState& k = s.coupling;
+  const cam::Value place = InStep(c, k.master_sync, s);
+  const double sense = place.dy != 0 ? place.dy * master_sense : s.setpoint.velocity;
   if (s.active.kind != RequestKind::kCamIn) {
-    k.slave_sync = SlaveSync(c.params, k.slave_sync, expected, k.law.sync_mode);
+    k.slave_sync = SlaveSync(c.params, k.slave_sync, expected, k.law.sync_mode, sense);
     return;
   }
-  const double place = InStep(c, k.master_sync, s).y;
-  const double wanted =
-      k.law.slave_absolute ? SlaveSync(c.params, place, expected, k.law.sync_mode) : expected + s.active.table.offset;
-  k.cam.slave += wanted - place;
+  const double wanted = k.law.slave_absolute ? SlaveSync(c.params, place.y, expected, k.law.sync_mode, sense)
+                                             : expected + s.active.table.offset;
+  k.cam.slave += wanted - place.y;
 }
 
 // The curve over the master's displacement that begins as the slave moves now and ends in step. A master that is there
@@ -185,7 +182,7 @@ void BeginCurve(const Context& c, const KinematicState& master, State& s) {
   const double way = k.master_sync - master.position;
   const double own = s.setpoint.position + s.origin - k.chase.offset;
   if (way * planned <= 0) {
-    PlaceSlave(c, own, s);
+    PlaceSlave(c, own, master.velocity, s);
     k.joining = Joining::kJoined;
     return;
   }
@@ -197,7 +194,7 @@ void BeginCurve(const Context& c, const KinematicState& master, State& s) {
     slope = s.setpoint.velocity / master.velocity;
     bend = (s.setpoint.acceleration - slope * master.acceleration) / (master.velocity * master.velocity);
   }
-  PlaceSlave(c, own + 0.5 * (slope + InStep(c, k.master_sync, s).dy) * way, s);
+  PlaceSlave(c, own + 0.5 * (slope + InStep(c, k.master_sync, s).dy) * way, way, s);
   const cam::Value end = InStep(c, k.master_sync, s);
   k.curve = trajectory::Connect(way, {own, slope, bend}, {end.y, end.dy, end.ddy});
 }
@@ -271,8 +268,8 @@ void BeginJoining(const Context& c, const Request& r, State& s) {
   k.slave_sync = r.coupling.slave_sync_position + s.origin;
   if (r.coupling.master_start_distance < 0) {
     const double own = s.setpoint.position + s.origin;
-    k.slave_sync =
-        SlaveSync(c.params, k.slave_sync, own + term.ratio * (k.master_sync - seen.position), k.law.sync_mode);
+    const double way = k.master_sync - seen.position;
+    k.slave_sync = SlaveSync(c.params, k.slave_sync, own + term.ratio * way, k.law.sync_mode, term.ratio * sense);
     k.joining = Joining::kJoined;
     return;
   }
@@ -311,7 +308,7 @@ void BeginCam(const Context& c, const Request& r, State& s) {
   k.cam.share = ShareOf(law, k.cam, at);
   k.master_sync = at;
   if (waits) return Wait(seen.position, distance, k);
-  PlaceSlave(c, takes_over ? k.cam.end_slave : s.setpoint.position + s.origin, s);
+  PlaceSlave(c, takes_over ? k.cam.end_slave : s.setpoint.position + s.origin, sense, s);
 }
 
 // A master that is measured is known to its increments only: what lies within so many is one place.
@@ -398,7 +395,7 @@ Status ShiftPhase(const Context& c, Ticket ticket, bool relative, double shift, 
                          deceleration.value_or(own.deceleration / ratio), jerk.value_or(own.jerk / ratio)};
   const KinematicState from = k.phase.At(static_cast<double>(c.cycle.count - 1 - k.phase_start) * c.cycle.period_s);
   trajectory::Profile profile;
-  const double target = relative ? k.phase.end().position + shift : shift;
+  const double target = relative ? from.position + shift : shift;
   if (const Status status = c.planner.ToPosition(from, target, 0, limits, profile); status.failed()) return status;
   EndPhase(c, FeedbackState::kAborted, s);
   k.phase_begin = relative ? from.position : 0;
@@ -476,6 +473,23 @@ void Couple(const Context& c, const Request& r, State& s) noexcept {
   Enter(s, PlcState::kSynchronizedMotion);
 }
 
+void UpdateGear(const Context& c, const Request& r, State& s) noexcept {
+  const CouplingState was = s.coupling;
+  Couple(c, r, s);
+  CouplingState& k = s.coupling;
+  k.phase = was.phase;
+  k.phase_start = was.phase_start;
+  k.phase_now = was.phase_now;
+  k.phase_begin = was.phase_begin;
+  k.phase_ticket = was.phase_ticket;
+  k.phase_moves = was.phase_moves;
+  for (std::size_t i = 0; i < k.law.terms.size(); ++i) {
+    const CouplingTerm &now = k.law.terms[i], &before = was.law.terms[i];
+    const bool same = now.master == before.master && now.source == before.source && now.filter_s == before.filter_s;
+    if (same) k.filters[i] = was.filters[i];
+  }
+}
+
 void UpdateCam(const Context& c, const Request& r, State& s) noexcept {
   CouplingState& k = s.coupling;
   if (k.joining == Joining::kWaiting) return Couple(c, r, s);  // it has not begun yet
@@ -520,7 +534,10 @@ bool FollowMasters(const Context& c, State& s) noexcept {
     return false;
   }
   if (k.filtered) FilterMasters(c, k);
+  // On the way to the lock a phase would be lost in part: it rests meanwhile.
+  if (!k.locked && k.phase_moves) ++k.phase_start;
   KinematicState phase = PhaseAt(c, k);
+  if (!k.locked) phase = {phase.position, 0, 0};
   if (LeavesSyncPosition(c, phase, s)) {
     BreakOff(c, ErrorId::kSyncPassed, s);
     return false;
@@ -531,10 +548,8 @@ bool FollowMasters(const Context& c, State& s) noexcept {
     if (!Couples(s.active.kind)) return false;
     phase = PhaseAt(c, k);
   }
-  // A phase counts from the lock on: on the way there it would be lost in part.
   KinematicState demand;
-  const bool begun = Joins(s.active.kind) ? JoinedDemand(c, phase, s, demand)
-                                          : (demand = Sum(c, k, k.locked ? phase : KinematicState{}), true);
+  const bool begun = Joins(s.active.kind) ? JoinedDemand(c, phase, s, demand) : (demand = Sum(c, k, phase), true);
   if (!begun) {  // keeps its velocity until it begins
     demand = {s.setpoint.position + s.origin + s.setpoint.velocity * c.cycle.period_s, s.setpoint.velocity, 0};
   }

@@ -407,6 +407,7 @@ void WatchFlying(const Context& c, State& s) noexcept {
   if (found) {
     h.captured = h.flying_pulse ? PulsePosition(c, s) : s.actual.position;
     ShiftCoordinates(h.flying.set_position - h.captured, s);
+    if (!BlendingQueue(s).empty()) ReplanActive(c, s);  // to the same place, which lies elsewhere now
     h.captured = h.flying.set_position;
     h.renamed = 0;
     h.homed = true;

@@ -286,10 +286,6 @@ void AbortOverlay(const Context& c, FeedbackState feedback, ErrorId error, State
   Report(c, s.overlay.ticket, feedback, error, false, s.overlay.covered);
 }
 
-void KeepCovered(State& s) noexcept {
-  if (s.superimposed) Fold(s.setpoint.position - s.overlay.base.position, s);
-}
-
 bool StandsBeneath(const State& s) noexcept {
   return Stands(s.overlay.base);
 }

@@ -75,8 +75,6 @@ class Beneath {
 // Each cycle in which something is on top (`superimposed`), once the motion beneath has its set point: that of the
 // axis.
 void Superimpose(const Context& c, State& s) noexcept;
-// Before an update of the motion beneath: adds the covered distance to it.
-void KeepCovered(State& s) noexcept;
 // Ends what is on top, if anything is; its motion is the caller's to replace.
 void AbortOverlay(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
 // Whether the motion beneath stands.

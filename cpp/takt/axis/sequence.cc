@@ -93,14 +93,13 @@ bool InPosition(const AxisParams& p, const State& s) noexcept {
   return !p.supervision.in_position || std::abs(s.setpoint.position - s.actual.position) <= *p.supervision.in_position;
 }
 
-namespace {
-
-// The commands behind the one in control, as far as they blend.
-std::span<const Request> BlendingQueue(const State& s) {
+std::span<const Request> BlendingQueue(const State& s) noexcept {
   std::size_t count = 0;
   while (count < s.buffered && s.buffer[count].blends()) ++count;
   return {s.buffer.data(), count};
 }
+
+namespace {
 
 Request TakeFirst(State& s) {
   const Request first = s.buffer[0];

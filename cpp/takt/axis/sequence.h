@@ -1,6 +1,8 @@
 // Which command is in control, and how control passes from one to the next. Used by the stages of the axis only.
 #pragma once
 
+#include <span>
+
 #include "takt/axis/axis.h"
 #include "takt/axis/planning.h"
 
@@ -31,6 +33,8 @@ void Enter(State& s, PlcState to) noexcept;
 Surroundings SurroundingsOf(const Context& c, const State& s) noexcept;
 // ... and for what takes over from both.
 Surroundings SurroundingsOfBoth(const Context& c, const State& s) noexcept;
+// Returns the commands behind the one in control, as far as they blend.
+std::span<const Request> BlendingQueue(const State& s) noexcept;
 // Seconds of the motion in progress at this cycle.
 inline double Elapsed(const Context& c, const State& s) noexcept {
   return static_cast<double>(c.cycle.count - s.motion.start_cycle) * c.cycle.period_s + s.motion.start_offset_s;

@@ -315,6 +315,7 @@ Status CarryOut(const Context& c, Ticket ticket, const SetPosition& p, State& s)
   State shifted = s;
   ShiftCoordinates(by, shifted);
   shifted.homing.renamed += by;
+  if (!BlendingQueue(shifted).empty()) ReplanActive(c, shifted);  // to the same place, which lies elsewhere now
   if (!Fits(c, c.params.limits, shifted)) return Status::Failed(ErrorId::kTargetBehindLimit);
   s = shifted;
   return Done(c, ticket);

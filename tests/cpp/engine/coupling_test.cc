@@ -286,33 +286,39 @@ TEST(GearInPos, IsInStepAtTheSyncPosition) {
   }
 }
 
-// On rotary axes the next turn ahead counts; the sync mode says which turn of the slave.
+// AX-45: on rotary axes the next turn ahead counts; the sync mode says which turn of the slave, alike in both senses and
+// with both signs of the ratio.
 TEST(GearInPos, ChoosesTheTurn) {
   for (const axis::SyncMode mode : {axis::SyncMode::kShortest, axis::SyncMode::kCatchUp, axis::SyncMode::kSlowDown}) {
-    Line line(LineOf(2, axis::AxisKind::kRotary));
-    line.Give(0, axis::MoveVelocity{.velocity = 200});
-    line.Give(1, axis::MoveVelocity{.velocity = 200});
-    line.Run(1000);
-    axis::GearInPos gear;
-    gear.master = Name::Of("a0");
-    gear.master_sync_position = 30;
-    gear.slave_sync_position = 100;
-    gear.master_start_distance = 300;
-    gear.sync_mode = mode;
-    const Ticket ticket = line.Give(1, gear);
-    double fastest = 0;
-    double slowest = 1000;
-    for (int i = 0; i < 4000; ++i) {
-      line.Step();
-      fastest = std::max(fastest, line.At(1).set_velocity);
-      slowest = std::min(slowest, line.At(1).set_velocity);
+    for (const auto& [sense, ratio] : {std::pair{1, 1}, {-1, 1}, {1, -1}, {-1, -1}}) {
+      Line line(LineOf(2, axis::AxisKind::kRotary));
+      const auto direction = [](int of) { return of > 0 ? axis::Direction::kPositive : axis::Direction::kNegative; };
+      line.Give(0, axis::MoveVelocity{.velocity = 200, .direction = direction(sense)});
+      line.Give(1, axis::MoveVelocity{.velocity = 200, .direction = direction(sense * ratio)});
+      line.Run(1000);
+      axis::GearInPos gear;
+      gear.master = Name::Of("a0");
+      gear.ratio_numerator = ratio;
+      gear.master_sync_position = sense > 0 ? 30 : 330;
+      gear.slave_sync_position = sense * ratio > 0 ? 100 : 260;
+      gear.master_start_distance = 300;
+      gear.sync_mode = mode;
+      const Ticket ticket = line.Give(1, gear);
+      double fastest = 0;
+      double slowest = 1000;
+      for (int i = 0; i < 4000; ++i) {
+        line.Step();
+        fastest = std::max(fastest, sense * ratio * line.At(1).set_velocity);
+        slowest = std::min(slowest, sense * ratio * line.At(1).set_velocity);
+      }
+      EXPECT_TRUE(line.reached[ticket]);
+      const double apart = sense * ratio * line.At(1).set_position - sense * line.At(0).set_position;
+      EXPECT_NEAR(std::fmod(apart + 1080, 360), 70, 1e-6);
+      // Both begin at the same place: 70 ahead is nearer than 290 behind.
+      const bool ahead = mode != axis::SyncMode::kSlowDown;
+      EXPECT_EQ(fastest > 210, ahead);
+      EXPECT_EQ(slowest < 190, !ahead);
     }
-    EXPECT_TRUE(line.reached[ticket]);
-    EXPECT_NEAR(std::fmod(line.At(1).set_position - line.At(0).set_position + 720, 360), 70, 1e-6);
-    // Both begin at the same place: 70 ahead is nearer than 290 behind.
-    const bool ahead = mode != axis::SyncMode::kSlowDown;
-    EXPECT_EQ(fastest > 210, ahead);
-    EXPECT_EQ(slowest < 190, !ahead);
   }
 }
 
