@@ -137,18 +137,22 @@ def test_an_update_on_the_way_into_a_cam() -> None:
 
 @pytest.mark.parametrize("run_s", [0.5, 3])
 def test_an_update_keeps_what_was_added(run_s: float) -> None:
-    """AX-35: while it is added, and behind its end."""
+    """AX-35, AX-111: while it is added, which goes on, and behind its end."""
     session = powered()
     roll = session.axis("roll")
     cam = {"master": "web", "cam": "lift", "start_mode": "relative"}
     roll.cam_in(**cam, slave_scaling=0.1).wait(until="reached")
-    roll.move_superimposed(distance=100, velocity_difference=100)
+    begin = roll.set_position
+    added = roll.move_superimposed(distance=100, velocity_difference=100)
     session.run(run_s)
     place = roll.set_position
     assert place > 45
     roll.cam_in(**cam, slave_scaling=0.2, update=True)
-    session.run(0.5)
+    session.step()
     assert roll.set_position == pytest.approx(place, abs=0.2)
+    session.run(1.5)
+    assert added.done
+    assert roll.set_position == pytest.approx(begin + 100, abs=0.2)
 
 
 @pytest.mark.parametrize("follow", [geared, combined, streamed, moved_by_a_module], ids=lambda follow: follow.__name__)
