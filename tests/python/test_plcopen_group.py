@@ -102,6 +102,30 @@ def test_stop_holds_as_long_as_execute(engine: takt.Engine, gantry: takt.Group) 
     assert gantry.state is takt.GroupState.GROUP_STANDBY
 
 
+@pytest.mark.parametrize("end", ["emergency stop", "power off", "second stop"])
+def test_stop_lets_go_however_its_command_ends(end: str, engine: takt.Engine, gantry: takt.Group) -> None:
+    """GR-01: the falling edge of Execute releases a stop that was aborted or ended with an error, too."""
+    stop, second = plc.MC_GroupStop(gantry), plc.MC_GroupStop(gantry)
+    gantry.move_linear_absolute(x=200)
+    engine.wait(lambda: gantry.path_velocity > 100)
+    until(engine, stop, lambda: stop.Active, Execute=True)
+    if end == "emergency stop":
+        engine.command("machine", "emergency_stop").wait_final()
+    elif end == "power off":
+        gantry.power(enable=False).wait_final()
+    else:
+        second(Execute=True)
+    until(engine, stop, lambda: stop.CommandAborted or stop.Error)
+    engine.run(0.3)
+    for block in (stop, second):
+        block(Execute=False)
+        engine.step(2)
+    for command in (gantry.reset, gantry.power, gantry.enable):
+        command().wait_final()
+    assert gantry.state is takt.GroupState.GROUP_STANDBY
+    gantry.move_linear_absolute(x=10).wait()
+
+
 def test_a_path_interrupted_and_continued(engine: takt.Engine, gantry: takt.Group) -> None:
     """GR-20."""
     select = plc.MC_PathSelect(gantry, PathDescription="slot")

@@ -64,7 +64,8 @@ class MC_GroupHome(GroupMotionBlock):  # noqa: N801
 
 
 class MC_GroupStop(GroupMotionBlock):  # noqa: N801
-    """Brakes to standstill on the path. The group stays in GroupStopping as long as Execute is true."""
+    """Brakes to standstill on the path. The group stays in GroupStopping as long as Execute is true, however the
+    command ends."""
 
     VERB = "stop"
     Deceleration = Input[float | None](None, "deceleration")
@@ -74,7 +75,7 @@ class MC_GroupStop(GroupMotionBlock):  # noqa: N801
         return super()._arguments() | {"hold": True}
 
     def _fall(self) -> None:
-        if self._feedback is not None and not (self._feedback.error or self._feedback.aborted):
+        if self._feedback is not None:
             self._feedback.release()
 
 
