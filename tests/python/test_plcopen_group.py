@@ -163,6 +163,29 @@ def test_where_it_is(engine: takt.Engine, gantry: takt.Group) -> None:
     done(engine, move)
 
 
+def test_an_axis_in_step_with_the_path(engine: takt.Engine, gantry: takt.Group) -> None:
+    """GR-25: InSync only while the slave is where the path has it; here it is too slow for a while."""
+    feed = engine.axis("feed")
+    feed.power().wait()
+    sync = plc.MC_SyncAxisToGroup(gantry, Slave="feed", RatioNumerator=4.0)
+    until(engine, sync, lambda: sync.InSync, Execute=True)
+    assert sync.Active
+    move = gantry.move_linear_absolute(x=150)
+    lags = []
+    while not (move.done and sync.InSync):
+        assert engine.now < 5
+        engine.step()
+        sync(Slave="")
+        assert sync.Active
+        assert sync.InSync is feed.in_step
+        lags.append(4 * gantry.x - feed.set_position)
+        assert not sync.InSync or abs(lags[-1]) < 0.01
+    assert max(lags) > 50
+    feed.halt().wait()
+    assert sync().CommandAborted
+    assert not sync.InSync
+
+
 def test_coordinate_systems(engine: takt.Engine, gantry: takt.Group) -> None:
     """GR-10."""
     done(engine, plc.MC_SetCartesianTransform(gantry, TransX=100.0, RotAngle3=90.0))

@@ -209,7 +209,7 @@ class MC_MovePath(PathMove):  # noqa: N801
 
 class MC_SyncAxisToGroup(GroupBlock, ExecuteBlock):  # noqa: N801
     """Lets Slave, which is no member, follow the way along the path: RatioNumerator of its unit per RatioDenominator
-    mm. Never done: InSync is true while it does. Slave may be its name."""
+    mm. Never done: InSync is true while its set point is where the path has it. Slave may be its name."""
 
     VERB = "sync_axis"
     Master = GroupName()
@@ -225,7 +225,8 @@ class MC_SyncAxisToGroup(GroupBlock, ExecuteBlock):  # noqa: N801
 
     def _run(self, feedback: Feedback) -> None:
         super()._run(feedback)
-        self._show(Active=feedback.active, InSync=feedback.active)
+        in_sync = feedback.active and self.AxesGroup.session.axis(self._given["axis"]).in_step
+        self._show(Active=feedback.active, InSync=in_sync)
 
 
 class MC_MovePathSynchronized(GroupBlock, ExecuteBlock):  # noqa: N801
