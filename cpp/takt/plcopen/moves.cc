@@ -49,11 +49,16 @@ void GT_Touch::operator()() noexcept {
 }
 
 void MC_CamIn::operator()() noexcept {
-  const std::uint32_t ends = axis().outputs().profile_ends;
-  if (!Busy()) ends_ = ends;
+  if (Execute && !level_) ends_.reset();
+  level_ = Execute;
   CouplingBlock::operator()();
-  end_of_profile_ = Active() && ends != ends_;
-  ends_ = ends;
+  const std::uint32_t ends = axis().outputs().profile_ends;
+  end_of_profile_ = ends_ && *ends_ != ends;
+  if (feedback().active() || (ends_ && feedback().busy())) {
+    ends_ = ends;
+  } else {
+    ends_.reset();
+  }
 }
 
 }  // namespace takt::plcopen

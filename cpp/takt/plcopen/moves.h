@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 
 #include "takt/plcopen/block.h"
 
@@ -138,11 +140,13 @@ class MC_CamIn : public CouplingBlock<axis::CamIn> {
   using CouplingBlock::CouplingBlock;
   void operator()() noexcept;
   bool InSync() const noexcept { return InStep(); }
-  // The end of the cam was passed since the call before.
+  // The end of the cam was passed since the call before, while this command was in control; also in the call in which
+  // the next command has taken over.
   bool EndOfProfile() const noexcept { return end_of_profile_; }
 
  private:
-  std::uint32_t ends_ = 0;  // passed until the last call
+  std::optional<std::uint32_t> ends_;  // profile_ends in the last call; unset: the command was not in control then
+  bool level_ = false;                 // Execute in the last call
   bool end_of_profile_ = false;
 };
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <vector>
 
 #include "bench.h"
 
@@ -422,6 +423,59 @@ TEST_F(Blocks, Cams) {
   ASSERT_TRUE(Until(out, [&] { return out.Done(); }));
   cam();
   EXPECT_TRUE(cam.CommandAborted() && !cam.InSync() && !cam.EndOfProfile());
+}
+
+// AX-48: EndOfProfile is that of the cam whose end was passed, also in the call in which the next one has taken over.
+TEST_F(Blocks, CamsOneBehindTheOther) {
+  bench.PowerOn(bench.y);
+  MC_CamIn first(bench.y), second(bench.y);
+  for (MC_CamIn* cam : {&first, &second}) {
+    cam->master = Name::Of("x");
+    cam->cam = Name::Of("lift");
+    cam->start_mode = axis::CamStart::kRelative;
+    cam->Execute = true;
+  }
+  second.buffer_mode = BufferMode::kBuffered;
+  MC_MoveVelocity drive(x);
+  drive.velocity = 80;
+  drive.Execute = true;
+  drive();
+  ASSERT_TRUE(Until(first, [&] { return first.InSync(); }));
+  second();
+  std::vector<double> first_ends, second_ends;
+  while (At(x).set_position < 130) {
+    Step();
+    first();
+    second();
+    if (first.EndOfProfile()) first_ends.push_back(At(x).set_position);
+    if (second.EndOfProfile()) second_ends.push_back(At(x).set_position);
+  }
+  EXPECT_TRUE(first.CommandAborted());
+  ASSERT_EQ(first_ends.size(), 1u);
+  ASSERT_EQ(second_ends.size(), 2u);
+  EXPECT_NEAR(second_ends[0] - first_ends[0], 40, 1);
+}
+
+// AX-48, AX-111: an end that is passed in the call of a change is not lost.
+TEST_F(Blocks, EndsOfACamThatIsChanged) {
+  bench.PowerOn(bench.y);
+  MC_CamIn cam(bench.y);
+  cam.master = Name::Of("x");
+  cam.cam = Name::Of("lift");
+  cam.ContinuousUpdate = cam.Execute = true;
+  ASSERT_TRUE(Until(cam, [&] { return cam.InSync(); }));
+  MC_MoveVelocity drive(x);
+  drive.velocity = 80;
+  drive.Execute = true;
+  drive();
+  int ends = 0;
+  while (At(x).set_position < 130) {
+    Step();
+    cam.slave_scaling = 1 + 1e-6 * At(x).set_position;
+    cam();
+    ends += cam.EndOfProfile();
+  }
+  EXPECT_EQ(ends, 3);
 }
 
 // AX-35: on top of a move, which is done where it would be done alone; halted, that goes on.
