@@ -168,7 +168,7 @@ class GT_Touch : public Block<axis::Touch> {
  public:
   explicit GT_Touch(AxisRef axis) : Block(axis) {}
   void operator()() noexcept;
-  double RecordedPosition() const noexcept { return Done() ? axis().outputs().probe_position : 0; }
+  double RecordedPosition() const noexcept { return Value(); }
 
  private:
   bool slows_ = false;  // the command given

@@ -478,6 +478,26 @@ TEST_F(Blocks, EndsOfACamThatIsChanged) {
   EXPECT_EQ(ends, 3);
 }
 
+// AX-49, AX-109: other probes of the axis do not change RecordedPosition.
+TEST_F(Blocks, ATouchKeepsItsPosition) {
+  GT_Touch touch(x);
+  MC_TouchProbe other(x);
+  touch.velocity = 50;
+  other.edge = axis::ProbeEdge::kFalling;
+  MC_MoveVelocity drive(x);
+  drive.velocity = 500;
+  touch.Execute = other.Execute = drive.Execute = true;
+  drive();
+  ASSERT_TRUE(Until(touch, [&] {
+    other();
+    return touch.Done();
+  }));
+  ASSERT_TRUE(other.Done());
+  EXPECT_NEAR(other.RecordedPosition(), 70, 0.02);
+  EXPECT_NEAR(touch.RecordedPosition(), 60, 0.02);
+  EXPECT_NEAR(At(x).set_position, touch.RecordedPosition(), 1e-9);
+}
+
 // AX-35: on top of a move, which is done where it would be done alone; halted, that goes on.
 TEST_F(Blocks, MotionsOnTopOfOthers) {
   MC_MoveAbsolute move(x);
