@@ -1,6 +1,19 @@
 #include "takt/plcopen/moves.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace takt::plcopen {
+
+bool HasVelocity(AxisRef axis, double velocity) noexcept {
+  const axis::Outputs& o = axis.outputs();
+  const bool runs = o.override_factor > 0 || velocity == 0;
+  if (o.superimposed) return runs;
+  const double scaled = velocity * o.override_factor;
+  const double now = std::abs(o.set_velocity);
+  const bool clamped = o.limited_by != LimitedBy::kNothing && o.set_acceleration == 0 && now < scaled;
+  return clamped || (runs && std::abs(now - scaled) <= 1e-9 * std::max(1.0, scaled));
+}
 
 void MC_Stop::operator()() noexcept {
   hold = true;

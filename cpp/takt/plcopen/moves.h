@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -60,10 +59,15 @@ class MC_Inch : public Block<axis::Inch> {
   bool Active() const noexcept { return Busy(); }
 };
 
+// Whether the set point of an axis whose command has reached `velocity` [u/s] has it now, as the override in force
+// scales it, up to the largest velocity of the axis. What is on top of the motion is published together with it: then
+// the axis only must not be held.
+bool HasVelocity(AxisRef axis, double velocity) noexcept;
+
 class MC_MoveVelocity : public UpdatedBlock<axis::MoveVelocity> {
  public:
   using UpdatedBlock::UpdatedBlock;
-  bool InVelocity() const noexcept { return Reached(); }
+  bool InVelocity() const noexcept { return Reached() && HasVelocity(axis(), given().velocity); }
 };
 
 class MC_MoveSuperimposed : public UpdatedBlock<axis::MoveSuperimposed> {
@@ -86,21 +90,16 @@ class MC_PhasingRelative : public Block<axis::PhasingRelative> {
   double CoveredPhaseShift() const noexcept { return Active() ? axis().outputs().covered_phase_shift : ValueAtEnd(); }
 };
 
-// A SW limit behind the place may leave a continuous move less than its end velocity.
-inline bool HasSpeed(AxisRef axis, double speed) noexcept {
-  return std::abs(axis.outputs().set_velocity) >= speed * (1 - 1e-9);
-}
-
 class MC_MoveContinuousAbsolute : public UpdatedBlock<axis::MoveContinuousAbsolute> {
  public:
   using UpdatedBlock::UpdatedBlock;
-  bool InEndVelocity() const noexcept { return Reached() && HasSpeed(axis(), end_velocity); }
+  bool InEndVelocity() const noexcept { return Reached() && HasVelocity(axis(), given().end_velocity); }
 };
 
 class MC_MoveContinuousRelative : public UpdatedBlock<axis::MoveContinuousRelative> {
  public:
   using UpdatedBlock::UpdatedBlock;
-  bool InEndVelocity() const noexcept { return Reached() && HasSpeed(axis(), end_velocity); }
+  bool InEndVelocity() const noexcept { return Reached() && HasVelocity(axis(), given().end_velocity); }
 };
 
 class MC_TorqueControl : public UpdatedBlock<axis::TorqueControl> {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -496,6 +498,58 @@ TEST_F(Blocks, ATouchKeepsItsPosition) {
   EXPECT_NEAR(other.RecordedPosition(), 70, 0.02);
   EXPECT_NEAR(touch.RecordedPosition(), 60, 0.02);
   EXPECT_NEAR(At(x).set_position, touch.RecordedPosition(), 1e-9);
+}
+
+// AX-51, AX-11: InVelocity while the set point has the velocity that the override makes of the commanded one; not on
+// the way there, nor while the axis is held.
+TEST_F(Blocks, VelocitiesScaledByTheOverride) {
+  MC_SetOverride factor(x);
+  factor.Enable = true;
+  MC_MoveVelocity move(x);
+  move.velocity = 20;
+  move.Execute = true;
+  ASSERT_TRUE(Until(move, [&] { return move.InVelocity(); }));
+  move.velocity = 30;  // without a rising edge
+  for (const double velocity_factor : {0.5, 0.0, 1.0, 2.5, 50.0, 30.0, 0.2}) {
+    factor.VelFactor = velocity_factor;
+    factor();
+    const double due = std::min(20 * velocity_factor, 500.0);
+    for (int cycle = 0; cycle < 300; ++cycle) {
+      Step();
+      move();
+      ASSERT_TRUE(!move.InVelocity() || std::abs(At(x).set_velocity - due) < 1e-6) << At(x).set_velocity;
+    }
+    EXPECT_EQ(move.InVelocity(), velocity_factor > 0) << velocity_factor;
+  }
+}
+
+// AX-51, AX-28: an override above 1 counts as far as the largest velocity that was written.
+TEST_F(Blocks, EndVelocityUpToTheLimitInForce) {
+  MC_WriteParameter write(x);
+  write.number = 9;
+  write.value = 50;
+  write.Execute = true;
+  ASSERT_TRUE(Until(write, [&] { return write.Done(); }));
+  MC_SetOverride factor(x);
+  factor.Enable = true;
+  factor.VelFactor = 2;
+  ASSERT_TRUE(Until(factor, [&] { return factor.Enabled(); }));
+  MC_MoveContinuousAbsolute move(x);
+  move.position = 30;
+  move.end_velocity = 40;
+  move.velocity = 50;
+  move.Execute = true;
+  ASSERT_TRUE(Until(move, [&] { return move.InEndVelocity(); }));
+  EXPECT_NEAR(At(x).set_velocity, 50, 1e-9);
+  move.end_velocity = 20;  // without a rising edge
+  factor.VelFactor = 0.5;
+  ASSERT_TRUE(Until(factor, [&] {
+    move();
+    return At(x).set_velocity < 49;
+  }));
+  EXPECT_FALSE(move.InEndVelocity());
+  ASSERT_TRUE(Until(move, [&] { return move.InEndVelocity(); }));
+  EXPECT_NEAR(At(x).set_velocity, 20, 1e-6);
 }
 
 // AX-35: on top of a move, which is done where it would be done alone; halted, that goes on.
