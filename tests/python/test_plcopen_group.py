@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 import takt
@@ -161,6 +162,43 @@ def test_where_it_is(engine: takt.Engine, gantry: takt.Group) -> None:
     assert acceleration(CoordSystem=MCS).PathAcceleration == gantry.acceleration
     assert acceleration(CoordSystem=ACS).Acceleration[1] == pytest.approx(0, abs=1e-9)
     done(engine, move)
+
+
+@pytest.mark.parametrize(
+    ("block_of", "name"),
+    [
+        (plc.MC_GroupReadActualPosition, "CoordSystem"),
+        (plc.MC_GroupReadActualVelocity, "CoordSystem"),
+        (plc.MC_ReadCoordinateTransform, "Reference"),
+    ],
+)
+def test_coordinate_systems_are_given_as_text(gantry: takt.Group, block_of: Any, name: str) -> None:
+    """AX-11: as for all commands; another value is an error that names the input."""
+    read = block_of(gantry, Enable=True)
+    for system in takt.CoordinateSystem:
+        as_text = read(**{name: system.value}).outputs
+        assert as_text == read(**{name: system}).outputs
+        assert read.Error is (block_of is plc.MC_ReadCoordinateTransform and system is ACS)
+    for value in ("MCS", 1, None, True):
+        read(**{name: value})
+        assert (read.Valid, read.Busy, read.Error, read.ErrorID) == (False, False, True, 5)
+        assert read.ErrorText == f"{name}: expected one of acs, mcs, wcs, pcs, found {value!r}"
+    assert not any(read(Enable=False).outputs[output] for output in ("Error", "ErrorID", "ErrorText"))
+    assert read(Enable=True, **{name: "mcs"}).Valid
+
+
+def test_positions_with_coordinate_systems_as_text(engine: takt.Engine, gantry: takt.Group) -> None:
+    """GR-02, AX-11: numbers without names are those of the axes with the text acs, too."""
+    done(engine, plc.MC_MoveDirectAbsolute(gantry, Position=[10, 5, 3], CoordSystem="acs"))
+    assert [axis.set_position for axis in gantry.members] == pytest.approx([10, 5, 3])
+    done(engine, plc.MC_GroupSetPosition(gantry, Position=[0, 0, 0], CoordSystem="acs"))
+    done(engine, plc.MC_MoveLinearAbsolute(gantry, Position=[20, 5, 3], CoordSystem="mcs", BufferMode="buffered"))
+    assert [axis.set_position for axis in gantry.members] == pytest.approx([20, 5, 3])
+    wrong = plc.MC_MoveDirectAbsolute(gantry, Position=[1, 2], CoordSystem="axes")
+    until(engine, wrong, lambda: wrong.Error, Execute=True)
+    assert "coordinate_system: expected one of acs, mcs, wcs, pcs, found 'axes'" in wrong.ErrorText
+    with pytest.raises(TypeError, match="up to 6 numbers with axes, found 7"):
+        plc.MC_MoveDirectAbsolute(gantry, Position=[0] * 7, CoordSystem="axes")(Execute=True)
 
 
 def test_an_axis_in_step_with_the_path(engine: takt.Engine, gantry: takt.Group) -> None:

@@ -145,3 +145,29 @@ def test_torque_control_presses(x: takt.Axis) -> None:  # AX-42
     assert press.CommandAborted
     assert abs(x.actual_velocity) <= 51
     x.halt().wait()
+
+
+def test_torque_control_takes_directions_as_text(x: takt.Axis) -> None:
+    """AX-42, AX-11: another value is an error that names the input, and moves nothing."""
+    press = MC_TorqueControl(x, Torque=1, Velocity=50, Direction="negative")
+    press(Execute=True)
+    until(x, lambda: x.set_velocity < -40, press)
+    press(Execute=False)
+    x.halt().wait()
+    for value in (3, "NEGATIVE", None):
+        wrong = MC_TorqueControl(x, Torque=1, Velocity=50, Direction=value)
+        assert (wrong(Execute=True).Error, wrong.ErrorID, wrong.Busy) == (True, 5, False)
+        assert wrong.ErrorText == f"Direction: expected one of current, positive, shortest, negative, found {value!r}"
+        step(x, 50)
+        assert x.set_velocity == 0
+        assert wrong().Error
+        assert not wrong(Execute=False).Error
+    wrong(Execute=True, Direction="positive")
+    until(x, lambda: x.set_velocity > 40, wrong)
+    changed = MC_TorqueControl(x, Torque=1, Velocity=50, ContinuousUpdate=True)
+    changed(Execute=True)
+    until(x, lambda: changed.InTorque, changed)
+    assert changed(Direction="downwards").Error
+    step(x, 50)
+    assert changed().Error
+    assert x.set_velocity > 40

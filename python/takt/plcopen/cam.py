@@ -50,7 +50,7 @@ class MC_CamTableSelect(SettingBlock):  # noqa: N801
     def _waits(self, feedback: Feedback) -> bool:
         """Whether commands given before this one are still in control, or wait."""
         axis = self.Axis
-        mode = _commands.ExecutionMode(self._mode)
+        mode = self._mode
         if mode is _commands.ExecutionMode.IMMEDIATELY:
             return False
         earlier = 0 < axis.active_command < feedback.ticket
@@ -65,11 +65,14 @@ class MC_CamTableSelect(SettingBlock):  # noqa: N801
         self._asked = SelectedCam(self.CamTable, self.Periodic, self.MasterAbsolute, self.SlaveAbsolute)
         return super()._command()
 
+    def _scan(self) -> None:
+        super()._scan()
+        self._show(CamTableID=self._selected)
+
     def _follow(self, feedback: Feedback) -> None:
         super()._follow(feedback)
         if feedback.done and self._ending is not None:
             self._selected = self._asked
-        self._show(CamTableID=self._selected)
 
 
 class MC_CamIn(CouplingBlock, UpdatedBlock):  # noqa: N801
