@@ -8,6 +8,7 @@ import pytest
 import takt
 from blocks import call
 from takt import plcopen as plc
+from takt.plcopen.cam import SelectedCam
 
 MACHINE = """
 name: press
@@ -78,6 +79,49 @@ def test_a_cam_once_from_where_the_axis_is(engine: takt.Engine) -> None:
     assert y.set_position == pytest.approx(27)
     x.move_absolute(position=200).wait()
     assert y.set_position == pytest.approx(7)
+
+
+@pytest.mark.parametrize("follower", ["cam", "move", "aborting cam"])
+def test_the_end_of_a_cam_with_another_command_behind_it(engine: takt.Engine, follower: str) -> None:
+    """AX-48: EndOfProfile is that of the cam whose end was passed, also in the call in which the next command has
+    taken over."""
+    x, y = engine.axis("x"), engine.axis("y")
+    first = plc.MC_CamIn(y, Master=x, CamTableID="stroke")
+    second = plc.MC_CamIn(y, Master=x, CamTableID=SelectedCam("stroke", periodic=True))
+    if follower == "cam":
+        second.BufferMode = takt.BufferMode.BUFFERED
+    call(engine, first, 0.01, Execute=True)
+    x.move_velocity(velocity=100.0).wait(until="reached")
+    if follower == "cam":
+        second(Execute=True)
+    elif follower == "move":
+        y.move_absolute(position=30, buffer_mode="buffered")
+    else:
+        engine.wait(lambda: x.set_position >= 99.85)
+        first()
+        second(Execute=True)  # takes control in the cycle in which the first one passes its end
+    ends: dict[str, list[float]] = {"first": [], "second": []}
+    while x.set_position < 250:
+        engine.step()
+        for name, cam in (("first", first), ("second", second)):
+            if cam().EndOfProfile:
+                ends[name].append(x.set_position)
+    assert first.CommandAborted
+    assert ends["first"] == pytest.approx([100], abs=0.2)
+    assert ends["second"] == ([] if follower == "move" else pytest.approx([200], abs=0.2))
+
+
+def test_the_end_of_a_cam_that_was_changed(engine: takt.Engine) -> None:
+    """AX-48, AX-111: an end that is passed in the call of a change is not lost."""
+    x, y = engine.axis("x"), engine.axis("y")
+    cam = plc.MC_CamIn(y, Master=x, CamTableID=SelectedCam("stroke", periodic=True), ContinuousUpdate=True)
+    call(engine, cam, 0.01, Execute=True)
+    x.move_velocity(velocity=100.0)
+    ends = 0
+    while x.set_position < 450:
+        engine.step()
+        ends += cam(SlaveScaling=1 + x.set_position * 1e-6).EndOfProfile
+    assert ends == 4
 
 
 def test_what_is_no_cam(engine: takt.Engine) -> None:

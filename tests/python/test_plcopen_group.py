@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 import takt
@@ -102,6 +103,30 @@ def test_stop_holds_as_long_as_execute(engine: takt.Engine, gantry: takt.Group) 
     assert gantry.state is takt.GroupState.GROUP_STANDBY
 
 
+@pytest.mark.parametrize("end", ["emergency stop", "power off", "second stop"])
+def test_stop_lets_go_however_its_command_ends(end: str, engine: takt.Engine, gantry: takt.Group) -> None:
+    """GR-01: the falling edge of Execute releases a stop that was aborted or ended with an error, too."""
+    stop, second = plc.MC_GroupStop(gantry), plc.MC_GroupStop(gantry)
+    gantry.move_linear_absolute(x=200)
+    engine.wait(lambda: gantry.path_velocity > 100)
+    until(engine, stop, lambda: stop.Active, Execute=True)
+    if end == "emergency stop":
+        engine.command("machine", "emergency_stop").wait_final()
+    elif end == "power off":
+        gantry.power(enable=False).wait_final()
+    else:
+        second(Execute=True)
+    until(engine, stop, lambda: stop.CommandAborted or stop.Error)
+    engine.run(0.3)
+    for block in (stop, second):
+        block(Execute=False)
+        engine.step(2)
+    for command in (gantry.reset, gantry.power, gantry.enable):
+        command().wait_final()
+    assert gantry.state is takt.GroupState.GROUP_STANDBY
+    gantry.move_linear_absolute(x=10).wait()
+
+
 def test_a_path_interrupted_and_continued(engine: takt.Engine, gantry: takt.Group) -> None:
     """GR-20."""
     select = plc.MC_PathSelect(gantry, PathDescription="slot")
@@ -137,6 +162,66 @@ def test_where_it_is(engine: takt.Engine, gantry: takt.Group) -> None:
     assert acceleration(CoordSystem=MCS).PathAcceleration == gantry.acceleration
     assert acceleration(CoordSystem=ACS).Acceleration[1] == pytest.approx(0, abs=1e-9)
     done(engine, move)
+
+
+@pytest.mark.parametrize(
+    ("block_of", "name"),
+    [
+        (plc.MC_GroupReadActualPosition, "CoordSystem"),
+        (plc.MC_GroupReadActualVelocity, "CoordSystem"),
+        (plc.MC_ReadCoordinateTransform, "Reference"),
+    ],
+)
+def test_coordinate_systems_are_given_as_text(gantry: takt.Group, block_of: Any, name: str) -> None:
+    """AX-11: as for all commands; another value is an error that names the input."""
+    read = block_of(gantry, Enable=True)
+    for system in takt.CoordinateSystem:
+        as_text = read(**{name: system.value}).outputs
+        assert as_text == read(**{name: system}).outputs
+        assert read.Error is (block_of is plc.MC_ReadCoordinateTransform and system is ACS)
+    for value in ("MCS", 1, None, True):
+        read(**{name: value})
+        assert (read.Valid, read.Busy, read.Error, read.ErrorID) == (False, False, True, 5)
+        assert read.ErrorText == f"{name}: expected one of acs, mcs, wcs, pcs, found {value!r}"
+    assert not any(read(Enable=False).outputs[output] for output in ("Error", "ErrorID", "ErrorText"))
+    assert read(Enable=True, **{name: "mcs"}).Valid
+
+
+def test_positions_with_coordinate_systems_as_text(engine: takt.Engine, gantry: takt.Group) -> None:
+    """GR-02, AX-11: numbers without names are those of the axes with the text acs, too."""
+    done(engine, plc.MC_MoveDirectAbsolute(gantry, Position=[10, 5, 3], CoordSystem="acs"))
+    assert [axis.set_position for axis in gantry.members] == pytest.approx([10, 5, 3])
+    done(engine, plc.MC_GroupSetPosition(gantry, Position=[0, 0, 0], CoordSystem="acs"))
+    done(engine, plc.MC_MoveLinearAbsolute(gantry, Position=[20, 5, 3], CoordSystem="mcs", BufferMode="buffered"))
+    assert [axis.set_position for axis in gantry.members] == pytest.approx([20, 5, 3])
+    wrong = plc.MC_MoveDirectAbsolute(gantry, Position=[1, 2], CoordSystem="axes")
+    until(engine, wrong, lambda: wrong.Error, Execute=True)
+    assert "coordinate_system: expected one of acs, mcs, wcs, pcs, found 'axes'" in wrong.ErrorText
+    with pytest.raises(TypeError, match="up to 6 numbers with axes, found 7"):
+        plc.MC_MoveDirectAbsolute(gantry, Position=[0] * 7, CoordSystem="axes")(Execute=True)
+
+
+def test_an_axis_in_step_with_the_path(engine: takt.Engine, gantry: takt.Group) -> None:
+    """GR-25: InSync only while the slave is where the path has it; here it is too slow for a while."""
+    feed = engine.axis("feed")
+    feed.power().wait()
+    sync = plc.MC_SyncAxisToGroup(gantry, Slave="feed", RatioNumerator=4.0)
+    until(engine, sync, lambda: sync.InSync, Execute=True)
+    assert sync.Active
+    move = gantry.move_linear_absolute(x=150)
+    lags = []
+    while not (move.done and sync.InSync):
+        assert engine.now < 5
+        engine.step()
+        sync(Slave="")
+        assert sync.Active
+        assert sync.InSync is feed.in_step
+        lags.append(4 * gantry.x - feed.set_position)
+        assert not sync.InSync or abs(lags[-1]) < 0.01
+    assert max(lags) > 50
+    feed.halt().wait()
+    assert sync().CommandAborted
+    assert not sync.InSync
 
 
 def test_coordinate_systems(engine: takt.Engine, gantry: takt.Group) -> None:

@@ -212,6 +212,33 @@ def test_continuous_moves_and_what_the_axis_does(engine: takt.Engine) -> None:
     assert (info.PowerOn, info.IsHomed, info.LimitSwitchPos) == (True, False, False)
 
 
+def test_enumerations_are_given_as_text(engine: takt.Engine) -> None:
+    """AX-11, AX-26: as for all commands; another value is an error that names the input."""
+    x = engine.axis("x")
+    motion = plc.MC_ReadMotionState(x, Enable=True, Source="actual_value")
+    assert motion().Valid
+    for value in ("actual", 0):
+        motion(Source=value)
+        assert (motion.Valid, motion.Error, motion.ErrorID, motion.ConstantVelocity) == (False, True, 5, False)
+        assert motion.ErrorText == f"Source: expected one of set_value, actual_value, found {value!r}"
+    assert motion(Source=takt.MasterSource.SET_VALUE).Valid
+    select = plc.MC_CamTableSelect(x, CamTable="none", ExecutionMode="later")
+    assert select(Execute=True).ErrorText.startswith("ExecutionMode: expected one of immediately, delayed, queued")
+    assert (select.Error, select.ErrorID, select.CamTableID) == (True, 5, None)
+    power = plc.MC_Power(x, Enable=False, BufferMode="late")
+    cams = plc.MC_DigitalCamSwitch(x, Enable=True, ValueSource="due")
+    for block, text in (
+        (power, "buffer_mode: expected one of aborting, buffered"),
+        (cams, "source: expected one of set_value, actual_value"),
+    ):
+        block()
+        engine.run(0.01)
+        assert block().Error
+        assert text in block.ErrorText
+    move = plc.MC_MoveVelocity(x, Velocity=10.0, BufferMode=1)
+    assert move.BufferMode is takt.BufferMode.BUFFERED
+
+
 def test_the_inputs_of_an_axis(engine: takt.Engine) -> None:
     """AX-54: each switch where it lies, and nowhere else."""
     x = engine.axis("x")

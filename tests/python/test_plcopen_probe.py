@@ -91,6 +91,28 @@ def test_touch_returns_to_the_position(x: takt.Axis) -> None:  # AX-49
     assert x.set_position == pytest.approx(touch.RecordedPosition)
 
 
+def test_touch_keeps_its_position(x: takt.Axis) -> None:
+    """AX-49, AX-109: other probes of the axis do not change RecordedPosition; the command has it as its value."""
+    touch, other = GT_Touch(x, Velocity=50), MC_TouchProbe(x, TriggerInput="falling")
+    touch(Execute=True)
+    other(Execute=True)
+    x.move_velocity(velocity=500)
+    until(x, lambda: touch.Done, touch, other)
+    assert other.Done
+    assert other.RecordedPosition == pytest.approx(70, abs=0.02)
+    assert touch.RecordedPosition == pytest.approx(60, abs=0.02)
+    assert x.set_position == pytest.approx(touch.RecordedPosition)
+    other(Execute=False)
+    other(Execute=True)
+    x.move_relative(distance=20).wait()
+    assert other().Done
+    assert touch().RecordedPosition == pytest.approx(60, abs=0.02)
+    x.move_absolute(position=0).wait()
+    again = x.touch(velocity=50)
+    x.move_velocity(velocity=100)
+    assert again.wait().value == x.probe_position == pytest.approx(60, abs=0.01)
+
+
 def test_touch_slows_down_as_long_as_execute_is_true(x: takt.Axis) -> None:  # AX-49
     slow, move = GT_Touch(x, Mode=TouchMode.SLOW, Velocity=20), MC_MoveAbsolute(x)
     slow(Execute=True)
@@ -123,3 +145,29 @@ def test_torque_control_presses(x: takt.Axis) -> None:  # AX-42
     assert press.CommandAborted
     assert abs(x.actual_velocity) <= 51
     x.halt().wait()
+
+
+def test_torque_control_takes_directions_as_text(x: takt.Axis) -> None:
+    """AX-42, AX-11: another value is an error that names the input, and moves nothing."""
+    press = MC_TorqueControl(x, Torque=1, Velocity=50, Direction="negative")
+    press(Execute=True)
+    until(x, lambda: x.set_velocity < -40, press)
+    press(Execute=False)
+    x.halt().wait()
+    for value in (3, "NEGATIVE", None):
+        wrong = MC_TorqueControl(x, Torque=1, Velocity=50, Direction=value)
+        assert (wrong(Execute=True).Error, wrong.ErrorID, wrong.Busy) == (True, 5, False)
+        assert wrong.ErrorText == f"Direction: expected one of current, positive, shortest, negative, found {value!r}"
+        step(x, 50)
+        assert x.set_velocity == 0
+        assert wrong().Error
+        assert not wrong(Execute=False).Error
+    wrong(Execute=True, Direction="positive")
+    until(x, lambda: x.set_velocity > 40, wrong)
+    changed = MC_TorqueControl(x, Torque=1, Velocity=50, ContinuousUpdate=True)
+    changed(Execute=True)
+    until(x, lambda: changed.InTorque, changed)
+    assert changed(Direction="downwards").Error
+    step(x, 50)
+    assert changed().Error
+    assert x.set_velocity > 40

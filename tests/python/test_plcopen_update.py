@@ -160,6 +160,58 @@ def test_the_end_velocity_is_scaled_by_the_override(
     assert (x.set_velocity, block(Execute=True).InEndVelocity) == (pytest.approx(10), True)
 
 
+def test_the_end_velocity_is_that_of_the_limit_in_force(s: takt.Engine) -> None:
+    """AX-51, AX-28: an override above 1 counts as far as the largest velocity that was written."""
+    x = s.axis("x")
+    x.write_parameter(number=9, value=50).wait()
+    x.set_override(velocity_factor=2).wait()
+    block = MC_MoveContinuousAbsolute(x, Position=30.0, EndVelocity=40.0, Velocity=50.0)
+    while not block(Execute=True).InEndVelocity:
+        assert s.now < 5
+        s.step()
+    assert x.set_velocity == pytest.approx(50)
+    x.set_override(velocity_factor=1.1)
+    shown = []
+    for _ in range(300):
+        s.step()
+        if block().InEndVelocity:
+            shown.append(x.set_velocity)
+    assert block.InEndVelocity
+    assert shown == pytest.approx([44] * len(shown))
+
+
+@pytest.mark.parametrize("direction", ["positive", "negative"])
+def test_in_velocity_is_scaled_by_the_override(s: takt.Engine, direction: str) -> None:
+    """AX-51, AX-11: InVelocity while the set point has the velocity that the override makes of the commanded one; not
+    on the way there, nor while the axis is held. The velocity of a motion on top does not count."""
+    x = s.axis("x")
+    block = MC_MoveVelocity(x, Velocity=100.0, Direction=direction)
+    run(s, block, 0.5)
+    assert block.InVelocity
+    for factor, velocity in ((0.5, 50), (0.0, 0), (1.0, 100), (2.5, 250), (10.0, 300), (3.0, 300), (0.2, 20)):
+        x.set_override(velocity_factor=factor)
+        passed = []
+        for _ in range(500):
+            s.step()
+            if block().InVelocity:
+                passed.append(abs(x.set_velocity))
+        assert abs(x.set_velocity) == pytest.approx(velocity)
+        assert block.InVelocity is (factor > 0)
+        assert passed == pytest.approx([velocity] * len(passed))
+    x.set_override(velocity_factor=1).wait()
+    run(s, block, 0.5)
+    added = x.move_superimposed(distance=-20, velocity_difference=30)
+    while not added.final:
+        s.step()
+        assert block().InVelocity
+    block(Execute=False)
+    assert not block().InVelocity
+    x.halt().wait()
+    rest = MC_MoveVelocity(x, Velocity=0.0)
+    run(s, rest, 0.1)
+    assert rest.InVelocity
+
+
 @pytest.mark.parametrize("beneath", [False, True])
 def test_what_is_on_top_counts_from_its_beginning(s: takt.Engine, beneath: bool) -> None:
     """AX-111: MC_MoveSuperimposed adds the new distance in all, also less than it has added already."""

@@ -18,6 +18,8 @@ void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId err
 
 void ReportEnd(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error, const State& s) noexcept {
   FeedbackEvent end{ticket, c.cycle.count, feedback, false, error, 0};
+  const bool touched = feedback == FeedbackState::kDone && s.active.kind == RequestKind::kTouch;
+  if (touched) end.value = Reported(c.params, s.motion.target);
   if (error == ErrorId::kAxisFault && s.fault_of != kNoAxis) end.object = {ObjectKind::kAxis, s.fault_of + 1};
   c.feedback.Report(end);
 }

@@ -149,6 +149,10 @@ class UpdatedBlock : public Block<C> {
     this->Show();
   }
 
+ protected:
+  // The inputs of the command in progress.
+  const C& given() const noexcept { return given_; }
+
  private:
   void Change(C wanted) noexcept {
     if constexpr (requires { wanted.buffer_mode; }) wanted.buffer_mode = axis::BufferMode::kAborting;

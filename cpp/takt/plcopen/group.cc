@@ -26,6 +26,18 @@ void MC_GroupStop::operator()() noexcept {
   if (!Execute) feedback().Release();
 }
 
+void MC_SyncAxisToGroup::operator()() noexcept {
+  if (Rises()) {
+    slave_ = axis::FindAxis(AxesGroup().program().engine().machine().axes, axis.view());
+    StartWith(*this);
+  }
+  Show();
+}
+
+bool MC_SyncAxisToGroup::InSync() const noexcept {
+  return CommandInControl() && slave_ != axis::kNoAxis && AxesGroup().program().engine().outputs(slave_).in_step;
+}
+
 std::array<double, 6> MC_GroupReadActualPosition::Position() const noexcept {
   const group::Outputs& o = shown();
   return {o.actual_x, o.actual_y, o.actual_z, o.actual_a, o.actual_b, o.actual_c};

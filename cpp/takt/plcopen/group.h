@@ -64,8 +64,12 @@ class MC_GroupStop : public BlockOfGroup<group::Stop> {
 class MC_SyncAxisToGroup : public BlockOfGroup<group::SyncAxis> {
  public:
   using BlockOfGroup::BlockOfGroup;
-  // It follows the path.
-  bool InSync() const noexcept { return Active(); }
+  void operator()() noexcept;
+  // The set point of the slave is where the path has it.
+  bool InSync() const noexcept;
+
+ private:
+  std::uint32_t slave_ = axis::kNoAxis;  // of the command given: its index among the axes
 };
 
 class MC_MovePathSynchronized : public BlockOfGroup<group::MovePathSynchronized> {

@@ -1,6 +1,19 @@
 #include "takt/plcopen/moves.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace takt::plcopen {
+
+bool HasVelocity(AxisRef axis, double velocity) noexcept {
+  const axis::Outputs& o = axis.outputs();
+  const bool runs = o.override_factor > 0 || velocity == 0;
+  if (o.superimposed) return runs;
+  const double scaled = velocity * o.override_factor;
+  const double now = std::abs(o.set_velocity);
+  const bool clamped = o.limited_by != LimitedBy::kNothing && o.set_acceleration == 0 && now < scaled;
+  return clamped || (runs && std::abs(now - scaled) <= 1e-9 * std::max(1.0, scaled));
+}
 
 void MC_Stop::operator()() noexcept {
   hold = true;
@@ -49,11 +62,16 @@ void GT_Touch::operator()() noexcept {
 }
 
 void MC_CamIn::operator()() noexcept {
-  const std::uint32_t ends = axis().outputs().profile_ends;
-  if (!Busy()) ends_ = ends;
+  if (Execute && !level_) ends_.reset();
+  level_ = Execute;
   CouplingBlock::operator()();
-  end_of_profile_ = Active() && ends != ends_;
-  ends_ = ends;
+  const std::uint32_t ends = axis().outputs().profile_ends;
+  end_of_profile_ = ends_ && *ends_ != ends;
+  if (feedback().active() || (ends_ && feedback().busy())) {
+    ends_ = ends;
+  } else {
+    ends_.reset();
+  }
 }
 
 }  // namespace takt::plcopen

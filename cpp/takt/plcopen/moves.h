@@ -3,8 +3,9 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 
 #include "takt/plcopen/block.h"
 
@@ -58,10 +59,15 @@ class MC_Inch : public Block<axis::Inch> {
   bool Active() const noexcept { return Busy(); }
 };
 
+// Whether the set point of an axis whose command has reached `velocity` [u/s] has it now, as the override in force
+// scales it, up to the largest velocity of the axis. What is on top of the motion is published together with it: then
+// the axis only must not be held.
+bool HasVelocity(AxisRef axis, double velocity) noexcept;
+
 class MC_MoveVelocity : public UpdatedBlock<axis::MoveVelocity> {
  public:
   using UpdatedBlock::UpdatedBlock;
-  bool InVelocity() const noexcept { return Reached(); }
+  bool InVelocity() const noexcept { return Reached() && HasVelocity(axis(), given().velocity); }
 };
 
 class MC_MoveSuperimposed : public UpdatedBlock<axis::MoveSuperimposed> {
@@ -84,21 +90,16 @@ class MC_PhasingRelative : public Block<axis::PhasingRelative> {
   double CoveredPhaseShift() const noexcept { return Active() ? axis().outputs().covered_phase_shift : ValueAtEnd(); }
 };
 
-// A SW limit behind the place may leave a continuous move less than its end velocity.
-inline bool HasSpeed(AxisRef axis, double speed) noexcept {
-  return std::abs(axis.outputs().set_velocity) >= speed * (1 - 1e-9);
-}
-
 class MC_MoveContinuousAbsolute : public UpdatedBlock<axis::MoveContinuousAbsolute> {
  public:
   using UpdatedBlock::UpdatedBlock;
-  bool InEndVelocity() const noexcept { return Reached() && HasSpeed(axis(), end_velocity); }
+  bool InEndVelocity() const noexcept { return Reached() && HasVelocity(axis(), given().end_velocity); }
 };
 
 class MC_MoveContinuousRelative : public UpdatedBlock<axis::MoveContinuousRelative> {
  public:
   using UpdatedBlock::UpdatedBlock;
-  bool InEndVelocity() const noexcept { return Reached() && HasSpeed(axis(), end_velocity); }
+  bool InEndVelocity() const noexcept { return Reached() && HasVelocity(axis(), given().end_velocity); }
 };
 
 class MC_TorqueControl : public UpdatedBlock<axis::TorqueControl> {
@@ -138,11 +139,13 @@ class MC_CamIn : public CouplingBlock<axis::CamIn> {
   using CouplingBlock::CouplingBlock;
   void operator()() noexcept;
   bool InSync() const noexcept { return InStep(); }
-  // The end of the cam was passed since the call before.
+  // The end of the cam was passed since the call before, while this command was in control; also in the call in which
+  // the next command has taken over.
   bool EndOfProfile() const noexcept { return end_of_profile_; }
 
  private:
-  std::uint32_t ends_ = 0;  // passed until the last call
+  std::optional<std::uint32_t> ends_;  // profile_ends in the last call; unset: the command was not in control then
+  bool level_ = false;                 // Execute in the last call
   bool end_of_profile_ = false;
 };
 
@@ -164,7 +167,7 @@ class GT_Touch : public Block<axis::Touch> {
  public:
   explicit GT_Touch(AxisRef axis) : Block(axis) {}
   void operator()() noexcept;
-  double RecordedPosition() const noexcept { return Done() ? axis().outputs().probe_position : 0; }
+  double RecordedPosition() const noexcept { return Value(); }
 
  private:
   bool slows_ = false;  // the command given

@@ -15,7 +15,9 @@ block has. Active is as Busy, but for a buffered command, where it says that the
 CommandAborted, Error and the like are cleared with the falling edge of Execute, but are seen in one call at least. A
 new rising edge before the end starts the command again; of the one before nothing more is heard. Velocity,
 acceleration, deceleration and jerk are never negative; the engine refuses them. An input that is None is left to the
-engine: the axis' own limit.
+engine: the axis' own limit. Inputs of enumerations take a member or its text; any other value is an error (5) of the
+block, which names the input. InVelocity, InEndVelocity, InGear and InSync tell of the set point now: they fall when it
+no longer has what was commanded.
 """
 
 from __future__ import annotations

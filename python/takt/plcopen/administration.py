@@ -11,6 +11,7 @@ from takt.drives.error_texts import error_text as drive_error_text
 from takt.engine import error_text
 from takt.feedback import Feedback
 from takt.plcopen.base import (
+    PARAMETER,
     AxisName,
     ExecuteBlock,
     FunctionBlock,
@@ -22,7 +23,6 @@ from takt.plcopen.base import (
     in_control,
 )
 
-PARAMETER = 5  # error of a command: an input is out of its range
 OUTPUTS = 32
 AXIS_FAULT = 7  # error of a command: the fault of the axis is still there
 EMERGENCY_STOP = 3100  # error of a command: an emergency stop is on, or nobody has asked for power since
@@ -77,7 +77,7 @@ class MC_Power(FunctionBlock):  # noqa: N801
         self._feedback: Feedback | None = None  # of the command in progress ...
         self._given: dict[str, Any] = {}  # ... and its arguments
         self._told = (True, True)  # EnablePositive and EnableNegative of the last command that was not refused
-        self._refusal: tuple[_commands.PlcState, int] | None = None  # of the last command: the axis' state, the error
+        self._refusal: tuple[_commands.PlcState, Feedback] | None = None  # the last command, and the axis' state then
         super().__init__(axis, **inputs)
 
     def _scan(self) -> None:
@@ -109,7 +109,7 @@ class MC_Power(FunctionBlock):  # noqa: N801
             self._told = (self._given["enable_positive"], self._given["enable_negative"])
         refused = ended.error and (ended.ticket == 0 or not enable) and not found_no_room(ended)
         if self._given["enable"] is enable and (refused or (ended.aborted and not enable)):
-            self._refusal = (self.Axis.state, ended.error_id)
+            self._refusal = (self.Axis.state, ended)
         return ended
 
     def _is_due(self, enable: bool, state: _commands.PlcState) -> bool:
@@ -130,18 +130,18 @@ class MC_Power(FunctionBlock):  # noqa: N801
 
     def _show_all(self, enable: bool, state: _commands.PlcState, ended: Feedback | None) -> None:
         status = self.Axis.loop_closed
-        error_id = ended.error_id if ended is not None and ended.error else 0
+        error_id, text = (ended.error_id, ended.sentence) if ended is not None and ended.error else (0, "")
         if self._refusal is not None:
-            error_id = self._refusal[1]
+            error_id, text = self._refusal[1].error_id, self._refusal[1].sentence
         if enable and not status and state is _commands.PlcState.ERROR_STOP:
-            error_id = self.Axis.error
+            error_id, text = self.Axis.error, ""
         if self._is_held_off(enable):
-            error_id = EMERGENCY_STOP
+            error_id, text = EMERGENCY_STOP, ""
         self._show(Status=status, Valid=enable and not error_id)
         if ended is not None and ended.aborted:
             self._show(CommandAborted=True)
         elif error_id:
-            self._show_error(error_id)
+            self._show_error(error_id, text)
         elif self._feedback is not None or (enable and not status):
             self._show(Busy=True, Active=self._feedback is None or in_control(self._feedback, self._given))
 
@@ -224,7 +224,7 @@ class MC_ReadMotionState(ReadBlock):  # noqa: N801
 
     def _read(self) -> None:
         axis = self.Axis
-        if self.Source == _commands.MasterSource.SET_VALUE:
+        if self.Source is _commands.MasterSource.SET_VALUE:
             velocity, acceleration = axis.set_velocity, axis.set_acceleration
         else:
             velocity, acceleration = axis.actual_velocity, self._measured_acceleration()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from enum import Enum
 from typing import Any, ClassVar, Generic, TypeVar, overload
 
 from takt import _commands
@@ -11,6 +12,7 @@ from takt.component import Component
 from takt.engine import error_text
 from takt.feedback import QUEUE_FULL, Feedback, FeedbackState
 
+PARAMETER = 5  # error of a command: an input is out of its range
 ENDINGS = {FeedbackState.DONE: "Done", FeedbackState.ABORTED: "CommandAborted", FeedbackState.ERROR: "Error"}
 
 T = TypeVar("T")
@@ -19,7 +21,8 @@ AnyAxis = Axis  # where a member is called Axis
 
 class Input(Generic[T]):
     """An input of a block; `argument` is its name among the command's arguments, where it is one. `alias` is another
-    name of the same input."""
+    name of the same input. Where `initial` is a member of an enumeration, the text of a member stands for it; any other
+    value is kept as it is, and refused: by the command that has it as an argument, else by the block."""
 
     def __init__(self, initial: T, argument: str = "", *, alias: str = "") -> None:
         self.initial = initial
@@ -41,7 +44,7 @@ class Input(Generic[T]):
         return value
 
     def __set__(self, block: FunctionBlock, value: T) -> None:
-        block._inputs[self.alias or self.name] = value
+        block._inputs[self.alias or self.name] = member_of(self.initial, value)
 
 
 class Output(Generic[T]):
@@ -90,6 +93,7 @@ class FunctionBlock:
     AXES: ClassVar[frozenset[str]] = frozenset({"Axis"})  # ... with other names of it
     INPUTS: ClassVar[Mapping[str, Input[Any]]] = {}
     OUTPUTS: ClassVar[Mapping[str, Output[Any]]] = {}
+    CHOICES: ClassVar[Mapping[str, type[Enum]]] = {}  # inputs that are enumerations and no arguments of a command
 
     Error = Output(False)
     ErrorID = Output(0)
@@ -99,6 +103,8 @@ class FunctionBlock:
         members = [(n, m) for base in reversed(cls.__mro__) for n, m in vars(base).items()]
         cls.INPUTS = {n: m for n, m in members if isinstance(m, Input)}
         cls.OUTPUTS = {n: m for n, m in members if isinstance(m, Output)}
+        choices = {n: i.initial for n, i in cls.INPUTS.items() if not i.argument and not i.alias}
+        cls.CHOICES = {n: type(usual) for n, usual in choices.items() if isinstance(usual, Enum)}
         cls.AXES = frozenset({cls.SUBJECT, *(n for n, m in members if isinstance(m, AxisName))})
 
     Axis: AnyAxis
@@ -142,7 +148,16 @@ class FunctionBlock:
 
     def _arguments(self) -> dict[str, Any]:
         """The inputs that are arguments of the command."""
-        return {i.argument: named(i.initial, getattr(self, n)) for n, i in self.INPUTS.items() if i.argument}
+        return {i.argument: getattr(self, n) for n, i in self.INPUTS.items() if i.argument}
+
+    def _wrong_choice(self) -> str:
+        """Which input of CHOICES has a value that is no member of its enumeration; empty: none has."""
+        for name, kind in self.CHOICES.items():
+            value = getattr(self, name)
+            if not isinstance(value, kind):
+                expected = ", ".join(member.value for member in kind)
+                return f"{name}: expected one of {expected}, found {value!r}"
+        return ""
 
     def _show(self, **outputs: Any) -> None:
         for name in outputs:
@@ -157,11 +172,15 @@ class FunctionBlock:
         raise NotImplementedError
 
 
-def named(usual: Any, value: Any) -> Any:
-    """A buffer mode may be given by its number, too: 0 aborting to 5 blending_high (PLCopen's mcAborting ...)."""
-    by_number = isinstance(usual, _commands.BufferMode) and isinstance(value, int) and not isinstance(value, bool)
-    modes = list(_commands.BufferMode)
-    return modes[value] if by_number and 0 <= value < len(modes) else value
+def member_of(usual: Any, value: Any) -> Any:
+    """The member of the enumeration of `usual` for which `value` stands: its text, for a buffer mode also its number, 0
+    aborting to 5 blending_high (PLCopen's mcAborting ...). Returns `value` itself where there is none."""
+    if not isinstance(usual, Enum):
+        return value
+    members: list[Enum] = list(type(usual))
+    if isinstance(usual, _commands.BufferMode) and isinstance(value, int) and not isinstance(value, bool):
+        return members[value] if 0 <= value < len(members) else value
+    return next((member for member in members if isinstance(value, str) and value == member.value), value)
 
 
 def in_control(feedback: Feedback, arguments: Mapping[str, Any]) -> bool:
@@ -187,6 +206,7 @@ class ExecuteBlock(FunctionBlock):
         self._edge = False  # Execute in the call before
         self._given: dict[str, Any] = {}  # the arguments of the command
         self._feedback: Feedback | None = None
+        self._wrong = ""  # why no command was given: an input has a value that it cannot have
         self._ending: tuple[str, int] | None = None  # of the command: the output that says so, the error's number
         self._seen: set[str] = set()  # outputs that were shown for this command
         super().__init__(subject, **inputs)
@@ -194,8 +214,9 @@ class ExecuteBlock(FunctionBlock):
     def _scan(self) -> None:
         execute = bool(self.Execute)
         if execute and not self._edge:
+            self._wrong = self._wrong_choice()
             self._given = self._arguments()
-            self._feedback = self._command()
+            self._feedback = None if self._wrong else self._command()
             self._ending = None
             self._seen = set()
         elif self._edge and not execute:
@@ -205,6 +226,8 @@ class ExecuteBlock(FunctionBlock):
         self._edge = execute
         if self._feedback is not None:
             self._follow(self._feedback)
+        elif self._wrong and self._is_due("Error"):
+            self._show_error(PARAMETER, self._wrong)
 
     def _command(self) -> Feedback:
         """Gives the command."""
@@ -279,6 +302,10 @@ class ChangedBlock(ExecuteBlock):
         feedback = self._feedback
         if not self._updates or feedback is None or feedback.final or not self._is_in_control(feedback):
             return
+        self._wrong = self._wrong_choice()
+        if self._wrong:
+            self._feedback = None
+            return
         wanted = self._arguments() | self.AT_ONCE
         if wanted == self._given | self.AT_ONCE:
             return
@@ -314,9 +341,13 @@ class ReadBlock(FunctionBlock):
     Busy = Output(False)
 
     def _scan(self) -> None:
-        if self.Enable:
-            self._show(Valid=True, Busy=True)
-            self._read()
+        if not self.Enable:
+            return
+        if wrong := self._wrong_choice():
+            self._show_error(PARAMETER, wrong)
+            return
+        self._show(Valid=True, Busy=True)
+        self._read()
 
     def _read(self) -> None:
         raise NotImplementedError

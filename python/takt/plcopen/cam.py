@@ -50,7 +50,7 @@ class MC_CamTableSelect(SettingBlock):  # noqa: N801
     def _waits(self, feedback: Feedback) -> bool:
         """Whether commands given before this one are still in control, or wait."""
         axis = self.Axis
-        mode = _commands.ExecutionMode(self._mode)
+        mode = self._mode
         if mode is _commands.ExecutionMode.IMMEDIATELY:
             return False
         earlier = 0 < axis.active_command < feedback.ticket
@@ -65,17 +65,21 @@ class MC_CamTableSelect(SettingBlock):  # noqa: N801
         self._asked = SelectedCam(self.CamTable, self.Periodic, self.MasterAbsolute, self.SlaveAbsolute)
         return super()._command()
 
+    def _scan(self) -> None:
+        super()._scan()
+        self._show(CamTableID=self._selected)
+
     def _follow(self, feedback: Feedback) -> None:
         super()._follow(feedback)
         if feedback.done and self._ending is not None:
             self._selected = self._asked
-        self._show(CamTableID=self._selected)
 
 
 class MC_CamIn(CouplingBlock, UpdatedBlock):  # noqa: N801
     """Follows the cam of CamTableID, which MC_CamTableSelect gives; a plain name of a cam is one, too. x is Master's
     position times MasterScaling plus MasterOffset, the axis' place y(x) times SlaveScaling plus SlaveOffset.
-    EndOfProfile: the end of the cam was passed since the call before."""
+    EndOfProfile: the end of the cam was passed since the call before, while this command was in control; also in the
+    call in which the next command has taken over."""
 
     VERB = "cam_in"
     IN_STEP = "InSync"
@@ -102,14 +106,25 @@ class MC_CamIn(CouplingBlock, UpdatedBlock):  # noqa: N801
         laid = {"master_absolute": table.master_absolute, "slave_absolute": table.slave_absolute}
         return super()._arguments() | laid | {"cam": table.cam, "periodic": table.periodic}
 
+    def __init__(self, axis: Axis, **inputs: Any) -> None:
+        self._ends: int | None = None  # profile_ends in the call before; None: the command was not in control then
+        super().__init__(axis, **inputs)
+
     def _command(self) -> Feedback:
-        self._ends = self.Axis.profile_ends
+        self._ends = None
         return super()._command()
 
-    def _run(self, feedback: Feedback) -> None:
-        super()._run(feedback)
-        self._show(EndOfProfile=feedback.active and self.Axis.profile_ends != self._ends)
-        self._ends = self.Axis.profile_ends
+    def _follow(self, feedback: Feedback) -> None:
+        super()._follow(feedback)
+        takes_control = feedback.active and self._ends is None
+        if takes_control or (feedback.final and self._ends is not None):
+            self.Axis.session._catch_up(feedback.cycle)
+        ends = self.Axis.profile_ends
+        self._show(EndOfProfile=self._ends is not None and ends != self._ends)
+        if takes_control:
+            self._ends = ends
+        elif self._ends is not None:
+            self._ends = None if feedback.final else ends
 
 
 class MC_CamAdd(SettingBlock):  # noqa: N801

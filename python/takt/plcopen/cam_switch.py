@@ -40,7 +40,7 @@ class MC_DigitalCamSwitch(FunctionBlock):  # noqa: N801
         if wanted is None and found_no_room(self._feedback):
             self._show(Busy=True, InOperation=True, Outputs=self.Axis.cam_outputs)
         elif self._feedback.error:
-            self._show_error(self._feedback.error_id)
+            self._show_error(self._feedback.error_id, self._feedback.sentence)
         elif wanted is not None and self._feedback.busy:
             works = self._feedback.active
             self._show(Busy=True, InOperation=works, Outputs=self.Axis.cam_outputs if works else 0)

@@ -18,14 +18,22 @@ from takt.engine import error_text
 from takt.feedback import Feedback
 from takt.group import POSE, PRODUCT_SYSTEMS, Group
 from takt.kinematics import Array, matrix_to_pose, pose_to_matrix
-from takt.plcopen.base import ExecuteBlock, FunctionBlock, Input, Output, ReadBlock, SettingBlock, found_no_room
+from takt.plcopen.base import (
+    PARAMETER,
+    ExecuteBlock,
+    FunctionBlock,
+    Input,
+    Output,
+    ReadBlock,
+    SettingBlock,
+    found_no_room,
+)
 from takt.plcopen.coupling import axis_name
 
 Numbers = Sequence[float | None] | Mapping[str, float]
 AxisOrName = Axis | str
 
 # Errors of commands.
-PARAMETER = 5  # an input is out of its range
 NO_MEMBER = 1003  # there is no such member
 STATE = 3005  # not legal in this state
 AXES = tuple(f"a{place}" for place in range(1, 9))
@@ -39,7 +47,7 @@ def by_name(numbers: Numbers, system: _commands.CoordinateSystem) -> dict[str, f
         return dict(numbers)
     names = AXES if system is _commands.CoordinateSystem.ACS else POSE
     if len(numbers) > len(names):
-        raise TypeError(f"a position has up to {len(names)} numbers with {system.value}, found {len(numbers)}")
+        raise TypeError(f"a position has up to {len(names)} numbers with {system}, found {len(numbers)}")
     return {name: number for name, number in zip(names, numbers, strict=False) if number is not None}
 
 
@@ -301,7 +309,7 @@ class MC_GroupSetOverride(GroupBlock, FunctionBlock):  # noqa: N801
             self._given = wanted
             self._feedback = self.AxesGroup.session.command(self.AxesGroup.name, "set_override", wanted)
         if self._feedback.error:
-            self._show_error(self._feedback.error_id)
+            self._show_error(self._feedback.error_id, self._feedback.sentence)
         else:
             self._show(Enabled=self._feedback.done, Busy=True)
 

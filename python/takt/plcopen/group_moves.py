@@ -64,7 +64,8 @@ class MC_GroupHome(GroupMotionBlock):  # noqa: N801
 
 
 class MC_GroupStop(GroupMotionBlock):  # noqa: N801
-    """Brakes to standstill on the path. The group stays in GroupStopping as long as Execute is true."""
+    """Brakes to standstill on the path. The group stays in GroupStopping as long as Execute is true, however the
+    command ends."""
 
     VERB = "stop"
     Deceleration = Input[float | None](None, "deceleration")
@@ -74,7 +75,7 @@ class MC_GroupStop(GroupMotionBlock):  # noqa: N801
         return super()._arguments() | {"hold": True}
 
     def _fall(self) -> None:
-        if self._feedback is not None and not (self._feedback.error or self._feedback.aborted):
+        if self._feedback is not None:
             self._feedback.release()
 
 
@@ -208,7 +209,7 @@ class MC_MovePath(PathMove):  # noqa: N801
 
 class MC_SyncAxisToGroup(GroupBlock, ExecuteBlock):  # noqa: N801
     """Lets Slave, which is no member, follow the way along the path: RatioNumerator of its unit per RatioDenominator
-    mm. Never done: InSync is true while it does. Slave may be its name."""
+    mm. Never done: InSync is true while its set point is where the path has it. Slave may be its name."""
 
     VERB = "sync_axis"
     Master = GroupName()
@@ -224,7 +225,8 @@ class MC_SyncAxisToGroup(GroupBlock, ExecuteBlock):  # noqa: N801
 
     def _run(self, feedback: Feedback) -> None:
         super()._run(feedback)
-        self._show(Active=feedback.active, InSync=feedback.active)
+        in_sync = feedback.active and self.AxesGroup.session.axis(self._given["axis"]).in_step
+        self._show(Active=feedback.active, InSync=in_sync)
 
 
 class MC_MovePathSynchronized(GroupBlock, ExecuteBlock):  # noqa: N801

@@ -41,7 +41,7 @@ class GT_Jog(FunctionBlock):  # noqa: N801
         if failed or not any(keys):
             self._release()
         if self._feedback is not None and failed and (any(keys) or not self._seen):
-            self._show_error(self._feedback.error_id)
+            self._show_error(self._feedback.error_id, self._feedback.sentence)
             self._seen = True
 
     def _press(self, keys: tuple[bool, bool]) -> None:

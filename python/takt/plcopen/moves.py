@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from takt import _commands
@@ -45,8 +46,21 @@ class MC_MoveAdditive(MC_MoveRelative):  # noqa: N801
     VERB = "move_additive"
 
 
+def has_velocity(axis: Axis, velocity: float) -> bool:
+    """Whether the set point of an axis whose command has reached `velocity` [u/s] has it now, as the override in force
+    scales it, up to the largest velocity of the axis. What is on top of the motion is published together with it: then
+    the axis only must not be held."""
+    factor = axis.override_factor
+    if axis.superimposed:
+        return factor > 0 or velocity == 0
+    scaled, now = velocity * factor, abs(axis.set_velocity)
+    clamped = axis.limited_by is not _commands.LimitedBy.NOTHING and axis.set_acceleration == 0 and now < scaled
+    return clamped or (math.isclose(now, scaled, rel_tol=1e-9, abs_tol=1e-9) and (factor > 0 or velocity == 0))
+
+
 class MC_MoveVelocity(UpdatedBlock):  # noqa: N801
-    """Moves on and on. Never done: InVelocity says that the velocity is reached."""
+    """Moves on and on. Never done: InVelocity is true while the set point has the velocity, as the override in force
+    scales it."""
 
     VERB = "move_velocity"
     Velocity = Input(0.0, "velocity")
@@ -58,7 +72,8 @@ class MC_MoveVelocity(UpdatedBlock):  # noqa: N801
 
     def _run(self, feedback: Feedback) -> None:
         super()._run(feedback)
-        self._show(InVelocity=feedback.reached and self._is_due("InVelocity"))
+        there = feedback.reached and has_velocity(self.Axis, self._given["velocity"])
+        self._show(InVelocity=there and self._is_due("InVelocity"))
 
 
 class MC_Halt(MotionBlock):  # noqa: N801
@@ -88,14 +103,9 @@ class MC_Stop(MotionBlock):  # noqa: N801
             self._feedback.release()
 
 
-def has_end_velocity(axis: Axis, end_velocity: float) -> bool:
-    """Whether the set point has the end velocity [u/s] of a continuous move, as the override in force scales it."""
-    scaled = end_velocity * (axis.override_factor or 1.0)  # 0: the axis is held
-    return abs(axis.set_velocity) >= min(scaled, axis.parameters["limits"]["velocity"] or scaled) * (1 - 1e-9)
-
-
 class MC_MoveContinuousAbsolute(UpdatedBlock):  # noqa: N801
-    """Moves to a position and goes on from there with EndVelocity. Never done: InEndVelocity says that it is there."""
+    """Moves to a position and goes on from there with EndVelocity. Never done: InEndVelocity is true once it is
+    there, while the set point has that velocity, as the override in force scales it."""
 
     VERB = "move_continuous_absolute"
     Position = Input(0.0, "position")
@@ -109,12 +119,13 @@ class MC_MoveContinuousAbsolute(UpdatedBlock):  # noqa: N801
 
     def _run(self, feedback: Feedback) -> None:
         super()._run(feedback)
-        there = feedback.reached and has_end_velocity(self.Axis, self._given["end_velocity"])
+        there = feedback.reached and has_velocity(self.Axis, self._given["end_velocity"])
         self._show(InEndVelocity=there and self._is_due("InEndVelocity"))
 
 
 class MC_MoveContinuousRelative(UpdatedBlock):  # noqa: N801
-    """Moves by a distance and goes on from there with EndVelocity. Never done: InEndVelocity says that it is there."""
+    """Moves by a distance and goes on from there with EndVelocity. Never done: InEndVelocity is true once it is
+    there, while the set point has that velocity, as the override in force scales it."""
 
     VERB = "move_continuous_relative"
     Distance = Input(0.0, "distance")
@@ -127,7 +138,7 @@ class MC_MoveContinuousRelative(UpdatedBlock):  # noqa: N801
 
     def _run(self, feedback: Feedback) -> None:
         super()._run(feedback)
-        there = feedback.reached and has_end_velocity(self.Axis, self._given["end_velocity"])
+        there = feedback.reached and has_velocity(self.Axis, self._given["end_velocity"])
         self._show(InEndVelocity=there and self._is_due("InEndVelocity"))
 
 

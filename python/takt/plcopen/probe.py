@@ -66,7 +66,7 @@ class GT_Touch(ExecuteBlock):  # noqa: N801
     def _follow(self, feedback: Feedback) -> None:
         super()._follow(feedback)
         if self.Done:
-            self._show(RecordedPosition=self.Axis.probe_position)
+            self._show(RecordedPosition=feedback.value)
 
     def _fall(self) -> None:
         slows: Any = self._given["mode"] == _commands.TouchMode.SLOW

@@ -85,7 +85,7 @@ class MC_SetOverride(FunctionBlock):  # noqa: N801
             self._given = wanted
             self._feedback = self.Axis.session.command(self.Axis.name, "set_override", wanted)
         if self._feedback.error:
-            self._show_error(self._feedback.error_id)
+            self._show_error(self._feedback.error_id, self._feedback.sentence)
         else:
             self._show(Busy=True, Enabled=self._feedback.done)
 

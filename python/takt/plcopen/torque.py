@@ -24,7 +24,7 @@ class MC_TorqueControl(UpdatedBlock):  # noqa: N801
     InTorque = Output(False)
 
     def _arguments(self) -> dict[str, Any]:
-        sense = -1 if self.Direction == _commands.Direction.NEGATIVE else 1
+        sense = -1 if self.Direction is _commands.Direction.NEGATIVE else 1
         return super()._arguments() | {"torque": sense * self.Torque}
 
     def _run(self, feedback: Feedback) -> None:

@@ -45,6 +45,7 @@ paths:
   - {name: hook, elements: [{shape: line, to: {x: 40, y: 0, z: 0}}, {shape: line, to: {x: 40, y: 20, z: 0}}]}
 simulation:
   servos:
+    - {axis: x, switches: {touch_probe: {from: 60, to: 70}}}
     - {axis: w, drive: {velocity_feed_forward: 0, position_gain: 100}}
     - {axis: r, drive: {power_up_s: 0.2}}
 )";

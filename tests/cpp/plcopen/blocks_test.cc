@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <vector>
 
 #include "bench.h"
 
@@ -422,6 +425,131 @@ TEST_F(Blocks, Cams) {
   ASSERT_TRUE(Until(out, [&] { return out.Done(); }));
   cam();
   EXPECT_TRUE(cam.CommandAborted() && !cam.InSync() && !cam.EndOfProfile());
+}
+
+// AX-48: EndOfProfile is that of the cam whose end was passed, also in the call in which the next one has taken over.
+TEST_F(Blocks, CamsOneBehindTheOther) {
+  bench.PowerOn(bench.y);
+  MC_CamIn first(bench.y), second(bench.y);
+  for (MC_CamIn* cam : {&first, &second}) {
+    cam->master = Name::Of("x");
+    cam->cam = Name::Of("lift");
+    cam->start_mode = axis::CamStart::kRelative;
+    cam->Execute = true;
+  }
+  second.buffer_mode = BufferMode::kBuffered;
+  MC_MoveVelocity drive(x);
+  drive.velocity = 80;
+  drive.Execute = true;
+  drive();
+  ASSERT_TRUE(Until(first, [&] { return first.InSync(); }));
+  second();
+  std::vector<double> first_ends, second_ends;
+  while (At(x).set_position < 130) {
+    Step();
+    first();
+    second();
+    if (first.EndOfProfile()) first_ends.push_back(At(x).set_position);
+    if (second.EndOfProfile()) second_ends.push_back(At(x).set_position);
+  }
+  EXPECT_TRUE(first.CommandAborted());
+  ASSERT_EQ(first_ends.size(), 1u);
+  ASSERT_EQ(second_ends.size(), 2u);
+  EXPECT_NEAR(second_ends[0] - first_ends[0], 40, 1);
+}
+
+// AX-48, AX-111: an end that is passed in the call of a change is not lost.
+TEST_F(Blocks, EndsOfACamThatIsChanged) {
+  bench.PowerOn(bench.y);
+  MC_CamIn cam(bench.y);
+  cam.master = Name::Of("x");
+  cam.cam = Name::Of("lift");
+  cam.ContinuousUpdate = cam.Execute = true;
+  ASSERT_TRUE(Until(cam, [&] { return cam.InSync(); }));
+  MC_MoveVelocity drive(x);
+  drive.velocity = 80;
+  drive.Execute = true;
+  drive();
+  int ends = 0;
+  while (At(x).set_position < 130) {
+    Step();
+    cam.slave_scaling = 1 + 1e-6 * At(x).set_position;
+    cam();
+    ends += cam.EndOfProfile();
+  }
+  EXPECT_EQ(ends, 3);
+}
+
+// AX-49, AX-109: other probes of the axis do not change RecordedPosition.
+TEST_F(Blocks, ATouchKeepsItsPosition) {
+  GT_Touch touch(x);
+  MC_TouchProbe other(x);
+  touch.velocity = 50;
+  other.edge = axis::ProbeEdge::kFalling;
+  MC_MoveVelocity drive(x);
+  drive.velocity = 500;
+  touch.Execute = other.Execute = drive.Execute = true;
+  drive();
+  ASSERT_TRUE(Until(touch, [&] {
+    other();
+    return touch.Done();
+  }));
+  ASSERT_TRUE(other.Done());
+  EXPECT_NEAR(other.RecordedPosition(), 70, 0.02);
+  EXPECT_NEAR(touch.RecordedPosition(), 60, 0.02);
+  EXPECT_NEAR(At(x).set_position, touch.RecordedPosition(), 1e-9);
+}
+
+// AX-51, AX-11: InVelocity while the set point has the velocity that the override makes of the commanded one; not on
+// the way there, nor while the axis is held.
+TEST_F(Blocks, VelocitiesScaledByTheOverride) {
+  MC_SetOverride factor(x);
+  factor.Enable = true;
+  MC_MoveVelocity move(x);
+  move.velocity = 20;
+  move.Execute = true;
+  ASSERT_TRUE(Until(move, [&] { return move.InVelocity(); }));
+  move.velocity = 30;  // without a rising edge
+  for (const double velocity_factor : {0.5, 0.0, 1.0, 2.5, 50.0, 30.0, 0.2}) {
+    factor.VelFactor = velocity_factor;
+    factor();
+    const double due = std::min(20 * velocity_factor, 500.0);
+    for (int cycle = 0; cycle < 300; ++cycle) {
+      Step();
+      move();
+      ASSERT_TRUE(!move.InVelocity() || std::abs(At(x).set_velocity - due) < 1e-6) << At(x).set_velocity;
+    }
+    EXPECT_EQ(move.InVelocity(), velocity_factor > 0) << velocity_factor;
+  }
+}
+
+// AX-51, AX-28: an override above 1 counts as far as the largest velocity that was written.
+TEST_F(Blocks, EndVelocityUpToTheLimitInForce) {
+  MC_WriteParameter write(x);
+  write.number = 9;
+  write.value = 50;
+  write.Execute = true;
+  ASSERT_TRUE(Until(write, [&] { return write.Done(); }));
+  MC_SetOverride factor(x);
+  factor.Enable = true;
+  factor.VelFactor = 2;
+  ASSERT_TRUE(Until(factor, [&] { return factor.Enabled(); }));
+  MC_MoveContinuousAbsolute move(x);
+  move.position = 30;
+  move.end_velocity = 40;
+  move.velocity = 50;
+  move.Execute = true;
+  ASSERT_TRUE(Until(move, [&] { return move.InEndVelocity(); }));
+  EXPECT_NEAR(At(x).set_velocity, 50, 1e-9);
+  move.end_velocity = 20;  // without a rising edge
+  factor.VelFactor = 0.5;
+  ASSERT_TRUE(Until(factor, [&] {
+    move();
+    return At(x).set_velocity < 49;
+  }));
+  EXPECT_FALSE(move.InEndVelocity());
+  ASSERT_TRUE(Until(move, [&] { return move.InEndVelocity(); }));
+  EXPECT_NEAR(At(x).set_velocity, 20, 1e-6);
 }
 
 // AX-35: on top of a move, which is done where it would be done alone; halted, that goes on.

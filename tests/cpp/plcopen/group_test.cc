@@ -97,6 +97,30 @@ TEST_F(GroupBlocks, AStopHoldsAsLongAsExecute) {
   EXPECT_EQ(now().state, group::GroupState::kStandby);
 }
 
+// GR-25: InSync only while the slave is where the path has it.
+TEST_F(GroupBlocks, AnAxisInStepWithThePath) {
+  bench.PowerOn(bench.w);
+  MC_SyncAxisToGroup sync(pair);
+  sync.axis = Name::Of("w");
+  sync.ratio_numerator = 5;
+  sync.Execute = true;
+  ASSERT_TRUE(bench.Until(sync, [&] { return sync.InSync(); }));
+  sync.axis = Name::Of("x");  // without a rising edge
+  MC_MoveLinearAbsolute move(pair);
+  move.x = 20;
+  move.velocity = 20;
+  move.Execute = true;
+  bool lagged = false;
+  ASSERT_TRUE(bench.Until(move, [&] {
+    sync();
+    EXPECT_EQ(sync.InSync(), bench.w.outputs().in_step);
+    lagged = lagged || !sync.InSync();
+    return move.Done() && sync.InSync();
+  }));
+  EXPECT_TRUE(lagged);
+  EXPECT_NEAR(bench.w.outputs().set_position, 100, 0.01);
+}
+
 TEST_F(GroupBlocks, APathInterruptedAndContinued) {
   MC_MovePath move(pair);
   move.path = Name::Of("hook");
