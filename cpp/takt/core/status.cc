@@ -75,6 +75,9 @@ constexpr std::array kErrors = {
         ErrorId::kTiltedEllipse, "TiltedEllipse",
         "an elliptical profile cannot lead to or from a coordinate system that is turned about A or B of the world; "
         "use path_mode linear"},
+    ErrorInfo{ErrorId::kCarrierUnknown, "CarrierUnknown",
+              "what carries the product coordinate system is not known: its pose was never given, or its group has no "
+              "kinematics"},
     ErrorInfo{ErrorId::kMoverDisabled, "MoverDisabled", "the mover is not enabled"},
     ErrorInfo{ErrorId::kCommandMode, "CommandMode",
               "the mover does not accept this in its command mode, or while it moves"},

@@ -72,6 +72,7 @@ enum class ErrorId : std::uint16_t {
   kNoWorkpiece = 3032,        // there is no such workpiece
   kTooOld = 3033,             // the command was not taken within its age limit
   kTiltedEllipse = 3034,      // an ellipse is to lead to what is turned about A or B
+  kCarrierUnknown = 3035,     // what carries a coordinate system is not known
   kMoverDisabled = 3040,      // the mover is not enabled
   kCommandMode = 3041,        // the mover does not accept the command in its command mode, or while it moves
   kOutsideWindow = 3042,      // the mover would turn out of its window while it moves

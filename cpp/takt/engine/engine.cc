@@ -120,8 +120,28 @@ struct Engine::Impl {
         drive_samples(kDriveQueue * world.drives.size()),
         drive_journal(o.journal && !world.drives.empty() ? o.snapshot_queue : 2),
         figures_divisor(Divisor(machine.lcm.engine_rate_hz, machine.cycle.period_s)) {
+    PublishFirst();
     SendSetPoints(-1);
     LetsGo(Command{});  // its first call takes memory
+  }
+
+  // What is read before the first cycle is what an idle one finds: values at rest, not zeros.
+  void PublishFirst() {
+    World idle(machine);
+    Sense(idle);
+    Move(idle);
+    Control(idle);
+    world.axis_outputs = idle.axis_outputs;
+    world.flex_cam_outputs = idle.flex_cam_outputs;
+    world.group_outputs = idle.group_outputs;
+    world.belt_outputs = idle.belt_outputs;
+    world.pose_outputs = idle.pose_outputs;
+    world.pick_place_outputs = idle.pick_place_outputs;
+    world.mover_outputs = idle.mover_outputs;
+    world.tracks.outputs = idle.tracks.outputs;
+    world.planar_groups.outputs = idle.planar_groups.outputs;
+    world.environments.outputs = idle.environments.outputs;
+    world.part_outputs = idle.part_outputs;
   }
 
   // To a component, with its number among those of its kind.

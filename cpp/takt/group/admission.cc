@@ -73,9 +73,16 @@ struct Applier {
     GiveUpPath(c, brake, lets_go, s);
   }
 
+  // Whether it is not known where a product coordinate system is.
+  bool IsLost(std::uint32_t pcs) const {
+    const std::uint32_t carrier = s.cargoes[pcs].carrier;
+    return carrier != 0 && c.carriers.At(carrier).kind == kinematics::CarrierKind::kNone;
+  }
+
   void Move(const MadeRequest& made) const {
     if (made.error != ErrorId::kNone) return Refuse(made.error);
     if (const ErrorId error = MayMove(); error != ErrorId::kNone) return Refuse(error);
+    if (made.move.system == CoordinateSystem::kPcs && IsLost(made.move.pcs)) return Refuse(ErrorId::kCarrierUnknown);
     const bool waits = made.move.buffer_mode != BufferMode::kAborting;
     if (waits && (s.task == Task::kHalt || Jogs(s) || Streams(s))) return Refuse(ErrorId::kState);
     if (!waits) AbortAll({}, false);
@@ -97,6 +104,7 @@ struct Applier {
     }
     if (made.error != ErrorId::kNone) return Refuse(made.error);
     if (const ErrorId error = MayMove(); error != ErrorId::kNone) return Refuse(error);
+    if (made.move.jog_system == JogSystem::kPcs && IsLost(made.move.pcs)) return Refuse(ErrorId::kCarrierUnknown);
     if (!ChangeJog(c, ticket, made.move, s)) {
       EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
       AbortAll();

@@ -114,10 +114,16 @@ bool Follow(const Context& c, State& s) {
   return true;
 }
 
+// Whether the path is at the end of a move and the tool is not, for what carries it goes on without it.
+bool ComesAfter(const Context& c, const State& s) {
+  return s.pace.raw_stands && c.ahead.window[s.pace.node].stop && (s.lets_go || Slips(s));
+}
+
 // Moves whose last stretch is behind are done; the one that is being gone is active.
 void TellMoves(const Context& c, State& s) {
   if (c.ahead.count == 0) return;
-  const std::uint64_t at = c.ahead[c.ahead.first].move;
+  std::uint64_t at = c.ahead[c.ahead.first].move;
+  if (at > s.done && ComesAfter(c, s)) --at;
   while (s.queue.count > 0 && s.done < at) Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
   if (s.queue.count > 0 && s.done == at && s.active != MoveAt(s, at).ticket) {
     s.active = MoveAt(s, at).ticket;
@@ -229,7 +235,7 @@ bool Advance(const Context& c, State& s) noexcept {
     // Behind a stop the next motion begins.
     const std::uint64_t next = s.pace.node + 1;
     const trajectory::PathWindow& window = c.ahead.window;
-    if (window[s.pace.node].stop && next + 1 < window.known() && window.swept()) {
+    if (window[s.pace.node].stop && next + 1 < window.known() && window.swept() && !ComesAfter(c, s)) {
       trajectory::BeginAt(window, next, c.cycle.period_s, s.pace);
       const std::uint64_t move = c.ahead[c.ahead.first].move;
       BeginFollowing(c, MoveAt(s, move), move, s);
