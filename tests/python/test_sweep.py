@@ -174,6 +174,18 @@ def test_the_same_rows_whatever_the_number_of_workers(capsys: pytest.CaptureFixt
     assert "2 passed" in capsys.readouterr().out
 
 
+def test_true_false_and_texts_of_a_grid() -> None:
+    """PY-24: rows say what ran: True and False as people write them, texts as they are typed."""
+    head, rest = SCENARIO.split("def verify")
+    results = 'def results(recording, up=True, mode=""):\n    return {"ran": f"{up!r} {mode!r}"}\n'
+    Path("scenario.py").write_text(f"{head}def verify{rest.split('def results')[0]}{results}")
+    sweep("scenario.py", ["up=True,False,no", "mode=007,1e3"], directory="d", workers=1)
+    found = rows("d")
+    assert [row["ran"] for row in found] == [f"{up} {mode!r}" for up in (True, False, False) for mode in ("007", "1e3")]
+    assert [row["mode"] for row in found[:2]] == ["007", "1e3"]
+    assert "--set mode=007" in found[0]["command"]
+
+
 @pytest.mark.parametrize(("judges", "passed"), [("return True", "1"), ("return False", "0"), ("assert False", "0")])
 def test_results_whatever_verify_says(judges: str, passed: str) -> None:
     """PY-24: they are asked for where the scenario came to its end, and may be NaN in a run that repeats."""
