@@ -17,13 +17,11 @@ from typing import Any
 
 import numpy as np
 
-from takt.checks.series import Check, Mask, Series, decided, extent, nearest
+from takt.checks.series import Check, Mask, Series, decided, extent, nearest, slack
 from takt.counted import counted
 from takt.recording import FloatArray, Recording, RecordingError, split_signal
 from takt.verdict import Bound, Interval, Lane, Verdict, number, seconds
 
-ROUNDING = 1e-9  # relative difference of numbers that count as equal
-NEAR_ZERO = 1e-3  # to numbers smaller than that it is relative to that: 1e-12, in the signal's unit
 # Of a value minus what it is compared with, and of the difference that counts as none.
 _COMPARE: dict[str, Callable[[Any, float], Any]] = {
     "<=": lambda difference, slack: difference <= slack,
@@ -218,11 +216,6 @@ def _evaluate(check: Check, text: str, signal: str, op: str, value: str, absolut
         if absolute:
             bounds += (Bound.level("", -level, s.span, "below" if op[0] == "<" else "none"),)
     return _Term(text, s, holds, excess, s.lane(bounds=bounds, names=names))
-
-
-def slack(level: float) -> float:
-    """What a value may differ from a number and still count as equal to it."""
-    return ROUNDING * max(abs(level), NEAR_ZERO)
 
 
 def _all_hold(check: Check, terms: Sequence[_Term]) -> Series:
