@@ -436,6 +436,24 @@ def test_targets_of_several_kinds() -> None:
             takt.plan_surface(engine, targets)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize("movers", ["ab", "cart", 7, ["ab", 7]])
+def test_names_are_a_list(movers: object) -> None:
+    """PL-72: a text alone is no list of the movers that its letters name."""
+    engine = engine_of({"a": (0, 0), "b": (3, 3), "ab": (2, 0), "cart": (1, 3)}, square(2))
+    wrong = r"movers is a list of names, not (the text '(ab|cart)'|7)|movers: a mover goes by its name, not by 7"
+    aside = wrong.replace("movers", "may_move")
+    for order in (takt.plan_surface, Engine.move_on_surface, Engine.route, Engine.route_any):
+        with pytest.raises(TypeError, match=wrong):
+            order(engine, [at((0, 1))], movers=movers)  # type: ignore[operator]
+    for order in (takt.plan_surface, Engine.move_on_surface, Engine.route):
+        with pytest.raises(TypeError, match=aside):
+            order(engine, {"a": at((0, 1))}, may_move=movers)  # type: ignore[operator]
+        with pytest.raises(TypeError, match="targets: a mover goes by its name, not by <Mover"):
+            order(engine, {engine.mover("a"): at((0, 1))})  # type: ignore[operator]
+    engine.route_any([at((0, 1))], movers=(name for name in ["a"])).wait()
+    assert engine.mover("a").y == pytest.approx(at((0, 1))[1])
+
+
 def test_over_lcm(tmp_path: Path) -> None:
     """A plan is made and carried out from another process."""
     url = new_url()

@@ -95,6 +95,12 @@ def test_samples_are_the_same_at_each_point_of_the_grid() -> None:
     assert Design.of(["a=1,2"], ["u=uniform:5:6:1500"], seed=8).point(0)["u"] != first[0]["u"]
 
 
+def test_keys_are_a_list() -> None:
+    """PY-24: a text alone is refused, not read letter by letter."""
+    with pytest.raises(TypeError, match="grid is a list of texts, not the text 'velocity=1,2'"):
+        sweep("scenario.py", "velocity=1,2")
+
+
 def test_laws() -> None:
     design = Design.of([], ["i=integers:-1:1:3000", "c=choice:a,b:3000", "l=log_uniform:1:100:3000"])
     points = [design.point(i) for i in range(3000)]

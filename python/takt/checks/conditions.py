@@ -19,6 +19,7 @@ import numpy as np
 
 from takt.checks.series import Check, Mask, Series, decided, extent, nearest, slack
 from takt.counted import counted
+from takt.names import names_in
 from takt.recording import FloatArray, Recording, RecordingError, split_signal
 from takt.verdict import Bound, Interval, Lane, Verdict, number, seconds
 
@@ -113,6 +114,9 @@ def visits_states(
     window: Interval | None = None,
 ) -> Verdict:
     """The states are visited in this order; others may lie between them unless `exactly`."""
+    states = names_in(states, "states", "state")
+    if not states:
+        raise ValueError("visits_states: states is an empty list, so there is nothing to judge")
     names = recording.names(component, field)
     wanted = [_state_value(recording, component, field, s) for s in states]
     check = Check("visits_states", recording, (component,), window)

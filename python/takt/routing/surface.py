@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from takt import _core
 from takt.counted import counted
+from takt.names import names_in
 from takt.routing.raster import APART, Point, Raster, extent_of, make_raster
 from takt.routing.streets import RoutingError
 from takt.routing.traveller import DYNAMICS, STANDS
@@ -174,7 +175,7 @@ def orders_of(session: Session, targets: Targets, movers: Iterable[str] | None) 
     if not isinstance(targets, Mapping):
         points = tuple(_point(f"target {i}", target) for i, target in enumerate(targets, 1))
         able = [name for name, mover in session.movers.items() if _cannot_move(mover) is None]
-        wanted = able if movers is None else list(dict.fromkeys(movers))
+        wanted = able if movers is None else list(dict.fromkeys(names_in(movers, "movers", "mover")))
         if len(points) > len(wanted):
             raise RoutingError(f"{counted(len(points), 'target')} for {counted(len(wanted), 'mover')}")
         return [Order(tuple(wanted), points, False)]
@@ -185,7 +186,7 @@ def orders_of(session: Session, targets: Targets, movers: Iterable[str] | None) 
         if isinstance(key, str):
             orders.append(Order((key,), (_point(f"the target of mover {key}", target),), True))
             continue
-        names = tuple(dict.fromkeys(key))
+        names = names_of_key(key)
         said = ", ".join(names)
         if not isinstance(target, Iterable):
             raise RoutingError(f"the targets of movers {said} are a list of X and Y in mm, not {target!r}")
@@ -201,11 +202,25 @@ def orders_of(session: Session, targets: Targets, movers: Iterable[str] | None) 
     return orders
 
 
+def names_of_key(key: Any) -> tuple[str, ...]:
+    """The movers of a key of targets: a name, or a tuple of names."""
+    if isinstance(key, str):
+        return (key,)
+    if not isinstance(key, Iterable):
+        raise TypeError(f"targets: a mover goes by its name, not by {key!r}")
+    return tuple(dict.fromkeys(names_in(key, "targets", "mover")))
+
+
+def may_move_of(may_move: bool | Iterable[str]) -> list[str]:
+    """The movers that may be moved aside, where they are given by name."""
+    return [] if may_move is False or may_move is None else list(names_in(may_move, "may_move", "mover"))
+
+
 def free_of(session: Session, may_move: bool | Iterable[str]) -> list[str]:
     """Movers that may be moved aside."""
     if may_move is True:
         return [name for name, mover in session.movers.items() if _cannot_move(mover) is None]
-    return list(may_move or ())
+    return may_move_of(may_move)
 
 
 def can_move(mover: Mover) -> bool:

@@ -19,6 +19,7 @@ import numpy as np
 
 from takt.changes import Value, value_of
 from takt.errors import TaktError
+from takt.names import names_in
 
 BLOCK = 1024  # draws that are made at once
 LAWS = {  # of samples: what stands behind them
@@ -130,8 +131,9 @@ class Design:
     @staticmethod
     def of(grid: Sequence[str], sample: Sequence[str], seed: int = 0, texts: Collection[str] = ()) -> Design:
         """texts: keys whose listed values are texts. Raises SweepError where there is no run in it."""
-        grids = tuple(Grid.of(one, texts) for one in grid)
-        design = Design(grids, tuple(Sample.of(one, texts) for one in sample), seed)
+        grids = tuple(Grid.of(one, texts) for one in names_in(grid, "grid", "key", "texts"))
+        samples = tuple(Sample.of(one, texts) for one in names_in(sample, "sample", "key", "texts"))
+        design = Design(grids, samples, seed)
         keys = design.keys
         if not keys:
             raise SweepError("nothing is varied: give --grid velocity=100:500:9 or --sample mass=uniform:1:2:100")
