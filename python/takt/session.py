@@ -14,7 +14,7 @@ from pathlib import Path
 from types import FrameType, MappingProxyType, TracebackType
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
-from takt import _core
+from takt import _core, pick_place
 from takt._commands import DEFAULTS, LEVEL_SENSITIVE
 from takt.arguments import to_text, without_arguments
 from takt.axis import Axis
@@ -543,7 +543,7 @@ class Session(SessionWithCams):
         """Passes on what the engine says of a command."""
         feedback.object = self._object(object_kind, object_number) or feedback.object
         if error_id:
-            sentence = self._why_refused(error_id, feedback) or sentence
+            sentence = self._why_refused(error_id, feedback, sentence) or sentence
         if not feedback._update(state, reached, error_id, sentence, cycle, value) or not feedback._final:
             return
         name = without_arguments(feedback.text)
@@ -554,9 +554,12 @@ class Session(SessionWithCams):
         else:
             self._event(feedback.target, f"{name}: {feedback._state.name.lower()}", "end", feedback.time_s)
 
-    def _why_refused(self, error_id: int, feedback: Feedback) -> str:
+    def _why_refused(self, error_id: int, feedback: Feedback, sentence: str) -> str:
         if feedback.target not in self._components:
             return ""
+        if self._components[feedback.target].KIND == PickPlace.KIND:
+            general = sentence == _core.error_texts().get(error_id, ("", ""))[1]
+            return pick_place.why_refused(error_id, feedback.verb, feedback.arguments) if general else ""
         names = self._made_cams.names
         return why_refused(error_id, feedback.target, feedback.arguments, self._axes, self._movers, names)
 
