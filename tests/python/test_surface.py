@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import random
+import time
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -343,6 +344,21 @@ def test_the_effort_grows_with_the_movers() -> None:
         assert usual.legs == given.legs
     less = takt.plan_surface(engine, targets, effort=100)
     assert usual.sum_s < less.sum_s
+
+
+def test_slow_movers_are_planned_like_fast_ones() -> None:
+    """PL-72: planning takes no more time and memory where runs take hours; beyond a day they are refused."""
+    engine = engine_of({"a": (0, 0), "b": (5, 5)}, square(4))
+    for velocity, seconds in ((1.0, 840), (0.01, 84_000)):
+        begin = time.monotonic()
+        plan = takt.plan_surface(engine, {"a": at((7, 0)), "b": at((0, 5))}, velocity=velocity)
+        assert time.monotonic() - begin < 2
+        assert plan.arrival_s["a"] == pytest.approx(seconds, rel=0.01)
+    for slow in ({"velocity": 0.001}, {"acceleration": 1e-7}, {"jerk": 1e-12}):
+        with pytest.raises(
+            takt.RoutingError, match="the movers are too slow for a plan: a run along the surface takes"
+        ):
+            takt.plan_surface(engine, {"a": at((7, 0))}, **slow)
 
 
 def test_two_hundred_movers_are_planned() -> None:

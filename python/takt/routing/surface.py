@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 EFFORT = 3_000  # search states of the improvement, at least
 EFFORT_BY_MOVERS = 50  # times the square of the number of movers
 MOST_EFFORT = 500_000  # 2 to 5 s of planning
+MOST_RUN_S = 1e5  # the longest run: the planner compares sums of such times to a nanosecond
 
 
 @dataclass(frozen=True)
@@ -277,6 +278,13 @@ def make_plan(
             pools[number[name]] = pool
     routed = [session.mover(name) for name in names]
     limits = {key: min((_limit(m, key, options.dynamics.get(key)) for m in routed), default=1.0) for key in DYNAMICS}
+    longest = (max(raster.width, raster.height) - 1) * raster.pitch
+    if (takes_s := _core.run_duration(longest, **limits)) > MOST_RUN_S:
+        said = ", ".join(f"{key} {value:.6g}" for key, value in limits.items())
+        raise RoutingError(
+            f"the movers are too slow for a plan: a run along the surface takes {takes_s:.0f} s, more than "
+            f"{MOST_RUN_S:.0f} s, with {said}"
+        )
     routes = _core.plan_surface(
         width=raster.width,
         height=raster.height,
