@@ -575,6 +575,19 @@ def test_programs_that_wait_for_changes(engine: takt.Engine) -> None:
         engine.step(10)
 
 
+def test_a_name_that_is_no_text() -> None:
+    """PY-07: what could not be read is told once."""
+    text = (
+        "name: m\naxes: [{name: 5, limits: {velocity: 1, acceleration: 1, jerk: 1}}]\ncams: [{name: 7, points: []}]\n"
+    )
+    with pytest.raises(takt.ConfigError) as refused:
+        takt.Engine(text)
+    assert [problem.split(", which")[0] for problem in refused.value.problems if "name" in problem] == [
+        "machine:2:15: axes[0].name: expected text, found '5'",
+        "machine:3:15: cams[0].name: expected text, found '7'",
+    ]
+
+
 def test_what_is_woken_is_a_program(engine: takt.Engine) -> None:
     """PY-24: another function is refused, not ignored."""
     with pytest.raises(takt.TaktError, match=r"<built-in function print> is no program of this session"):
