@@ -104,6 +104,23 @@ def test_routes_are_carried_out_in_an_enabled_group(count: int, more: str) -> No
     assert errors == {0}
 
 
+@pytest.mark.parametrize("seed", range(10) if LONG else [7])
+def test_what_waiting_does_not_solve_is_solved_by_routes(seed: int) -> None:
+    """PL-72: what docs/planar_groups.md says of 50 movers on 64 places in ten worlds, told at once and by `route`."""
+    starts, targets = random_world(4, 50, seed)
+    engine = in_a_group(starts, square(4), ", moves_wait: true")
+    moves = [engine.mover(name).move_to_position(x=x, y=y) for name, (x, y) in targets.items()]
+    engine.run(5)
+    assert not any(move.error for move in moves)
+    assert sum(move.done for move in moves) <= 2
+    assert sum(mover.deadlocked for mover in engine.movers.values()) >= 2
+    engine = in_a_group(starts, square(4), ", moves_wait: true")
+    start = engine.now
+    order = engine.route(targets).wait()
+    assert len(order.arrived_s) == 50
+    assert 17 < engine.now - start < 28
+
+
 def test_orders_are_carried_out_in_an_enabled_group() -> None:
     """PL-72: with others sent after them, and one that is halted in the middle of it."""
     starts, targets = random_world(3, 12, 5)
