@@ -64,7 +64,7 @@ std::string Summary(const engine::Engine& engine, const engine::RunResult& resul
          << Us(figures.latency.max) << " us";
   }
   text << "; " << figures.commands_applied << " commands, " << figures.commands_refused
-       << " refused; lost: " << figures.snapshots_dropped << " states, " << figures.feedback_dropped
+       << " refused by a full queue; lost: " << figures.snapshots_dropped << " states, " << figures.feedback_dropped
        << " feedback events, " << figures.journal_dropped << " journal entries, " << losses.messages << " messages";
   if (!engine.machine().external.drives.empty()) {
     text << "; drives: " << figures.set_points_dropped << " set points lost, " << figures.samples_refused

@@ -49,6 +49,8 @@ def run(file: Path, name: str | None, options: Options, out: Console) -> int:
         raise click.UsageError(f"{file} has the cams {names}: choose one with --name")
     limits = None
     if options.axis is not None:
+        if options.machine is None and not _is_machine(file):
+            raise click.UsageError(f"--axis needs --machine where FILE is a cam, as {file} is")
         limits = Limits.of_axis(options.machine or file, options.axis)
     passed = True
     for table in tables:
@@ -104,6 +106,10 @@ def _read(file: Path, name: str | None, options: Options) -> list[cam.Table]:
     if not chosen:
         raise click.UsageError(f"{file}: expected a cam of {', '.join(t.name for t in tables)}, found '{name}'")
     return chosen
+
+
+def _is_machine(file: Path) -> bool:
+    return file.suffix in (".yaml", ".yml") and cam.is_machine(read_machine(file)[0])
 
 
 def _say(table: cam.Table, result: Check, options: Options, out: Console) -> None:

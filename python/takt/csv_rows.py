@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -21,12 +22,31 @@ class Rows(NamedTuple):
     rows: list[tuple[int, Fields]]
 
 
+_DECIMAL_COMMA = re.compile(r"\s*[-+]?[0-9]*,[0-9]+([eE][-+]?[0-9]+)?\s*")
+
+
+def _delimiter(head: str) -> str:
+    """What stands between the fields of a table with this head."""
+    return next((one for one in ",;\t" if one in head), ",")
+
+
+def _with_points(row: Fields) -> Fields:
+    """The same with decimal points."""
+    return {
+        name: text.replace(",", ".") if isinstance(text, str) and _DECIMAL_COMMA.fullmatch(text) else text
+        for name, text in row.items()
+    }
+
+
 def read_rows(file: str | os.PathLike[str], error: type[TaktError]) -> Rows:
-    """Reads the file. Raises `error` where it is no CSV in UTF-8 or a row has more fields than the head, OSError where
-    it cannot be read."""
+    """Reads the file: commas between the fields or, where the head has none, semicolons or tabulators; numbers between
+    these may have a decimal comma. Raises `error` where it is no CSV in UTF-8 or a row has more fields than the head,
+    OSError where it cannot be read."""
     with Path(file).open(encoding="utf-8-sig", newline="") as source:
-        table = csv.DictReader(source, restkey="", skipinitialspace=True, strict=True)
         try:
+            delimiter = _delimiter(source.readline())
+            source.seek(0)
+            table = csv.DictReader(source, restkey="", delimiter=delimiter, skipinitialspace=True, strict=True)
             head, rows = table.fieldnames or (), []
             for row in table:
                 more: Any = row.get("")  # text where the head ends in a comma
@@ -35,7 +55,7 @@ def read_rows(file: str | os.PathLike[str], error: type[TaktError]) -> Rows:
                         f"{os.fspath(file)}:{table.line_num}: expected {len(head)} fields as in the head, found "
                         f"{len(head) + len(more)}"
                     )
-                rows.append((table.line_num, row))
+                rows.append((table.line_num, row if delimiter == "," else _with_points(row)))
             return Rows(head, rows)
         except UnicodeDecodeError as wrong:
             raise error(

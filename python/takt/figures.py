@@ -16,7 +16,10 @@ COUNTS = {
     "snapshots_dropped": ("states dropped", "States lost because their queue was full: a slow network or disk"),
     "feedback_dropped": ("feedbacks dropped", "Feedbacks lost because their queue was full"),
     "journal_dropped": ("journal entries dropped", "The journal cannot be replayed"),
-    "commands_refused": ("commands refused", "The queue to the cycle was full"),
+    "commands_refused": (
+        "commands refused by a full queue",
+        "There was no room in the queue to the cycle; other refusals are not counted",
+    ),
     "set_points_dropped": ("set points dropped", "For external drives, lost because their queue was full"),
     "samples_refused": ("samples refused", "Of external drives: wrong, old or not asked for"),
     "malformed": ("messages malformed", "On the command and heartbeat channels"),
@@ -63,7 +66,9 @@ def in_words(figures: Mapping[str, Any]) -> dict[str, Any]:
         if histogram.get("count"):
             median, late = (quantile(histogram, share) / 1e3 for share in (0.5, 0.99))
             rows[title] = f"median {median:.0f} µs, 99 % below {late:.0f} µs, longest {histogram['max'] / 1e3:.0f} µs"
-    rows["commands"] = f"{figures['commands_applied']:,} applied, {figures['commands_refused']:,} refused"
+    rows["commands"] = (
+        f"{figures['commands_applied']:,} applied, {figures['commands_refused']:,} refused by a full queue"
+    )
     states, feedbacks = figures["snapshots_dropped"], figures["feedback_dropped"]
     rows["dropped"] = f"{counted(states, 'state')}, {counted(feedbacks, 'feedback')}"
     others = {title: figures.get(name) for name, (title, _) in COUNTS.items() if name not in ALWAYS}

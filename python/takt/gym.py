@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from takt.engine import Engine, Machine
 from takt.errors import TaktError
+from takt.names import names_in
 
 try:
     import gymnasium
@@ -57,7 +58,7 @@ class ReachEnv(gymnasium.Env[Floats, Floats]):
     ) -> None:
         if not axes:
             raise TaktError("an environment needs at least one axis")
-        self._names = list(axes)
+        self._names = list(names_in(axes, "axes", "axis"))
         if len(set(self._names)) < len(self._names):
             raise TaktError(f"an environment has each axis once, found {', '.join(self._names)}")
         if other := set(ranges or {}) - set(self._names):

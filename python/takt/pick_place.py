@@ -2,11 +2,39 @@
 
 from __future__ import annotations
 
+import yaml
+
 from takt._commands import PickPlaceCommands, PickPlaceOutputs
 from takt.belt import Belt
 from takt.component import Component
 from takt.feedback import Feedback
 from takt.group import Group
+
+PARAMETER = 5  # error number: an argument is out of range
+LIMITS = {"lower_limit", "upper_limit"}
+TURNS = {"turn", "turns", "every"}
+
+
+def why_refused(error_id: int, verb: str, arguments: str) -> str:
+    """Which rule a command breaks together with what is set already. Empty: none is known."""
+    if error_id != PARAMETER:
+        return ""
+    asked = yaml.safe_load(arguments) or {}
+    rules = []
+    if verb == "configure" and asked.keys() & {"workpiece_pcs1", "workpiece_pcs2"}:
+        rules.append("workpiece_pcs1 and workpiece_pcs2 must be different: places on two belts are seen from them")
+    if verb == "configure_belt" and asked.keys() & LIMITS:
+        rules.append(
+            "upper_limit must lie above lower_limit, and both must overlap the work range of the belt, or both must be "
+            "0: the range of the belt alone"
+        )
+    if verb == "configure_belt" and asked.keys() & TURNS:
+        rules.append("turns must not lead beyond every: turn + turns - 1 is at most every")
+    if verb == "jog" and asked.get("positive") and asked.get("negative"):
+        rules.append("positive and negative: expected one of both, found both at once")
+    elif verb == "jog":
+        rules.append("select_axis: expected what is to be jogged, found none, or X to C of a group without kinematics")
+    return "; ".join(rules)
 
 
 class PickPlace(Component, PickPlaceCommands, PickPlaceOutputs):

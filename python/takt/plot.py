@@ -29,6 +29,7 @@ from matplotlib.ticker import MaxNLocator
 from takt import style
 from takt.checks.series import quantity, words
 from takt.missing import holes
+from takt.names import names_in
 from takt.recording import Array, Event, FloatArray, Recording, RecordingError
 from takt.verdict import Bound, Interval, Lane, Verdict
 
@@ -70,7 +71,7 @@ def select(recording: Recording, patterns: Sequence[str] = ()) -> list[Signal]:
     matches nothing is an error."""
     everything = [(c, f) for c in recording.components for f in recording.fields(c)[2:]]
     chosen: dict[Signal, None] = {}
-    for pattern in patterns or recording.components:
+    for pattern in names_in(patterns, "signals", "signal", "patterns") or recording.components:
         if pattern in recording:
             matches = _usual(recording, pattern)
         else:

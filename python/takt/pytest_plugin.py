@@ -137,19 +137,26 @@ def machine(request: pytest.FixtureRequest) -> str | Path:
     """The machine file (or its text) of the test: what the marker takt_machine names. Override it to use
     another."""
     marker = request.node.get_closest_marker("takt_machine")
-    if marker is None or len(marker.args) != 1 or marker.kwargs:
+    if marker is not None and (len(marker.args) != 1 or marker.kwargs):
+        given = ", ".join([*map(repr, marker.args), *(f"{name}={value!r}" for name, value in marker.kwargs.items())])
+        pytest.fail(
+            f"takt_machine({given}): expected one argument, the machine file or its text; for engines made otherwise "
+            "override the fixture engine",
+            pytrace=False,
+        )
+    if marker is None:
         pytest.fail(
             'no machine: mark the test with @pytest.mark.takt_machine("machine.yaml") or override the fixture machine',
             pytrace=False,
         )
-    given: str | Path = marker.args[0]
-    if isinstance(given, str) and "\n" in given:
-        return given
-    beside = request.path.parent / given
-    path = beside if beside.exists() else request.config.rootpath / given
+    named: str | Path = marker.args[0]
+    if isinstance(named, str) and "\n" in named:
+        return named
+    beside = request.path.parent / named
+    path = beside if beside.exists() else request.config.rootpath / named
     if not path.exists():
         pytest.fail(
-            f"no machine file {given} beside {request.path.name} or in {request.config.rootpath}",
+            f"no machine file {named} beside {request.path.name} or in {request.config.rootpath}",
             pytrace=False,
         )
     return path

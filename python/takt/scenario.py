@@ -29,7 +29,7 @@ from urllib.parse import urlencode
 import numpy as np
 
 from takt import expect
-from takt.changes import value_of
+from takt.changes import text_of, value_of
 from takt.complaint import VERIFY, Complaint
 from takt.errors import CommandError, TaktError, TimeoutError
 from takt.judging import asserts
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
 
 
 PLAYED = "played"  # in the `meta` of recordings
+TRUE, FALSE = {"true", "yes", "on"}, {"false", "no", "off"}  # as YAML spells them
 
 
 class ScenarioError(TaktError):
@@ -109,7 +110,9 @@ class Scenario:
         return found
 
     def with_arguments(self, arguments: Mapping[str, Any]) -> Scenario:
-        """The same with other values of parameters. A whole number for one whose default is a float becomes a float."""
+        """The same with other values of parameters, each of the kind of its default: true or false (also the other
+        spellings of YAML, and 0 and 1), a whole number, a number, a text. Raises ScenarioError for other values and
+        unknown names. A default that is a whole number takes any number where the parameter is annotated as float."""
         known = self.parameters
         for name in arguments:
             if name not in known:
@@ -118,8 +121,47 @@ class Scenario:
                 has = f"it has {', '.join(known)}" if known else "its functions have no arguments with defaults"
                 more = "keys of the machine file are paths, as axes.x.limits.velocity"
                 raise ScenarioError(f"{self.path}: has no parameter '{name}'{hint} ({has}; {more})")
-        given = {name: _like(value, known[name]) for name, value in arguments.items()}
+        given = {name: self._like(name, value, known[name]) for name, value in arguments.items()}
         return replace(self, arguments={**self.arguments, **given})
+
+    @property
+    def texts(self) -> frozenset[str]:
+        """The parameters whose values are texts."""
+        return frozenset(name for name, default in self.parameters.items() if isinstance(default, str))
+
+    def _like(self, name: str, value: Any, default: Any) -> Any:
+        """A value of the kind of the default; ScenarioError where it is of another kind."""
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        hint = ""
+        if isinstance(default, bool):
+            if isinstance(value, bool) or (number and value in (0, 1)):
+                return bool(value)
+            if isinstance(value, str) and value.lower() in TRUE | FALSE:
+                return value.lower() in TRUE
+            expected = "true or false"
+        elif isinstance(default, str):
+            if isinstance(value, str):
+                return value
+            expected = "a text"
+        elif isinstance(default, float) or (isinstance(default, int) and self._is_float(name)):
+            if number:
+                return float(value)
+            expected = "a number"
+        elif isinstance(default, int):
+            if number and float(value).is_integer():
+                return int(value)
+            expected = f"a whole number, as its default {default} is one" if number else "a whole number"
+            hint = f"; {float(default)} as default takes any number" if number else ""
+        else:
+            return value
+        shown = repr(value) if isinstance(value, str) else text_of(value)
+        raise ScenarioError(f"{self.path}: {name}: expected {expected}, found {shown}{hint}")
+
+    def _is_float(self, name: str) -> bool:
+        """Whether a function annotates a parameter as float."""
+        functions = (self.scenario, self.verify, self.pictures, self.results)
+        found = [getattr(function, "__annotations__", {}).get(name) for function in functions if function is not None]
+        return any(kind is float or kind == "float" for kind in found)
 
     def _arguments_of(self, function: Callable[..., object]) -> dict[str, Any]:
         if not self.arguments:
@@ -210,23 +252,26 @@ def _address(file: Path, module: ModuleType) -> str:
     raise ScenarioError(f'{file}: VIEW must be like {{"tab": "scope", "signals": ["x.set_position"]}}')
 
 
-def settings_of(given: Sequence[str]) -> dict[str, Any]:
-    """What `KEY=VALUE` says, each of them."""
-    found: dict[str, Any] = {}
+def settings_of(given: Sequence[str]) -> dict[str, str]:
+    """The texts of `KEY=VALUE`, by their keys."""
+    found: dict[str, str] = {}
     for text in given:
         key, equals, value = text.partition("=")
         if not key or not equals:
             raise ScenarioError(f"'{text}': expected KEY=VALUE, as velocity=200")
         if key in found:
             raise ScenarioError(f"'{key}' is set twice")
-        found[key] = value_of(value)
+        found[key] = value
     return found
 
 
 def with_settings(scenario: Scenario, settings: Mapping[str, Any]) -> tuple[Scenario, dict[str, Any]]:
-    """A scenario with these values of its parameters, and the others: keys with a dot, which are of the machine."""
-    changes = {key: value for key, value in settings.items() if "." in key}
-    return scenario.with_arguments({k: v for k, v in settings.items() if k not in changes}), changes
+    """A scenario with these values of its parameters, and the others: keys with a dot, which are of the machine. Texts
+    are read as on a command line, but for parameters whose values are texts."""
+    texts = scenario.texts
+    values = {k: value_of(v) if isinstance(v, str) and k not in texts else v for k, v in settings.items()}
+    changes = {key: value for key, value in values.items() if "." in key}
+    return scenario.with_arguments({k: v for k, v in values.items() if k not in changes}), changes
 
 
 _folders: set[Path] = set()  # of scenarios that were loaded
@@ -358,15 +403,6 @@ def _parameters(function: Callable[..., object]) -> dict[str, Any]:
     except (TypeError, ValueError):
         return {}
     return {one.name: one.default for one in arguments if one.default is not one.empty}
-
-
-def _like(value: Any, default: Any) -> Any:
-    """A number of the kind of its default, where it is the same number."""
-    if isinstance(value, bool) or isinstance(default, bool):
-        return value
-    if isinstance(default, float) and isinstance(value, int):
-        return float(value)
-    return int(value) if isinstance(default, int) and isinstance(value, float) and value.is_integer() else value
 
 
 def _takes_one(function: Callable[..., object]) -> bool:

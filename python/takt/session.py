@@ -14,7 +14,7 @@ from pathlib import Path
 from types import FrameType, MappingProxyType, TracebackType
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
-from takt import _core
+from takt import _core, pick_place
 from takt._commands import DEFAULTS, LEVEL_SENSITIVE
 from takt.arguments import to_text, without_arguments
 from takt.axis import Axis
@@ -30,6 +30,7 @@ from takt.group import Group
 from takt.lying import Lying
 from takt.made_cams import MadeCams, SessionWithCams
 from takt.mover import Mover
+from takt.names import names_in
 from takt.part import Part
 from takt.pick_place import PickPlace
 from takt.planar_group import PlanarGroup
@@ -391,6 +392,7 @@ class Session(SessionWithCams):
         from takt.routing.router import router_for
 
         self._check_open()
+        movers = None if movers is None else names_in(movers, "movers", "mover")
         router = router_for(self, targets, movers, options)
         return router.route(targets, movers=movers, may_move=may_move)
 
@@ -453,16 +455,16 @@ class Session(SessionWithCams):
 
     def wake(self, scan: Program) -> None:
         """Has a program that waits for changes (`program(on=...)`) called at its next turn."""
-        for program in self._programs:
-            if program.scan == scan:
-                program.due = min(program.due, self.cycle)
+        programs = [program for program in self._programs if program.scan == scan]
+        if not programs:
+            raise TaktError(f"{scan!r} is no program of this session: session.program(...) makes it one")
+        for program in programs:
+            program.due = min(program.due, self.cycle)
 
     def _watched(self, signals: Iterable[str]) -> list[tuple[int, int]]:
         """Components and their fields by number."""
-        if isinstance(signals, str):
-            raise TypeError(f"on is a list of published values, not the text {signals!r}")
         found = []
-        for signal in signals:
+        for signal in names_in(signals, "on", "published value", "published values"):
             name, field = split_signal(signal)
             component = _named(self._components, name, "axis or other component")
             places = KINDS[component.KIND].places
@@ -514,9 +516,11 @@ class Session(SessionWithCams):
         return recorder
 
     def mark(self, text: str, axis: str = "") -> None:
-        """Puts a mark at this time into all recordings in progress."""
+        """Puts a mark at this time into all recordings in progress: of this axis or other component, or of the whole
+        machine."""
         self._check_open()
-        self._event(axis, text, "mark")
+        component = _named(self._components, axis, "axis or other component").name if axis != "" else ""
+        self._event(component, text, "mark")
 
     def _event(self, component: str, text: str, kind: str, time_s: float = math.nan) -> None:
         if component not in self._components:
@@ -539,7 +543,7 @@ class Session(SessionWithCams):
         """Passes on what the engine says of a command."""
         feedback.object = self._object(object_kind, object_number) or feedback.object
         if error_id:
-            sentence = self._why_refused(error_id, feedback) or sentence
+            sentence = self._why_refused(error_id, feedback, sentence) or sentence
         if not feedback._update(state, reached, error_id, sentence, cycle, value) or not feedback._final:
             return
         name = without_arguments(feedback.text)
@@ -550,9 +554,12 @@ class Session(SessionWithCams):
         else:
             self._event(feedback.target, f"{name}: {feedback._state.name.lower()}", "end", feedback.time_s)
 
-    def _why_refused(self, error_id: int, feedback: Feedback) -> str:
+    def _why_refused(self, error_id: int, feedback: Feedback, sentence: str) -> str:
         if feedback.target not in self._components:
             return ""
+        if self._components[feedback.target].KIND == PickPlace.KIND:
+            general = sentence == _core.error_texts().get(error_id, ("", ""))[1]
+            return pick_place.why_refused(error_id, feedback.verb, feedback.arguments) if general else ""
         names = self._made_cams.names
         return why_refused(error_id, feedback.target, feedback.arguments, self._axes, self._movers, names)
 

@@ -34,6 +34,8 @@ class TrackTrail(Sequence[str]):
 
     def __init__(self, tracks: Iterable[str | Track] = ()) -> None:
         self._names: list[str] = []
+        if isinstance(tracks, str):
+            raise TypeError(f"tracks is a list of tracks, not the text {tracks!r}")
         for track in tracks:
             self.add_track(track)
 

@@ -108,6 +108,24 @@ def test_commas_at_the_end_of_a_line_mean_nothing(text: str, tmp_path: Path) -> 
     assert main(["calibrate", "frame", str(tmp_path / "table.csv")]) == 0
 
 
+@pytest.mark.parametrize("separator", [";", "; ", "\t"])
+def test_tables_with_decimal_commas(separator: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """GR-46: with semicolons or tabulators between the columns, as spreadsheets write them; as cams are read."""
+    rows = ["position,x,y,z", "0,0.5,0,5", "200,200.5,0,5", ",100,60,5"]
+    for name, text in (
+        ("points.csv", "\n".join(rows)),
+        ("commas.csv", "\n".join(row.replace(",", separator).replace(".", ",") for row in rows)),
+    ):
+        (tmp_path / name).write_text(f"{text}\n")
+        assert main(["calibrate", "belt", str(tmp_path / name)]) == 0
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[: len(printed) // 2] == printed[len(printed) // 2 :]
+    assert "ratio: 1" in printed
+    (tmp_path / "points.csv").write_text("x;y;z\n0;0;0\n1,5;2,5;3,5;4\n0;9;0\n")
+    assert main(["calibrate", "frame", str(tmp_path / "points.csv")]) == 2
+    assert ":3: expected 3 fields as in the head, found 4" in capsys.readouterr().err
+
+
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = tmp_path / "table.csv"
     table.write_text("x,y,z\n100,50,10\n100,150,10\n20,60,10\n")

@@ -9,7 +9,7 @@ import takt
 import yaml
 from takt.changes import Value, changed, text_of, value_of
 from takt.cli import main
-from takt.scenario import load_scenario
+from takt.scenario import load_scenario, settings_of, with_settings
 
 MACHINE = """\
 # Two axes, in both styles.
@@ -144,3 +144,52 @@ def test_parameters_have_defaults(folder: Path) -> None:
     scenario = load_scenario("scenario.py")
     assert scenario.parameters == {"velocity": 100.0, "repeat": 1, "where": "there", "most": 500.0}
     assert scenario.with_arguments({"velocity": 3}).arguments == {"velocity": 3.0}
+
+
+@pytest.mark.parametrize(
+    ("parameter", "value", "expected"),
+    [
+        ("up=True", "False", False),
+        ("up=False", "yes", True),
+        ("up=True", "OFF", False),
+        ("up=True", "0", False),
+        ("up=True", "true", True),
+        ("n=1", "3.0", 3),
+        ("n=1", "1e3", 1000),
+        ("n: float = 1", "2.5", 2.5),
+        ("n=1.0", "2", 2.0),
+        ('mode="a"', "3", "3"),
+        ('mode="a"', "007", "007"),
+        ('mode="a"', "true", "true"),
+        ("any=None", "2.5", 2.5),
+    ],
+)
+def test_values_are_of_the_kind_of_their_default(folder: Path, parameter: str, value: str, expected: object) -> None:
+    """PY-24: true and false in the spellings of YAML, numbers, and texts as they are typed."""
+    (folder / "scenario.py").write_text(f"def scenario(session, {parameter}): pass\n")
+    name = parameter.split("=")[0].split(":")[0]
+    scenario, _ = with_settings(load_scenario("scenario.py"), settings_of([f"{name}={value}"]))
+    assert scenario.arguments == {name: expected}
+    assert type(scenario.arguments[name]) is type(expected)
+
+
+@pytest.mark.parametrize(
+    ("parameter", "value", "wrong"),
+    [
+        ("up=True", "maybe", "scenario.py: up: expected true or false, found 'maybe'"),
+        ("up=True", "2", "up: expected true or false, found 2"),
+        ("n=1", "2.5", "n: expected a whole number, as its default 1 is one, found 2.5; 1.0 as default takes any"),
+        ("n=1", "true", "n: expected a whole number, found true"),
+        ("n=1.0", "fast", "n: expected a number, found 'fast'"),
+    ],
+)
+def test_values_of_another_kind_are_refused(
+    folder: Path, parameter: str, value: str, wrong: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """PY-24: by `run` and, wherever they are listed, by `sweep` before a run is made."""
+    (folder / "scenario.py").write_text(f"def scenario(session, {parameter}): pass\n")
+    name, good = parameter.split("=")
+    assert main(["run", "scenario.py", "--set", f"{name}={value}"]) == 2
+    assert wrong in capsys.readouterr().err
+    assert main(["sweep", "scenario.py", "--grid", f"{name}={good},{value}"]) == 2
+    assert wrong in capsys.readouterr().err

@@ -350,6 +350,22 @@ def test_leaving_again_is_not_settling() -> None:
     assert checks.settles(positions(x=curve), "x", 100.0, 0.1, within=0.6, hold=0.8).passed
 
 
+@pytest.mark.parametrize("target", [1.0, 4.0, 16.0, 100.0, -200.0, 1e5])
+@pytest.mark.parametrize("tolerance", [0.001, 0.01, 0.3])
+def test_a_tolerance_holds_at_its_ends(target: float, tolerance: float) -> None:
+    """PY-05: one increment beside its target an axis is within a tolerance of one increment, however numbers are
+    rounded; a millionth beyond it is not."""
+    for side in (1, -1):
+        for beyond, within in ((0.0, True), (1e-6 * tolerance, False)):
+            value = target + side * (tolerance + beyond)
+            rec = positions(x=np.full(200, value), m=np.full(200, target))
+            assert checks.reaches(rec, "x", target, tolerance=tolerance, by=0.1).passed == within
+            assert checks.settles(rec, "x", target, tolerance, within=0.1).passed == within
+            assert checks.in_sync(rec, "m", "x", tolerance=tolerance).passed == within
+            nearer = positions(x=np.full(200, target + side * (tolerance - beyond)), m=np.full(200, target))
+            assert checks.keeps_distance(nearer, "m", "x", tolerance).passed == within
+
+
 # --- two components ---
 
 

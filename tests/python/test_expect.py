@@ -67,6 +67,10 @@ def test_visits_states() -> None:
     assert not missing.passed
     assert "Stopping is missing" in missing.sentence
     assert not checks.visits_states(rec, "x", ["DiscreteMotion", "Standstill", "DiscreteMotion"]).passed
+    with pytest.raises(ValueError, match="states is an empty list, so there is nothing to judge"):
+        checks.visits_states(rec, "x", [])
+    with pytest.raises(TypeError, match="states is a list of names, not the text 'Standstill'"):
+        checks.visits_states(rec, "x", "Standstill")
 
 
 @pytest.mark.parametrize(

@@ -202,6 +202,8 @@ def test_subs_in_files_beside_the_program(tmp_path: Path) -> None:
     with pytest.raises(ToolpathError, match=r"main\.ngc:2: expected O<\.\./step> sub, found none in the file"):
         read_gcode(tmp_path / "main.ngc", options=Options(subroutines=[tmp_path / "lib"]))
     (tmp_path / "main.ngc").write_text("o<step> call [3]\no<step> call [2]\nM2")
+    path = read_gcode(tmp_path / "main.ngc", options=Options(subroutines=tmp_path / "lib"))
+    path = read_gcode(tmp_path / "main.ngc", options=Options(subroutines=str(tmp_path / "lib")))
     path = read_gcode(tmp_path / "main.ngc", options=Options(subroutines=[tmp_path / "lib"]))
     assert [one.end[:2] for one in path.elements] == [(3, 0), (3, 5), (5, 5)]
     with pytest.raises(ToolpathError, match=r"step\.ngc:3: expected O<leap> sub"):

@@ -48,6 +48,8 @@ def test_gymnasium_checks_it() -> None:
     env.close()
     with pytest.raises(takt.TaktError, match=r"axis y: no range: give ranges"):
         ReachEnv(MACHINE, ["y"])
+    with pytest.raises(TypeError, match="axes is a list of names, not the text 'x'"):
+        ReachEnv(MACHINE, "x")
     with pytest.raises(takt.TaktError, match="at least one axis"):
         ReachEnv(MACHINE, [])
 

@@ -179,6 +179,17 @@ def test_lift() -> None:
         assert [engine.part(name).state for name in ("one", "two", "three")] == ["Disabled", "Enabled", "Enabled"]
 
 
+def test_a_reference_that_is_needed() -> None:
+    """PL-50: a place without one is refused with the names that there are."""
+    needed = "reference: expected the name of a part or a coordinate system, needed where there are several coordinate"
+    there = r"systems or parts that move \(there are one, two, three, lower, upper\) \(error 3070\)"
+    with Engine(LIFT) as engine:
+        mover = enabled(engine)
+        for given in (mover.move_to_position(x=120, y=200), mover.set_position(x=120, y=200)):
+            with pytest.raises(takt.CommandError, match=f"{needed} {there}"):
+                given.wait()
+
+
 def test_lift_over_lcm(tmp_path: Path) -> None:
     """PL-50, example 6.6.1 against taktd."""
     url = new_url()

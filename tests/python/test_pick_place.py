@@ -329,3 +329,81 @@ def test_a_range_the_wrong_way_round_is_refused(engine: takt.Engine, limits: tup
     assert picker.configure_belt(lower_limit=lower, upper_limit=upper).wait_final().error_id == 5
     picker.configure_belt(lower_limit=-100, upper_limit=0).wait()
     picker.configure_belt(lower_limit=0, upper_limit=0).wait()
+
+
+TWO_BELTS = MACHINE.replace(
+    "pick_and_place:", "  - {name: outfeed, axis: drive, upper_limit: 300}\npick_and_place:"
+).replace("sync_time: 0.05}}]", "sync_time: 0.05}}, {belt: outfeed}]")
+
+
+@pytest.mark.parametrize(
+    ("text", "setting", "wrong"),
+    [
+        (
+            TWO_BELTS,
+            "tracking_mode: from_to, pick_belt: 1, place_belt: 3",
+            "settings.place_belt: expected a belt of the module's list, 1 to 2, or 0, the static target, found 3",
+        ),
+        (
+            MACHINE,
+            "pick_belt: 2",
+            "pick_belt: expected a belt of the module's list, 1, or 0, the static target, found 2",
+        ),
+        (
+            MACHINE,
+            "tracking_mode: belt1_to_belt2",
+            "tracking_mode: expected a mode for the belts of the module's list, found one that needs belt 2 where "
+            "there is 1",
+        ),
+    ],
+)
+def test_belts_that_are_not_in_the_list(text: str, setting: str, wrong: str) -> None:
+    """PP-43: refused with the list, in the file and at run time."""
+    with pytest.raises(takt.ConfigError) as refused:
+        takt.Engine(text.replace("{path_velocity", f"{{{setting}, path_velocity"))
+    assert wrong in str(refused.value)
+    picker = started(text).pick_place("picker")
+    name, value = setting.split(", ")[-1].split(": ")
+    feedback = picker.configure(**{name: int(value) if value.isdecimal() else value}).wait_final()
+    assert (feedback.error_id, wrong.removeprefix("settings.") in str(feedback.sentence)) == (5, True)
+
+
+def test_commands_for_belts_that_are_not_in_the_list(engine: takt.Engine) -> None:
+    """PP-41, PP-43."""
+    picker = engine.pick_place("picker")
+    wrong = r"set_target: expected a belt of the module's list, 1, or 0, the static target, found 3 \(error 5\)"
+    with pytest.raises(takt.CommandError, match=wrong):
+        picker.execute(3).wait()
+    with pytest.raises(takt.CommandError, match=r"belt: expected a belt of the module's list, 1, found 3 \(error 5\)"):
+        picker.configure_belt(belt=3).wait()
+
+
+def test_ranges_that_the_belt_does_not_have(engine: takt.Engine) -> None:
+    """PP-41: a work range beside the belt's own, in which no workpiece ever is."""
+    wrong = (
+        "lower_limit: expected lower_limit to upper_limit to overlap the work range of belt 'infeed', 0.0 to 600.0, "
+    )
+    wrong += "found "
+    settings = "settings: {lower_limit: 700, upper_limit: 800, park_x"
+    with pytest.raises(takt.ConfigError, match=wrong + "700.0 to 800.0"):
+        takt.Engine(MACHINE.replace("settings: {park_x", settings))
+    picker = engine.pick_place("picker")
+    with pytest.raises(takt.CommandError, match=wrong + "-20.0 to -10.0"):
+        picker.configure_belt(lower_limit=-20, upper_limit=-10).wait()
+    picker.configure_belt(lower_limit=500, upper_limit=800).wait()
+    with pytest.raises(takt.CommandError, match="both must overlap the work range of the belt"):
+        picker.configure_belt(lower_limit=700).wait()
+
+
+def test_rules_of_settings_are_named(engine: takt.Engine) -> None:
+    """PP-03, PP-41: where a setting does not go with those that are set already."""
+    picker = engine.pick_place("picker")
+    for command, arguments, rule in (
+        (picker.configure_belt, {"lower_limit": 10}, "upper_limit must lie above lower_limit"),
+        (picker.configure_belt, {"turns": 2}, "turns must not lead beyond every"),
+        (picker.configure, {"workpiece_pcs1": 16}, "workpiece_pcs1 and workpiece_pcs2 must be different"),
+        (picker.jog, {"positive": True}, "select_axis: expected what is to be jogged, found none"),
+        (picker.jog, {"positive": True, "negative": True}, "positive and negative: expected one of both"),
+    ):
+        with pytest.raises(takt.CommandError, match=rule):
+            command(**arguments).wait()

@@ -75,6 +75,8 @@ def test_signals_of_one_component_can_be_told_apart() -> None:
 
 def test_signals_by_pattern() -> None:
     rec = positions(x=np.arange(5.0), y=np.arange(5.0))
+    with pytest.raises(TypeError, match="signals is a list of patterns, not the text 'xy'"):
+        plot.select(rec, "xy")
     assert plot.select(rec, ["*.set_position"]) == [("x", "set_position"), ("y", "set_position")]
     assert plot.select(rec, ["y"]) == [("y", "set_position"), ("y", "actual_position")]
     assert plot.select(rec, ["x.a*", "x.a*"]) == [("x", "actual_position")]

@@ -182,11 +182,19 @@ def test_machines_and_engines(run: Run) -> None:
 
         def test_none(engine):
             pass
+
+        @pytest.mark.takt_machine("machine.yaml", changes={"name": "n"})
+        def test_more(engine):
+            pass
         """
     )
-    result.assert_outcomes(passed=4, errors=2)
+    result.assert_outcomes(passed=4, errors=3)
     result.stdout.fnmatch_lines(
-        ["*no machine file nothing.yaml beside test_it.py*", "*no machine: mark the test with*"]
+        [
+            "*no machine file nothing.yaml beside test_it.py*",
+            "*no machine: mark the test with*",
+            "*takt_machine('machine.yaml', changes={'name': 'n'}): expected one argument, the machine file*",
+        ]
     )
 
 

@@ -242,7 +242,7 @@ def test_figures_of_the_engine_are_said_in_words(here: Path) -> None:
     last = takt.read_log("run.log").meta["engine"]
     rows = data["meta"]["engine"]
     assert rows["cycles"] == f"{last['cycle']:,}"
-    assert rows["commands"] == "1 applied, 0 refused"
+    assert rows["commands"] == "1 applied, 0 refused by a full queue"
     assert rows["dropped"] == "0 states, 0 feedbacks"
     assert set(rows) <= {"cycles", "overruns", "execution of a cycle", "wake-up latency", "commands", "dropped"}
 
@@ -257,7 +257,7 @@ def test_counts_of_the_engine_that_should_be_0_are_said_where_they_are_not() -> 
             "cycles": "0",
             "overruns": "1,234",
             "wake-up latency": "median 3 µs, 99 % below 3 µs, longest 3 µs",
-            "commands": "0 applied, 0 refused",
+            "commands": "0 applied, 0 refused by a full queue",
             "dropped": "1 state, 0 feedbacks",
             "journal entries dropped": "3",
         },
@@ -308,7 +308,7 @@ def test_a_report_made_later_is_the_one_made_at_once(scenario: str, code: int, h
     assert Path("moved.html").read_bytes() == at_once
     data, page = payload(at_once.decode())
     assert data["title"] == "Goes there"
-    assert data["meta"]["engine"]["commands"] == "2 applied, 0 refused"
+    assert data["meta"]["engine"]["commands"] == "2 applied, 0 refused by a full queue"
     found = [(v["title"], v["passed"]) for v in data["verdicts"]]
     failing_first = [("within_limits(x)", False), ("reaches(x)", True)]
     assert found == (failing_first if code else [("reaches(x)", True), ("within_limits(x)", True)])

@@ -460,6 +460,8 @@ def test_bad_requests() -> None:
         engine.move_on_tracks({"a": ("main", 1000.0), "b": ("main", 1150.0)})
     with pytest.raises(takt.RoutingError, match="target of mover a is too near to where b stands"):
         engine.move_on_tracks({"a": ("main", 1150.0)})
+    with pytest.raises(TypeError, match="may_move is a list of names, not the text 'b'"):
+        engine.move_on_tracks({"a": ("main", 900.0)}, may_move="b")
     with pytest.raises(ValueError, match="auto, shortest"):
         engine.move_on_tracks({"a": ("main", 1.0)}, route="best")  # type: ignore[arg-type]
     assert set(engine.move_on_tracks({"a": ("main", 900.0)}, route="shortest")) == {"a"}

@@ -575,6 +575,38 @@ def test_programs_that_wait_for_changes(engine: takt.Engine) -> None:
         engine.step(10)
 
 
+def test_a_name_that_is_no_text() -> None:
+    """PY-07: what could not be read is told once."""
+    text = (
+        "name: m\naxes: [{name: 5, limits: {velocity: 1, acceleration: 1, jerk: 1}}]\ncams: [{name: 7, points: []}]\n"
+    )
+    with pytest.raises(takt.ConfigError) as refused:
+        takt.Engine(text)
+    assert [problem.split(", which")[0] for problem in refused.value.problems if "name" in problem] == [
+        "machine:2:15: axes[0].name: expected text, found '5'",
+        "machine:3:15: cams[0].name: expected text, found '7'",
+    ]
+
+
+def test_what_is_woken_is_a_program(engine: takt.Engine) -> None:
+    """PY-24: another function is refused, not ignored."""
+    with pytest.raises(takt.TaktError, match=r"<built-in function print> is no program of this session"):
+        engine.wake(print)
+
+
+def test_marks_belong_to_components(engine: takt.Engine) -> None:
+    """PY-02: names that there are not, and objects, are refused as `record` does."""
+    with engine.record() as recorder:
+        engine.mark("here", axis="x")
+        engine.mark("there")
+        with pytest.raises(takt.TaktError, match="no axis or other component 'xx'; did you mean 'x'"):
+            engine.mark("nowhere", axis="xx")
+        with pytest.raises(TypeError, match="goes by its name, not by <Axis"):
+            engine.mark("nowhere", axis=engine.axis("x"))  # type: ignore[arg-type]
+        engine.step()
+    assert [event[1:3] for event in recorder.recording.events] == [("x", "here"), ("", "there")]
+
+
 def test_programs_and_conditions_every_so_many_cycles(engine: takt.Engine) -> None:
     """PY-24: what need not look into every cycle holds the engine up less."""
     seen: list[int] = []

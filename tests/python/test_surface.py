@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import random
+import time
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -101,6 +102,23 @@ def test_routes_are_carried_out_in_an_enabled_group(count: int, more: str) -> No
     check(engine, takt.plan_surface(engine, targets, effort=300))
     errors = {record.error_id for mover in engine.movers.values() for record in mover.history()}
     assert errors == {0}
+
+
+@pytest.mark.parametrize("seed", range(10) if LONG else [7])
+def test_what_waiting_does_not_solve_is_solved_by_routes(seed: int) -> None:
+    """PL-72: what docs/planar_groups.md says of 50 movers on 64 places in ten worlds, told at once and by `route`."""
+    starts, targets = random_world(4, 50, seed)
+    engine = in_a_group(starts, square(4), ", moves_wait: true")
+    moves = [engine.mover(name).move_to_position(x=x, y=y) for name, (x, y) in targets.items()]
+    engine.run(5)
+    assert not any(move.error for move in moves)
+    assert sum(move.done for move in moves) <= 2
+    assert sum(mover.deadlocked for mover in engine.movers.values()) >= 2
+    engine = in_a_group(starts, square(4), ", moves_wait: true")
+    start = engine.now
+    order = engine.route(targets).wait()
+    assert len(order.arrived_s) == 50
+    assert 17 < engine.now - start < 28
 
 
 def test_orders_are_carried_out_in_an_enabled_group() -> None:
@@ -345,6 +363,21 @@ def test_the_effort_grows_with_the_movers() -> None:
     assert usual.sum_s < less.sum_s
 
 
+def test_slow_movers_are_planned_like_fast_ones() -> None:
+    """PL-72: planning takes no more time and memory where runs take hours; beyond a day they are refused."""
+    engine = engine_of({"a": (0, 0), "b": (5, 5)}, square(4))
+    for velocity, seconds in ((1.0, 840), (0.01, 84_000)):
+        begin = time.monotonic()
+        plan = takt.plan_surface(engine, {"a": at((7, 0)), "b": at((0, 5))}, velocity=velocity)
+        assert time.monotonic() - begin < 2
+        assert plan.arrival_s["a"] == pytest.approx(seconds, rel=0.01)
+    for slow in ({"velocity": 0.001}, {"acceleration": 1e-7}, {"jerk": 1e-12}):
+        with pytest.raises(
+            takt.RoutingError, match="the movers are too slow for a plan: a run along the surface takes"
+        ):
+            takt.plan_surface(engine, {"a": at((7, 0))}, **slow)
+
+
 def test_two_hundred_movers_are_planned() -> None:
     starts, targets = random_world(10, 200, 6)
     engine = engine_of(starts, square(10))
@@ -434,6 +467,24 @@ def test_targets_of_several_kinds() -> None:
     for targets, sentence in cases:
         with pytest.raises(takt.RoutingError, match=sentence):
             takt.plan_surface(engine, targets)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("movers", ["ab", "cart", 7, ["ab", 7]])
+def test_names_are_a_list(movers: object) -> None:
+    """PL-72: a text alone is no list of the movers that its letters name."""
+    engine = engine_of({"a": (0, 0), "b": (3, 3), "ab": (2, 0), "cart": (1, 3)}, square(2))
+    wrong = r"movers is a list of names, not (the text '(ab|cart)'|7)|movers: a mover goes by its name, not by 7"
+    aside = wrong.replace("movers", "may_move")
+    for order in (takt.plan_surface, Engine.move_on_surface, Engine.route, Engine.route_any):
+        with pytest.raises(TypeError, match=wrong):
+            order(engine, [at((0, 1))], movers=movers)  # type: ignore[operator]
+    for order in (takt.plan_surface, Engine.move_on_surface, Engine.route):
+        with pytest.raises(TypeError, match=aside):
+            order(engine, {"a": at((0, 1))}, may_move=movers)  # type: ignore[operator]
+        with pytest.raises(TypeError, match="targets: a mover goes by its name, not by <Mover"):
+            order(engine, {engine.mover("a"): at((0, 1))})  # type: ignore[operator]
+    engine.route_any([at((0, 1))], movers=(name for name in ["a"])).wait()
+    assert engine.mover("a").y == pytest.approx(at((0, 1))[1])
 
 
 def test_over_lcm(tmp_path: Path) -> None:

@@ -95,6 +95,12 @@ def test_samples_are_the_same_at_each_point_of_the_grid() -> None:
     assert Design.of(["a=1,2"], ["u=uniform:5:6:1500"], seed=8).point(0)["u"] != first[0]["u"]
 
 
+def test_keys_are_a_list() -> None:
+    """PY-24: a text alone is refused, not read letter by letter."""
+    with pytest.raises(TypeError, match="grid is a list of texts, not the text 'velocity=1,2'"):
+        sweep("scenario.py", "velocity=1,2")
+
+
 def test_laws() -> None:
     design = Design.of([], ["i=integers:-1:1:3000", "c=choice:a,b:3000", "l=log_uniform:1:100:3000"])
     points = [design.point(i) for i in range(3000)]
@@ -172,6 +178,18 @@ def test_the_same_rows_whatever_the_number_of_workers(capsys: pytest.CaptureFixt
     assert float(row["stays(ram)"]) == outcome.verdicts[1].by_how_much
     assert main(words[1:]) == 0
     assert "2 passed" in capsys.readouterr().out
+
+
+def test_true_false_and_texts_of_a_grid() -> None:
+    """PY-24: rows say what ran: True and False as people write them, texts as they are typed."""
+    head, rest = SCENARIO.split("def verify")
+    results = 'def results(recording, up=True, mode=""):\n    return {"ran": f"{up!r} {mode!r}"}\n'
+    Path("scenario.py").write_text(f"{head}def verify{rest.split('def results')[0]}{results}")
+    sweep("scenario.py", ["up=True,False,no", "mode=007,1e3"], directory="d", workers=1)
+    found = rows("d")
+    assert [row["ran"] for row in found] == [f"{up} {mode!r}" for up in (True, False, False) for mode in ("007", "1e3")]
+    assert [row["mode"] for row in found[:2]] == ["007", "1e3"]
+    assert "--set mode=007" in found[0]["command"]
 
 
 @pytest.mark.parametrize(("judges", "passed"), [("return True", "1"), ("return False", "0"), ("assert False", "0")])

@@ -479,12 +479,35 @@ std::string WhyNotGroup(const Machine& machine, const Name& group) {
   return WhyNotNamed("group", group, NamesOf(machine.planar_groups), "a group of movers");
 }
 
-// Whether this is a part or a coordinate system; without a name: whether it can do without.
-std::string WhyNotReference(const Machine& machine, const Name& reference) {
-  if (reference.empty()) return {};
+// Places have to say what they are seen from: there are several coordinate systems, or parts that move.
+bool NeedsReference(const Machine& machine) {
+  const auto moves = [](const part::PartParams& part) { return part.positions.size() > 1; };
+  return machine.coordinate_systems.size() > 1 || std::ranges::any_of(machine.parts, moves);
+}
+
+// A command that lacks the reference that it needs. Set points from outside that are relative need none: those are
+// judged in the cycle.
+template <typename Command>
+bool LacksReference(const Machine& machine, const Command& command) {
+  return std::visit(
+      [&]<typename T>(const T& body) {
+        if constexpr (std::is_same_v<T, mover::SetExternalSetpoint>) return false;
+        if constexpr (requires { body.reference; }) return body.reference.empty() && NeedsReference(machine);
+        return false;
+      },
+      command);
+}
+
+std::string WhyNotReference(const Machine& machine, const Name& reference, bool lacks) {
+  if (reference.empty() && !lacks) return {};
   std::vector<std::string_view> names = NamesOf(machine.parts);
   std::ranges::copy(NamesOf(machine.coordinate_systems), std::back_inserter(names));
-  return WhyNotNamed("reference", reference, names, "a part or a coordinate system");
+  if (!lacks) return WhyNotNamed("reference", reference, names, "a part or a coordinate system");
+  std::string all;
+  for (const std::string_view name : names) all += (all.empty() ? "" : ", ") + std::string(name);
+  return "reference: expected the name of a part or a coordinate system, needed where there are several coordinate "
+         "systems or parts that move (there are " +
+         all + ")";
 }
 
 // Of a command that has one.
@@ -492,7 +515,9 @@ template <typename Command>
 std::string WhyNotReferenceOf(const Machine& machine, const Command& command) {
   return std::visit(
       [&]<typename T>(const T& body) {
-        if constexpr (requires { body.reference; }) return WhyNotReference(machine, body.reference);
+        if constexpr (requires { body.reference; }) {
+          return WhyNotReference(machine, body.reference, LacksReference(machine, command));
+        }
         return std::string();
       },
       command);
@@ -565,6 +590,39 @@ std::string WhyNot(const Machine& machine, const mover::Command& command, std::s
   return move && !move->track.empty() ? check(move->track) : WhyNotReferenceOf(machine, command);
 }
 
+// Belts and ranges; rules that depend on settings at run time are left to the cycle.
+std::string WhyNot(const Machine& machine, const pickplace::Command& command, std::string_view target) {
+  const auto module = std::ranges::find(machine.pick_and_place, target, &pickplace::PickPlaceParams::name);
+  if (module == machine.pick_and_place.end()) return {};
+  const std::size_t count = module->belts.size();
+  const auto named = [](const char* field, const std::string& why) { return why.empty() ? why : field + (": " + why); };
+  const auto belt = [&](const char* field, const std::optional<std::uint32_t>& number, std::string_view none) {
+    return number ? named(field, pickplace::WhyNotBelt(*number, count, none)) : std::string();
+  };
+  if (const auto* control = std::get_if<pickplace::Control>(&command)) {
+    return belt("set_target", control->set_target, pickplace::kStaticTarget);
+  }
+  if (const auto* configure = std::get_if<pickplace::Configure>(&command)) {
+    std::string why = belt("pick_belt", configure->pick_belt, pickplace::kStaticTarget);
+    if (why.empty()) why = belt("place_belt", configure->place_belt, pickplace::kStaticTarget);
+    if (why.empty() && configure->tracking_mode) {
+      why = named("tracking_mode", pickplace::WhyNotMode(*configure->tracking_mode, count));
+    }
+    return why;
+  }
+  const auto* configure = std::get_if<pickplace::ConfigureBelt>(&command);
+  if (!configure) return {};
+  std::string why = belt("belt", configure->belt.value_or(1), {});
+  if (!why.empty() || !configure->lower_limit || !configure->upper_limit) return why;
+  const std::string& name = module->belts[configure->belt.value_or(1) - 1].belt;
+  const auto found = std::ranges::find(machine.belts, name, &conveyor::BeltParams::name);
+  pickplace::BeltSettings range;
+  range.lower_limit = *configure->lower_limit;
+  range.upper_limit = *configure->upper_limit;
+  const bool fits = found == machine.belts.end() || !pickplace::RangeFits(range);
+  return fits ? why : named("lower_limit", pickplace::WhyNotRange(range, *found));
+}
+
 // Why this component cannot do it, as far as its description tells; empty: it can.
 std::string WhyNot(const Machine& machine, const Command& command) {
   if (const auto* body = std::get_if<axis::Command>(&command.body)) {
@@ -572,6 +630,9 @@ std::string WhyNot(const Machine& machine, const Command& command) {
   }
   if (const auto* body = std::get_if<flexcam::Command>(&command.body)) return flexcam::WhyNot(*body);
   if (const auto* body = std::get_if<group::Command>(&command.body)) {
+    return WhyNot(machine, *body, NameOf(machine, command.target));
+  }
+  if (const auto* body = std::get_if<pickplace::Command>(&command.body)) {
     return WhyNot(machine, *body, NameOf(machine, command.target));
   }
   if (const auto* body = std::get_if<mover::Command>(&command.body)) {
@@ -592,7 +653,12 @@ std::string WhyNot(const Machine& machine, const Command& command) {
 }
 
 // Of a command that this component cannot do.
-ErrorId ErrorOf(const Command& command) {
+ErrorId ErrorOf(const Machine& machine, const Command& command) {
+  const auto* mover = std::get_if<mover::Command>(&command.body);
+  const auto* track = std::get_if<track::Command>(&command.body);
+  if ((mover && LacksReference(machine, *mover)) || (track && LacksReference(machine, *track))) {
+    return ErrorId::kReference;
+  }
   const auto* group = std::get_if<group::Command>(&command.body);
   return group ? group::ErrorOf(*group) : ErrorId::kParameter;
 }
@@ -667,7 +733,7 @@ ParsedCommand ParseCommand(const Machine& machine, std::string_view target, std:
     Problem problem;
     if (!entry.read(arguments, parsed.command.body, problem)) return Refused(ErrorId::kParameter, problem.Text());
     if (std::string sentence = WhyNot(machine, parsed.command); !sentence.empty()) {
-      return Refused(ErrorOf(parsed.command), std::move(sentence));
+      return Refused(ErrorOf(machine, parsed.command), std::move(sentence));
     }
     return parsed;
   }

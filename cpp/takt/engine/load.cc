@@ -100,6 +100,10 @@ class CrossCheck {
     problems_.push_back(source_.ProblemAt(path, message));
   }
 
+  void AddIf(const std::string& path, const std::string& message) {
+    if (!message.empty()) Add(path, message);
+  }
+
   void CheckAxes() {
     if (ComponentNames(machine_).empty()) {
       Add("axes", "expected at least one axis");
@@ -272,8 +276,17 @@ class CrossCheck {
       CheckReference(path + ".group", module.group, moved, groups, "group");
       std::vector<std::string_view> used;
       for (std::size_t k = 0; k < module.belts.size(); ++k) {
-        CheckReference(path + ".belts[" + std::to_string(k) + "].belt", module.belts[k].belt, used, belts, "belt");
+        const std::string place = path + ".belts[" + std::to_string(k) + "]";
+        CheckReference(place + ".belt", module.belts[k].belt, used, belts, "belt");
+        const auto belt = std::ranges::find(machine_.belts, module.belts[k].belt, &conveyor::BeltParams::name);
+        if (belt == machine_.belts.end()) continue;
+        AddIf(place + ".settings.lower_limit", pickplace::WhyNotRange(module.belts[k].settings, *belt));
       }
+      const pickplace::Settings& settings = module.settings;
+      const std::size_t count = module.belts.size();
+      AddIf(path + ".settings.tracking_mode", pickplace::WhyNotMode(settings.tracking_mode, count));
+      AddIf(path + ".settings.pick_belt", pickplace::WhyNotBelt(settings.pick_belt, count, pickplace::kStaticTarget));
+      AddIf(path + ".settings.place_belt", pickplace::WhyNotBelt(settings.place_belt, count, pickplace::kStaticTarget));
       for (const group::GroupParams& group : machine_.groups) {
         if (group.name != module.group) continue;
         const std::vector<std::string_view> members(group.axes.begin(), group.axes.end());
@@ -472,6 +485,11 @@ LoadResult LoadMachine(std::string_view text, std::string_view file_name, Worksp
   const bool has_any = std::ranges::any_of(ComponentKinds(), [&](const ComponentKind& k) { return k.count(machine); });
   if (readable && has_any) {
     std::vector<Problem> more = CrossCheck(machine, source).Run();
+    // A value that could not be read was not taken: what is found in its place does not stand in the file.
+    const auto told = [&](const Problem& p) {
+      return !p.path.empty() && std::ranges::find(problems, p.path, &Problem::path) != problems.end();
+    };
+    std::erase_if(more, told);
     problems.insert(problems.end(), more.begin(), more.end());
   } else if (problems.empty()) {
     problems = CrossCheck(machine, source).Run();

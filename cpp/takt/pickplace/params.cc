@@ -1,8 +1,38 @@
 #include "takt/pickplace/params.h"
 
 #include "takt/core/describe.h"
+#include "takt/core/scalar.h"
 
 namespace takt::pickplace {
+
+std::string WhyNotBelt(std::uint32_t belt, std::size_t belts, std::string_view none) {
+  const bool may_be_none = belt != 0 && !none.empty();
+  if (belt <= belts && (belt != 0 || !none.empty())) return {};
+  const std::string zero = may_be_none ? "0, " + std::string(none) : std::string();
+  const std::string found = ", found " + std::to_string(belt);
+  if (belts == 0) return "expected " + (zero.empty() ? "a belt" : zero) + ": the module's list has no belts" + found;
+  const std::string numbers = belts == 1 ? "1" : "1 to " + std::to_string(belts);
+  return "expected a belt of the module's list, " + numbers + (zero.empty() ? "" : ", or " + zero) + found;
+}
+
+std::string WhyNotMode(TrackingMode mode, std::size_t belts) {
+  const bool both = mode == TrackingMode::kBelt1ToBelt2 || mode == TrackingMode::kBelt2ToBelt1;
+  const bool one = mode == TrackingMode::kStaticToBelt1 || mode == TrackingMode::kBelt1ToStatic;
+  const std::size_t needed = both ? 2 : one ? 1 : 0;
+  if (needed <= belts) return {};
+  return "expected a mode for the belts of the module's list, found one that needs belt " + std::to_string(needed) +
+         " where there " + (belts == 1 ? "is 1" : "is none");
+}
+
+std::string WhyNotRange(const BeltSettings& settings, const conveyor::BeltParams& belt) {
+  if (RangeMeets(settings, belt)) return {};
+  const auto limit = [](const std::optional<double>& value, const char* none) {
+    return value ? FormatReal(*value) : std::string(none);
+  };
+  return "expected lower_limit to upper_limit to overlap the work range of belt '" + belt.name + "', " +
+         limit(belt.lower_limit, "any") + " to " + limit(belt.upper_limit, "any") + ", found " +
+         FormatReal(settings.lower_limit) + " to " + FormatReal(settings.upper_limit);
+}
 
 void describe(Description<PickPlaceBelt>& d) {
   d.about("A belt as a pick and place module uses it.");

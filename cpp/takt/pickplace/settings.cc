@@ -188,6 +188,12 @@ bool RangeFits(const BeltSettings& s) noexcept {
   return !HasRange(s) || s.lower_limit < s.upper_limit;
 }
 
+bool RangeMeets(const BeltSettings& s, const conveyor::BeltParams& belt) noexcept {
+  if (!HasRange(s) || !RangeFits(s)) return true;
+  return !(belt.lower_limit && s.upper_limit < *belt.lower_limit) &&
+         !(belt.upper_limit && s.lower_limit > *belt.upper_limit);
+}
+
 void describe(Description<Settings>& d) {
   d.named("PickPlaceSettings");
   d.about("What is set of a pick and place module.");

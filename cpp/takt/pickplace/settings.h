@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "takt/conveyor/params.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/given.h"
 #include "takt/group/commands.h"
@@ -153,6 +154,8 @@ bool TurnsFit(const BeltSettings& settings) noexcept;
 bool HasRange(const BeltSettings& settings) noexcept;
 // It has none, or lower_limit lies below upper_limit.
 bool RangeFits(const BeltSettings& settings) noexcept;
+// It has none that fits, or one that overlaps the belt's own.
+bool RangeMeets(const BeltSettings& settings, const conveyor::BeltParams& belt) noexcept;
 
 void describe(Enumeration<PathMode>&);
 void describe(Enumeration<TrackingMode>&);

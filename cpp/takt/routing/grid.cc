@@ -9,8 +9,9 @@
 namespace takt::routing {
 namespace {
 
-constexpr double kSampled = 5e-4;  // s
-constexpr double kNoLag = -1e6;    // s: it ends behind where the leader starts
+constexpr double kSampled = 5e-4;        // s, at least
+constexpr double kMostSamples = 20'000;  // of the longest run: slow movers take no more time and memory than fast ones
+constexpr double kNoLag = -1e6;          // s: it ends behind where the leader starts
 
 }  // namespace
 
@@ -45,6 +46,7 @@ Grid::Grid(int width, int height, double pitch, double mover_size, const Dynamic
     }
   }
   const int longest = std::max(width_, height_);
+  sampled_ = std::max(kSampled, StraightRun((longest - 1) * pitch, dynamics).duration() / kMostSamples);
   for (int count = 0; count < longest; ++count) {
     Lane lane{.run = StraightRun(count * pitch, dynamics),
               .duration = 0,
@@ -59,7 +61,7 @@ Grid::Grid(int width, int height, double pitch, double mover_size, const Dynamic
       lane.exit.push_back(lane.run.TimeAt(k * pitch + (pitch + mover_size) / 2));
       lane.middle.push_back(lane.run.TimeAt(k * pitch));
     }
-    for (double t = 0; count > 0 && t < lane.duration; t += kSampled) {
+    for (double t = 0; count > 0 && t < lane.duration; t += sampled_) {
       lane.at.push_back(lane.run.At(t));
       lane.stop.push_back(lane.run.StopAt(t));
     }
@@ -138,8 +140,8 @@ double Grid::Lag(int leader, int follower, int ahead) const {
     const double place = back.stop[i] + behind;  // where the leader has to be by then
     if (place <= 0) continue;
     while (k < front.at.size() && front.at[k] < place) ++k;
-    const double there = std::min(static_cast<double>(k) * kSampled, front.duration);
-    lag = std::max(lag, there - static_cast<double>(i > 0 ? i - 1 : 0) * kSampled + kEarly);
+    const double there = std::min(static_cast<double>(k) * sampled_, front.duration);
+    lag = std::max(lag, there - static_cast<double>(i > 0 ? i - 1 : 0) * sampled_ + kEarly);
   }
   return known = lag;
 }

@@ -90,7 +90,7 @@ class Grid {
     StraightRun run;
     double duration;
     std::vector<double> entry, exit, middle;  // exit of the last: its duration
-    std::vector<double> at, stop;             // StraightRun::At and StopAt, every kSampled s
+    std::vector<double> at, stop;             // StraightRun::At and StopAt, every sampled_ s
   };
   const Lane& lane(int count) const noexcept { return lanes_[static_cast<std::size_t>(count)]; }
 
@@ -101,6 +101,7 @@ class Grid {
   std::array<PlaceIndex, 5> steps_;        // by direction
   std::vector<std::array<int, 5>> room_;   // by place and direction
   std::vector<std::array<int, 5>> along_;  // by place and direction
+  double sampled_ = 0;                     // s
   std::vector<Lane> lanes_;                // by count
   mutable std::vector<double> lags_;       // computed when asked for; nan: not yet
 };

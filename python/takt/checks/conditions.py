@@ -17,13 +17,12 @@ from typing import Any
 
 import numpy as np
 
-from takt.checks.series import Check, Mask, Series, decided, extent, nearest
+from takt.checks.series import Check, Mask, Series, decided, extent, nearest, slack
 from takt.counted import counted
+from takt.names import names_in
 from takt.recording import FloatArray, Recording, RecordingError, split_signal
 from takt.verdict import Bound, Interval, Lane, Verdict, number, seconds
 
-ROUNDING = 1e-9  # relative difference of numbers that count as equal
-NEAR_ZERO = 1e-3  # to numbers smaller than that it is relative to that: 1e-12, in the signal's unit
 # Of a value minus what it is compared with, and of the difference that counts as none.
 _COMPARE: dict[str, Callable[[Any, float], Any]] = {
     "<=": lambda difference, slack: difference <= slack,
@@ -115,6 +114,9 @@ def visits_states(
     window: Interval | None = None,
 ) -> Verdict:
     """The states are visited in this order; others may lie between them unless `exactly`."""
+    states = names_in(states, "states", "state")
+    if not states:
+        raise ValueError("visits_states: states is an empty list, so there is nothing to judge")
     names = recording.names(component, field)
     wanted = [_state_value(recording, component, field, s) for s in states]
     check = Check("visits_states", recording, (component,), window)
@@ -218,11 +220,6 @@ def _evaluate(check: Check, text: str, signal: str, op: str, value: str, absolut
         if absolute:
             bounds += (Bound.level("", -level, s.span, "below" if op[0] == "<" else "none"),)
     return _Term(text, s, holds, excess, s.lane(bounds=bounds, names=names))
-
-
-def slack(level: float) -> float:
-    """What a value may differ from a number and still count as equal to it."""
-    return ROUNDING * max(abs(level), NEAR_ZERO)
 
 
 def _all_hold(check: Check, terms: Sequence[_Term]) -> Series:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from takt.checks.series import Check, Series, decided, extent, nearest, unwrapped, wrap
+from takt.checks.series import LAST_PLACES, Check, Series, beyond, decided, extent, nearest, unwrapped, wrap
 from takt.recording import Recording
 from takt.verdict import Bound, Interval, Lane, Trace, Verdict, number, seconds
 
@@ -38,7 +38,8 @@ def in_sync(
     led = ratio * unwrapped(m)
     shift = float(s.values[0] - led[0]) if offset is None else offset
     error = wrap(s.values - (led + shift), s.modulus)
-    excess = np.abs(error) - tolerance
+    largest = max(float(np.max(np.abs(values))) for values in (s.values, led))
+    excess = beyond(error, tolerance, largest)
     lanes = [
         Lane(
             "synchronisation error",
@@ -55,7 +56,7 @@ def in_sync(
     worst = int(np.argmax(excess))
     at, off = float(s.time_s[worst]), float(error[worst])
     if excess[worst] <= 0:
-        room = float(-excess[worst])
+        room = abs(float(excess[worst]))
         kept = f"{slave} kept in step with {master} within {number(tolerance, s.unit)}"
         text = f"{kept}; {nearest(room, s.unit, at)}"
         return check.verdict(True, text, when_s=at, by=room, unit=s.unit, lanes=lanes)
@@ -100,6 +101,8 @@ def keeps_distance(
     first = pairs[0][0]
     distance = np.sqrt(np.sum(squares, axis=0))
     excess = minimum - distance
+    largest = max(float(np.max(np.abs(one.values))) for pair in pairs for one in pair)
+    allowed = tolerance * abs(minimum) + LAST_PLACES * largest
     bound = Bound.level(f"minimum {number(minimum, first.unit)}", minimum, first.span, "below")
     lanes = [
         Lane("distance", first.unit, (Trace(f"{a} to {b}", first.time_s, distance),), (bound,)),
@@ -108,12 +111,12 @@ def keeps_distance(
     worst = int(np.argmax(excess))
     at = float(first.time_s[worst])
     amount = float(excess[worst])
-    if amount <= tolerance * abs(minimum):
+    if amount <= allowed:
         room = max(-amount, 0.0)
         kept = f"{a} and {b} kept their distance of {number(minimum, first.unit)}"
         text = f"{kept}; {nearest(room, first.unit, at)}"
         return check.verdict(True, text, when_s=at, by=room, unit=first.unit, lanes=lanes)
-    place, where = extent(first.time_s, excess > tolerance * abs(minimum))
+    place, where = extent(first.time_s, excess > allowed)
     text = (
         f"{a} and {b} came within {number(float(distance[worst]), first.unit)} at {seconds(at)}, "
         f"{number(amount, first.unit)} less than the minimum of {number(minimum, first.unit)} ({where})"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from takt.checks.series import Check, decided, nearest
+from takt.checks.series import Check, beyond, decided, nearest
 from takt.recording import Recording
 from takt.toolpath import SLACK, Toolpath
 from takt.verdict import Bound, Interval, Lane, Trace, Verdict, number
@@ -34,24 +34,26 @@ def follows_path(
     bound = Bound.level(f"at most {number(within, x.unit)}", within, x.span, "above")
     name = f"{'measured' if actual else 'commanded'} place beside the path"
     lane = Lane("deviation", x.unit, (Trace(f"{group}: {name}", x.time_s, beside.distance),), (bound,))
+    largest = max(float(np.max(np.abs(column.values))) for column in columns)
+    excess = beyond(beside.distance, within, max(largest, path.length))
     worst = int(np.argmax(beside.distance))
     far, when = float(beside.distance[worst]), float(x.time_s[worst])
     where = f"{number(float(beside.position[worst]), x.unit)} along the path"
-    if far > within:
-        first = int(np.argmax(beside.distance > within))
+    if excess[worst] > 0:
+        first = int(np.argmax(excess > 0))
         text = f"the {name} was off by {number(far, x.unit)}, {where}, more than {number(within, x.unit)}"
         place = (float(x.time_s[first]), when) if first < worst else (when, when)
         return check.verdict(
             False, text, when_s=float(x.time_s[first]), by=far - within, unit=x.unit, place=place, lanes=[lane]
         )
     for what, at, wanted in (("began", beside.position[0], 0.0), ("ended", beside.position[-1], path.length)):
-        if abs(float(at) - wanted) > within:
+        if beyond(np.array([at - wanted]), within, path.length)[0] > 0:
             row = 0 if what == "began" else -1
             text = f"{what} {number(float(at), x.unit)} along the path, not at {number(wanted, x.unit)}"
             return check.verdict(
                 False, text, when_s=float(x.time_s[row]), by=abs(float(at) - wanted), unit=x.unit, lanes=[lane]
             )
     text = f"the {name} was off by at most {number(far, x.unit)} over {number(path.length, x.unit)}, {where}"
-    return check.verdict(
-        True, f"{text}; {nearest(within - far, x.unit, when)}", when_s=when, by=within - far, unit=x.unit, lanes=[lane]
-    )
+    room = max(within - far, 0.0)
+    text += f"; {nearest(room, x.unit, when)}"
+    return check.verdict(True, text, when_s=when, by=room, unit=x.unit, lanes=[lane])

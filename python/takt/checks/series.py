@@ -18,6 +18,10 @@ from takt.verdict import Interval, Lane, Trace, Verdict, number, seconds
 P = ParamSpec("P")
 Mask = npt.NDArray[np.bool_]
 
+ROUNDING = 1e-9  # relative difference of numbers that count as equal
+NEAR_ZERO = 1e-3  # to numbers smaller than that it is relative to that: 1e-12, in the signal's unit
+LAST_PLACES = 16 * float(np.finfo(np.float64).eps)  # relative: what rounding of two numbers leaves in their difference
+
 SHARE_IN_COMMON = 0.9  # of the samples of two components; the rest may have got lost
 
 CAM_AXES = ("x", "y")  # in units of their own
@@ -242,6 +246,20 @@ def unwrapped(series: Series) -> FloatArray:
     if series.modulus is None:
         return series.values
     return np.unwrap(series.values, period=series.modulus)
+
+
+def slack(level: float) -> float:
+    """What a value may differ from a number and still count as equal to it."""
+    return ROUNDING * max(abs(level), NEAR_ZERO)
+
+
+def beyond(difference: FloatArray, tolerance: float, level: float) -> FloatArray:
+    """By how much absolute differences of numbers up to `level` exceed a tolerance; above 0 only where by more than
+    rounding: a billionth of the tolerance, and the last places of the numbers."""
+    excess = np.abs(difference) - tolerance
+    kept = excess <= slack(tolerance) + LAST_PLACES * abs(level)
+    excess[kept] = np.minimum(excess[kept], 0)
+    return excess
 
 
 def runs(mask: Mask) -> list[tuple[int, int]]:

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from takt.checks.series import Check, Series, UndecidedError, decided, runs
-from takt.recording import Recording
+from takt.checks.series import Check, Series, UndecidedError, beyond, decided, runs
+from takt.recording import FloatArray, Recording
 from takt.verdict import Bound, Lane, Verdict, number, seconds
 
 
@@ -37,7 +37,7 @@ def reaches(
     s = check.series(component, signal)
     distance = np.abs(s.error_to(position))
     lane = _lane(_with_aftermath(recording, s), position, tolerance)
-    inside = np.flatnonzero(distance <= tolerance)
+    inside = np.flatnonzero(_beyond(s, position, tolerance) <= 0)
     if len(inside):
         when = float(s.time_s[inside[0]])
         early = seconds(by - when)
@@ -88,7 +88,7 @@ def settles(
     end = deadline + hold if hold is not None else max(float(whole[-1]) if len(whole) else deadline, deadline)
     check = Check("settles", recording, (component,), (begin, end))
     s = check.series(component, signal)
-    excess = np.abs(s.error_to(position)) - tolerance
+    excess = _beyond(s, position, tolerance)
     slack = 1e-9 * max(1.0, abs(end))  # times are sums: what misses the deadline by rounding is in time
     stays = [
         (a, b) for a, b in runs(excess <= 0) if hold is None or s.time_s[b] - s.time_s[a] >= _held(s, hold) - slack
@@ -101,7 +101,7 @@ def settles(
     if stays and s.time_s[stays[0][0]] <= deadline + slack:
         first, last = stays[0]
         when = float(s.time_s[first])
-        room = float(-np.max(excess[first : last + 1]))
+        room = abs(float(np.max(excess[first : last + 1])))
         return check.verdict(
             True,
             f"{component} settled at {asked} {how_long} {seconds(when - begin)} after {seconds(begin)}",
@@ -151,8 +151,12 @@ def _later(
         rest = Check("", recording, (component,), (after, end)).series(component, signal)
     except UndecidedError:  # the rest only makes the sentence kinder
         return None
-    there = np.flatnonzero(np.abs(rest.error_to(position)) <= tolerance)
+    there = np.flatnonzero(_beyond(rest, position, tolerance) <= 0)
     return float(rest.time_s[there[0]]) if len(there) else None
+
+
+def _beyond(s: Series, position: float, tolerance: float) -> FloatArray:
+    return beyond(s.error_to(position), tolerance, max(abs(position), s.modulus or 0.0))
 
 
 def _lane(s: Series, position: float, tolerance: float) -> Lane:

@@ -40,14 +40,14 @@ class Options:
     `dialect`: one of DIALECTS; None: the one that the program's own lines tell. `leave_out`: words that are left out,
     with those that belong to them: "M7", "G41", "A". `delete_blocks`: lines that begin with / are skipped. `offsets`:
     where the zeros of coordinate systems lie on the machine, mm, by their names. `parameters`: values by number or name
-    ("5410", "_depth"). `subroutines`: folders with files of subs, beside the program's own."""
+    ("5410", "_depth"). `subroutines`: a folder with files of subs, or several, beside the program's own."""
 
     dialect: str | None = None
     leave_out: Iterable[str] = ()
     delete_blocks: bool = False
     offsets: Mapping[str, Point] = dataclasses.field(default_factory=dict)
     parameters: Mapping[str, float] = dataclasses.field(default_factory=dict)
-    subroutines: Iterable[str | PathLike[str]] = ()
+    subroutines: str | PathLike[str] | Iterable[str | PathLike[str]] = ()
 
     def checked(self) -> Options:
         """The same with names as programs write them. Raises ToolpathError."""
@@ -72,6 +72,12 @@ class Options:
                 raise ToolpathError(f"parameters: {name}: expected a number, found {value}")
         return dataclasses.replace(self, leave_out=tuple(names), offsets=offsets, parameters=parameters)
 
+    @property
+    def folders(self) -> list[Path]:
+        """Those of `subroutines`, which may be a single one."""
+        given = self.subroutines
+        return [Path(one) for one in ([given] if isinstance(given, str | PathLike) else given)]
+
 
 def read_gcode(
     path: str | PathLike[str],
@@ -87,7 +93,7 @@ def read_gcode(
             text = decode(file.read(MOST_BYTES + 1))
     except LineError as error:
         raise ToolpathError(f"{path}: {error}") from None
-    given = dataclasses.replace(given, subroutines=[Path(path).parent, *given.subroutines])
+    given = dataclasses.replace(given, subroutines=[Path(path).parent, *given.folders])
     return parse_gcode(text, start, tolerance, given, source=str(path))
 
 
@@ -110,7 +116,7 @@ def parse_gcode(
         raise ToolpathError(f"{error.place or source}: {error}") from None
     builder = PathBuilder(start, tolerance)
     machine = Machine(builder, Offsets(given.offsets), dialect.name, leave_out, lambda: runner.place())
-    folders = [Path(one) for one in given.subroutines]
+    folders = given.folders
 
     def find(name: str) -> Text | None:
         if not _FILE_NAME.fullmatch(name):

@@ -18,6 +18,7 @@ from takt.routing.loop import Loop, go_round
 from takt.routing.order import Shift, Step, ends_of, in_time, shifts_of, shorter, steps_of
 from takt.routing.rings import by_rules
 from takt.routing.streets import SAME, RoutingError, Sweep, read_streets
+from takt.routing.surface import may_move_of
 
 if TYPE_CHECKING:
     from takt.session import Session
@@ -103,7 +104,7 @@ def plan_routes(
     if may_move is True:
         free: set[str] = set(names)
     else:
-        free = set(may_move or ())
+        free = set(may_move_of(may_move))
     for name in [*targets, *free]:
         session.mover(name)
         if name not in movers:

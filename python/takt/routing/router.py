@@ -31,6 +31,7 @@ from takt.routing.surface import (
     check_can_move,
     free_of,
     make_plan,
+    names_of_key,
     orders_of,
 )
 from takt.routing.surface_journey import dynamics_of
@@ -576,11 +577,10 @@ def router_for(
     session: Session, targets: Targets, movers: Iterable[str] | None, options: Mapping[str, Any]
 ) -> SurfaceRouter:
     """The router of the session where these movers are: with these options, if any are given."""
-    names = list(movers or ())
     if isinstance(targets, Mapping):
-        names = [name for key in targets for name in ([key] if isinstance(key, str) else key)]
+        names = [name for key in targets for name in names_of_key(key)]
     else:
-        names = names or [name for name, mover in session.movers.items() if can_move(mover)]
+        names = list(movers or ()) or [name for name, mover in session.movers.items() if can_move(mover)]
     number = session.mover(names[0]).coordinate_system if names and session.parts else 0
     known = session._routers.get(number)
     if known is not None and (not options or known.given == options):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from takt import _core
 from takt.counted import counted
+from takt.names import names_in
 from takt.routing.raster import APART, Point, Raster, extent_of, make_raster
 from takt.routing.streets import RoutingError
 from takt.routing.traveller import DYNAMICS, STANDS
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 EFFORT = 3_000  # search states of the improvement, at least
 EFFORT_BY_MOVERS = 50  # times the square of the number of movers
 MOST_EFFORT = 500_000  # 2 to 5 s of planning
+MOST_RUN_S = 1e5  # the longest run: the planner compares sums of such times to a nanosecond
 
 
 @dataclass(frozen=True)
@@ -174,7 +176,7 @@ def orders_of(session: Session, targets: Targets, movers: Iterable[str] | None) 
     if not isinstance(targets, Mapping):
         points = tuple(_point(f"target {i}", target) for i, target in enumerate(targets, 1))
         able = [name for name, mover in session.movers.items() if _cannot_move(mover) is None]
-        wanted = able if movers is None else list(dict.fromkeys(movers))
+        wanted = able if movers is None else list(dict.fromkeys(names_in(movers, "movers", "mover")))
         if len(points) > len(wanted):
             raise RoutingError(f"{counted(len(points), 'target')} for {counted(len(wanted), 'mover')}")
         return [Order(tuple(wanted), points, False)]
@@ -185,7 +187,7 @@ def orders_of(session: Session, targets: Targets, movers: Iterable[str] | None) 
         if isinstance(key, str):
             orders.append(Order((key,), (_point(f"the target of mover {key}", target),), True))
             continue
-        names = tuple(dict.fromkeys(key))
+        names = names_of_key(key)
         said = ", ".join(names)
         if not isinstance(target, Iterable):
             raise RoutingError(f"the targets of movers {said} are a list of X and Y in mm, not {target!r}")
@@ -201,11 +203,25 @@ def orders_of(session: Session, targets: Targets, movers: Iterable[str] | None) 
     return orders
 
 
+def names_of_key(key: Any) -> tuple[str, ...]:
+    """The movers of a key of targets: a name, or a tuple of names."""
+    if isinstance(key, str):
+        return (key,)
+    if not isinstance(key, Iterable):
+        raise TypeError(f"targets: a mover goes by its name, not by {key!r}")
+    return tuple(dict.fromkeys(names_in(key, "targets", "mover")))
+
+
+def may_move_of(may_move: bool | Iterable[str]) -> list[str]:
+    """The movers that may be moved aside, where they are given by name."""
+    return [] if may_move is False or may_move is None else list(names_in(may_move, "may_move", "mover"))
+
+
 def free_of(session: Session, may_move: bool | Iterable[str]) -> list[str]:
     """Movers that may be moved aside."""
     if may_move is True:
         return [name for name, mover in session.movers.items() if _cannot_move(mover) is None]
-    return list(may_move or ())
+    return may_move_of(may_move)
 
 
 def can_move(mover: Mover) -> bool:
@@ -262,6 +278,13 @@ def make_plan(
             pools[number[name]] = pool
     routed = [session.mover(name) for name in names]
     limits = {key: min((_limit(m, key, options.dynamics.get(key)) for m in routed), default=1.0) for key in DYNAMICS}
+    longest = (max(raster.width, raster.height) - 1) * raster.pitch
+    if (takes_s := _core.run_duration(longest, **limits)) > MOST_RUN_S:
+        said = ", ".join(f"{key} {value:.6g}" for key, value in limits.items())
+        raise RoutingError(
+            f"the movers are too slow for a plan: a run along the surface takes {takes_s:.0f} s, more than "
+            f"{MOST_RUN_S:.0f} s, with {said}"
+        )
     routes = _core.plan_surface(
         width=raster.width,
         height=raster.height,

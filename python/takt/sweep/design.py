@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import math
 import zlib
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from statistics import NormalDist
 from typing import Any
@@ -19,6 +19,7 @@ import numpy as np
 
 from takt.changes import Value, value_of
 from takt.errors import TaktError
+from takt.names import names_in
 
 BLOCK = 1024  # draws that are made at once
 LAWS = {  # of samples: what stands behind them
@@ -46,11 +47,11 @@ class Grid:
     count: int = 0
 
     @staticmethod
-    def of(text: str) -> Grid:
-        """NAME=LOW:HIGH:COUNT or NAME=A,B,C."""
+    def of(text: str, texts: Collection[str] = ()) -> Grid:
+        """NAME=LOW:HIGH:COUNT or NAME=A,B,C. texts: keys whose listed values are texts."""
         key, said = _split(text, "--grid", "velocity=100:500:9 or mode=slow,fast")
         if ":" not in said:
-            listed = tuple(value_of(one.strip()) for one in said.split(",") if one.strip())
+            listed = _listed(said, key in texts)
             return Grid(key, text, listed, count=len(listed))
         parts = said.split(":")
         if len(parts) != 3:
@@ -77,8 +78,8 @@ class Sample:
     count: int
 
     @staticmethod
-    def of(text: str) -> Sample:
-        """NAME=LAW:...:COUNT."""
+    def of(text: str, texts: Collection[str] = ()) -> Sample:
+        """NAME=LAW:...:COUNT. texts: keys whose listed values are texts."""
         key, said = _split(text, "--sample", "mass=uniform:1:2:100")
         law, *parts = said.split(":")
         if law not in LAWS:
@@ -87,7 +88,7 @@ class Sample:
             raise SweepError(f"--sample {text}: expected NAME={LAWS[law]}")
         count = _count(parts.pop(), "--sample", text)
         if law == "choice":
-            choices = tuple(value_of(one.strip()) for one in parts[0].split(",") if one.strip())
+            choices = _listed(parts[0], key in texts)
             if not choices:
                 raise SweepError(f"--sample {text}: there is nothing to choose from")
             return Sample(key, text, law, choices, count)
@@ -128,9 +129,11 @@ class Design:
     seed: int = 0
 
     @staticmethod
-    def of(grid: Sequence[str], sample: Sequence[str], seed: int = 0) -> Design:
-        """Raises SweepError where there is no run in it."""
-        design = Design(tuple(map(Grid.of, grid)), tuple(map(Sample.of, sample)), seed)
+    def of(grid: Sequence[str], sample: Sequence[str], seed: int = 0, texts: Collection[str] = ()) -> Design:
+        """texts: keys whose listed values are texts. Raises SweepError where there is no run in it."""
+        grids = tuple(Grid.of(one, texts) for one in names_in(grid, "grid", "key", "texts"))
+        samples = tuple(Sample.of(one, texts) for one in names_in(sample, "sample", "key", "texts"))
+        design = Design(grids, samples, seed)
         keys = design.keys
         if not keys:
             raise SweepError("nothing is varied: give --grid velocity=100:500:9 or --sample mass=uniform:1:2:100")
@@ -157,6 +160,17 @@ class Design:
         return math.prod(one.count for one in self.grids) * self.draws
 
     @property
+    def kinds(self) -> Iterator[tuple[str, Value]]:
+        """Keys with values that stand for all that they have: what is listed, the first two and the last one of even
+        distances (whole numbers where these are), the first one that is drawn."""
+        for grid in self.grids:
+            for i in range(grid.count) if grid.listed else sorted({0, min(1, grid.count - 1), grid.count - 1}):
+                yield grid.key, grid.value(i)
+        for one in self.samples:
+            drawn = one.parameters if one.law == "choice" else (one.value(self.seed, 0),)
+            yield from ((one.key, value) for value in drawn)
+
+    @property
     def draws(self) -> int:
         """At each point of the grid."""
         return self.samples[0].count if self.samples else 1
@@ -178,6 +192,12 @@ def _shares(seed: int, key: int, block: int) -> list[float]:
     bits = np.random.PCG64([seed, key, block]).random_raw(BLOCK)
     shares: list[float] = (((bits >> np.uint64(12)).astype(np.float64) + 0.5) * 2.0**-52).tolist()
     return shares
+
+
+def _listed(said: str, as_texts: bool) -> tuple[Value, ...]:
+    """The values of A,B,C."""
+    given = [one.strip() for one in said.split(",") if one.strip()]
+    return tuple(one if as_texts else value_of(one) for one in given)
 
 
 def _split(text: str, option: str, example: str) -> tuple[str, str]:

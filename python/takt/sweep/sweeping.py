@@ -79,7 +79,7 @@ def sweep(
     from takt.sweep.page import write_page  # what draws takes long to import, and workers need none of it
 
     job = Job(str(scenario), str(machine or ""))
-    design = Design.of(grid, sample, seed)
+    design = Design.of(grid, sample, seed, load_scenario(scenario).texts)
     _check(job, design)
     if workers is not None and workers < 1:
         raise SweepError(f"at least one worker is needed, found {workers}")
@@ -134,7 +134,10 @@ def _make(
 
 
 def _check(job: Job, design: Design) -> None:
-    """Refuses what no run could be made with, before any is."""
-    scenario, changes = with_settings(load_scenario(job.scenario), design.point(0))
+    """Refuses what no run could be made with, and values that are not of the kind of their parameters."""
+    scenario = load_scenario(job.scenario)
+    _, changes = with_settings(scenario, design.point(0))
+    for key, value in design.kinds:
+        with_settings(scenario, {key: value})
     text, file_name = read_machine(job.machine or scenario.machine)
     changed(text, file_name, changes)
