@@ -180,3 +180,52 @@ def test_a_halt_of_a_planet_takes_waits_and_releases_with_it(waits: bool) -> Non
             late = two.wait(for_release=True)
             engine.run(0.1)
             assert not late.final
+
+
+ON_PARTS = """
+name: door
+axes: []
+coordinate_systems: [{name: lower}, {name: upper}]
+parts:
+  - {name: hall, columns: 4, rows: 1, positions: [{coordinate_system: lower}]}
+  - name: door
+    columns: 1
+    rows: 1
+    travel_time_s: 0.3
+    positions:
+      - {coordinate_system: lower, y: 240}
+      - {coordinate_system: lower, x: 240, y: 240}
+      - {coordinate_system: upper}
+movers:
+  - {name: star, reference: door, initial: {x: 120, y: 120}}
+  - {name: planet, reference: hall, initial: {x: 120, y: 120}}
+  - {name: other, reference: hall, initial: {x: 360, y: 120}}
+"""
+
+
+@pytest.mark.parametrize("index", [2, 3])
+@pytest.mark.parametrize("after_s", [0, 0.001, 0.1, 0.299, 0.3])
+def test_a_star_whose_part_is_on_its_way_takes_no_planet(index: int, after_s: float) -> None:
+    """PL-73, PL-80: the part would bring the star elsewhere and the planet with it, onto another mover or off all
+    stators."""
+    engine = Engine(ON_PARTS)
+    star, planet = engine.mover("star"), engine.mover("planet")
+    for mover in engine.movers.values():
+        mover.enable().wait()
+    going = engine.part("door").activate_position(index=index)
+    if after_s:
+        engine.run(after_s)
+    joined = planet.join_formation(star="star")
+    engine.step()
+    assert joined.state.name == "ERROR"
+    assert joined.error_id == 3072
+    assert "door" in joined.sentence
+    going.wait()
+    engine.run(0.1)
+    assert (planet.x, planet.y, planet.formation) == (120, 120, 0)
+    later = planet.join_formation(star="star")
+    if index == 2:  # in the same coordinate system again
+        later.wait(until="reached")
+        assert (planet.x, planet.y, star.x, star.y) == (120, 120, 360, 360)
+    else:
+        assert later.wait_final().error_id != 0

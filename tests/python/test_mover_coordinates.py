@@ -170,6 +170,70 @@ def test_a_velocity_may_be_changed_turned_round_and_taken_away() -> None:
     within_limits(recorder.recording, "a")
 
 
+@pytest.mark.parametrize("straight", [False, True])
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_no_jerk_takes_a_coordinate_beyond_its_maxima(seed: int, straight: bool) -> None:
+    """PL-86: whatever X and Y do, a command with a softer jerk takes the acceleration away in time."""
+    rng = random.Random(seed)
+    engine = engine_of()
+    a = engine.mover("a")
+    with engine.record() as recorder:
+        for _ in range(80):
+            of = rng.choice("xy")
+            jerk = 10 ** rng.uniform(1.5, 5.4)
+            match rng.randrange(8 if straight else 6):
+                case 0:
+                    getattr(a, f"move_{of}")(position=rng.uniform(-2000, 2000), jerk=jerk)
+                case 1:
+                    getattr(a, f"move_relative_{of}")(distance=rng.uniform(-2000, 2000), jerk=jerk)
+                case 2:
+                    getattr(a, f"move_velocity_{of}")(velocity=rng.uniform(-1500, 1500), jerk=jerk)
+                case 3:
+                    getattr(a, f"halt_{of}")(jerk=jerk)
+                case 4 | 5:
+                    getattr(a, f"move_velocity_{of}")(velocity=rng.choice([-1500, 1500]))
+                case 6:
+                    a.halt(jerk=jerk)
+                case _:
+                    x, y = (rng.uniform(-2000, 2000) for _ in "xy")
+                    a.move_to_position(x=x, y=y, jerk=rng.choice([jerk, J]))
+            engine.run(rng.choice([0.02, 0.06, 0.12, 0.2, 0.6, 1.5]))
+            assert a.error == 0
+    within_limits(recorder.recording, "a")
+    if not straight:
+        for of in "xy":
+            assert np.abs(recorder.recording.column("a", f"velocity_{of}")).max() <= EACH * V * (1 + 1e-6)
+            assert np.abs(recorder.recording.column("a", f"acceleration_{of}")).max() <= EACH * A * (1 + 1e-6)
+
+
+@pytest.mark.parametrize(("of", "most"), [("x", EACH * V), ("c", 3600)])
+def test_a_softer_jerk_leaves_the_velocity_asked_for(of: str, most: float) -> None:
+    """PL-86: as fast as commanded in the end, though the acceleration is taken away with more than the jerk given."""
+    fast = {"maximum": {"velocity": 3600, "acceleration": 3600, "jerk": 72000}, "lower": -15, "upper": 15}
+    engine = engine_of(mover={"c": fast})
+    a = engine.mover("a")
+    move = getattr(a, f"move_velocity_{of}")
+    move(velocity=0.99 * most)
+    engine.wait(lambda: getattr(a, f"velocity_{of}") > 0.5 * most, 2)
+    with engine.record() as recorder:
+        move(velocity=0.05 * most, jerk=1000).wait(until="reached", timeout=60)
+    assert getattr(a, f"velocity_{of}") == pytest.approx(0.05 * most)
+    assert np.abs(recorder.recording.column("a", f"velocity_{of}")).max() <= most * (1 + 1e-6)
+
+
+def test_a_softer_halt_of_a_coordinate_stops_as_near_as_one_of_both() -> None:
+    """PL-86: by a jerk that is too soft both stop with the maximum dynamics."""
+    xs = []
+    for one in (True, False):
+        engine = engine_of(mover={"xy": {"maximum": {"velocity": 1500, "acceleration": 2500, "jerk": 12500}}})
+        a = engine.mover("a")
+        a.move_x(position=1350) if one else a.move_to_position(x=1350, y=200)
+        engine.run(0.2)
+        (a.halt_x if one else a.halt)(jerk=100).wait(timeout=60)
+        xs.append(a.x)
+    assert xs[0] == pytest.approx(xs[1], abs=200)
+
+
 @pytest.mark.parametrize("speed", [700, 2000])
 def test_they_take_over_from_a_straight_move_and_the_other_way_round(speed: float) -> None:
     engine = engine_of()

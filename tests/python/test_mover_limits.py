@@ -279,6 +279,56 @@ def test_set_points_from_outside_may_have_any_jerk() -> None:
         expect.within_limits(recorder.recording, "one", acceleration=4000)
 
 
+@pytest.mark.parametrize("how", ["halt", "stop", "missing"])
+@pytest.mark.parametrize("cycles", range(250, 500, 60))
+def test_the_way_back_to_a_track_is_within_the_limits(cycles: int, how: str) -> None:
+    """PL-13, PL-82: relative set points end on a track; what they added and the way along the track each brake by
+    themselves, and the way back begins when both are over."""
+    machine = {
+        "name": "line",
+        "axes": [],
+        "movers": [{"name": "one"}],
+        "tracks": [{"name": "track", "elements": [{"from": {"x": 0, "y": 0}, "to": {"x": 3000, "y": 0}}]}],
+    }
+    with takt.Engine(machine) as engine:
+        one = engine.mover("one")
+        one.enable().wait()
+        engine.track("track").enable().wait()
+        one.join_track(track="track").wait()
+        one.move_on_track(position=2900, velocity=300)
+        with engine.record() as recorder:
+            engine.run(0.1)
+            one.start_external_setpoint_generation(mode="relative")
+            w = 2 * np.pi
+            for k in range(1, cycles):
+                y, v, a = (1 - np.cos(w * k * 1e-3)), w * np.sin(w * k * 1e-3), w * w * np.cos(w * k * 1e-3)
+                one.set_external_setpoint(y=20 * y, velocity_y=20 * v, acceleration_y=20 * a)
+                engine.step()
+            if how == "halt":
+                one.halt(deceleration=300, jerk=3000)
+            elif how == "stop":
+                one.stop_external_setpoint_generation()
+            engine.run(3)
+            if how == "missing":
+                one.reset()
+                engine.run(0.01)
+            else:
+                one.move_on_track(position=2000)
+                engine.run(2)
+        assert one.y == 0
+    recording = recorder.recording
+    verdict = checks.within_limits(recording, "one")
+    assert verdict.passed, verdict.sentence
+    # From where it is back and at rest all is checked again.
+    last = len(recording["one"]) - 2
+    assert not checks.within_limits(changed(recording, "acceleration_y", put(last, 9000)), "one").passed
+    # The way back has each cycle for itself.
+    ax, ay, vx = (recording.column("one", signal) for signal in ("acceleration_x", "acceleration_y", "velocity_x"))
+    ended = int(np.nonzero(recording["one"]["external"] > 0)[0].max())
+    rested = ended + int(np.argmax((vx == 0)[ended:]))
+    assert np.hypot(np.diff(ax), np.diff(ay))[rested - 1 :].max() <= 200_000 * 1e-3 * (1 + 1e-6)
+
+
 def test_positions_in_the_plane_are_asked_by_name(recording: Recording) -> None:
     with pytest.raises(ValueError, match="for positions of the mover one say which: signal='x'"):
         checks.within_limits(recording, "one", position=(0, 100))

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+import random
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import takt
 from machines import new_url, running
 from takt import Engine, expect
+from test_surface import Watch
 
 TWO_ON_A_LINE = """
 name: line
@@ -508,3 +511,112 @@ def test_a_far_place_on_a_loop_is_planned_as_fast_as_a_near_one() -> None:
         assert time.process_time() - before < 0.1
         assert not move.final
         assert one.track_position > 0
+
+
+# --- relative set points beside other movers ---
+
+
+def line(x0: float, y0: float, x1: float, y1: float) -> dict[str, Any]:
+    return {"elements": [{"from": {"x": x0, "y": y0}, "to": {"x": x1, "y": y1}}]}
+
+
+def side_by_side(x: float, y: float, apart: float = 180, **of_one: Any) -> Engine:
+    """Two tracks side by side, and one that ends at the upper one without a node; all enabled. Mover two is at x, y."""
+    engine = Engine(
+        {
+            "name": "tracks",
+            "axes": [],
+            "movers": [
+                {"name": "one", "initial": {"x": 500, "y": 0}, **of_one},
+                {"name": "two", "initial": {"x": x, "y": y}},
+            ],
+            "tracks": [
+                {"name": "lower", **line(0, 0, 1400, 0)},
+                {"name": "upper", **line(400, apart, 1000, apart)},
+                {"name": "across", **line(700, 900, 700, apart)},
+            ],
+        }
+    )
+    for component in (*engine.movers.values(), *engine.tracks.values()):
+        component.enable().wait()
+    return engine
+
+
+@pytest.mark.parametrize("moves", [(), ("one",), ("two",), ("one", "two")], ids=" ".join)
+@pytest.mark.parametrize("where", ["free", "upper", "across", "joining", "ahead", "behind"])
+@pytest.mark.parametrize("to", ["towards", "away"])
+def test_relative_set_points_lead_into_no_mover(where: str, moves: tuple[str, ...], to: str) -> None:
+    """PL-13, PL-81: neither off every track nor on the same one or another one, at rest or in motion."""
+    places = {"across": (700, 190), "ahead": (860, 0), "behind": (300, 0), "joining": (680, 200)}
+    engine = side_by_side(*places.get(where, (680, 180)))
+    one, two = engine.movers.values()
+    if where in ("upper", "across"):
+        two.join_track(track=where).wait()
+    one.join_track(track="lower").wait()
+    if where in ("ahead", "behind"):
+        two.join_track(track="lower").wait()
+    one.move_on_track(position=650).wait()
+    if where == "behind":
+        two.move_on_track(position=440).wait()
+    watch = Watch(engine)
+    if "one" in moves:
+        one.move_on_track(position=600 if where == "ahead" else 700, velocity=50)
+    if "two" in moves and where == "joining":
+        two.join_track(track="upper", velocity=10)
+    elif "two" in moves and where == "free":
+        two.move_x(position=720, velocity=30)
+    elif "two" in moves:
+        by = {"across": 9, "behind": -40}.get(where, 40)
+        two.move_on_track(position=two.track_position + by, velocity=10)
+    engine.run(0.3)
+    sense = 1 if to == "towards" else -1
+    sense, axis = (sense if where != "behind" else -sense, "x") if where in ("ahead", "behind") else (sense, "y")
+    w, amplitude = 2 * np.pi, 45 if axis == "y" else 80
+    led = one.start_external_setpoint_generation(mode="relative")
+    for k in range(1, 1000):
+        t = k * 1e-3
+        if led.final:
+            break
+        more = (1 - np.cos(w * t), w * np.sin(w * t), w * w * np.cos(w * t))
+        names = (axis, f"velocity_{axis}", f"acceleration_{axis}")
+        one.set_external_setpoint(**{n: sense * amplitude * float(m) for n, m in zip(names, more, strict=True)})
+        engine.step()
+    ended = led.final
+    one.stop_external_setpoint_generation()
+    engine.run(1)
+    assert not watch.overlaps
+    if to == "towards":
+        assert led.error_id == 3024
+        assert "two" in led.sentence
+    elif axis == "y":
+        assert not ended, led.sentence
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_relative_set_points_beside_a_track_at_any_time(seed: int) -> None:
+    """PL-81: with any speed, distance and end of the motion beneath."""
+    rng = random.Random(seed)
+    y = rng.choice([180, 190, 200])
+    engine = side_by_side(700, y, y, xy={"maximum": {"velocity": 1000, "acceleration": 5000, "jerk": 50_000}})
+    one, two = engine.movers.values()
+    one.join_track(track="lower").wait()
+    two.join_track(track="upper").wait()
+    watch = Watch(engine)
+    for _ in range(3):
+        one.move_on_track(position=1100 if one.track_position < 700 else 300, velocity=rng.choice([100, 200, 400]))
+        engine.run(rng.uniform(0, 1))
+        led = one.start_external_setpoint_generation(mode="relative")
+        w, amplitude, brake = 2 * np.pi * rng.choice([1, 1.5]), rng.uniform(10, 60), rng.randrange(300, 2000)
+        for k in range(1, 2000):
+            if led.final:
+                break
+            t = k * 1e-3
+            v, a = amplitude * w * np.sin(w * t), amplitude * w * w * np.cos(w * t)
+            one.set_external_setpoint(y=amplitude * (1 - np.cos(w * t)), velocity_y=v, acceleration_y=a)
+            if k == brake:
+                one.move_on_track(position=one.track_position, deceleration=rng.choice([300, 10_000]))
+            engine.step()
+        engine.run(2)
+        one.reset().wait()
+        one.move_on_track(position=one.track_position).wait()
+    assert not watch.overlaps

@@ -36,9 +36,16 @@ Profile& Of(PlaneMotion& motion, Coordinate which) {
   return which == kX ? motion.along : motion.across;
 }
 
-bool PlanToGoal(trajectory::Planner& planner, const KinematicState& from, const Goal& goal, Profile& out) {
-  if (!goal.active) return planner.Stop(from, goal.limits, out).ok();
-  return planner.ToPosition(from, goal.target, 0, goal.limits, out).ok();
+// Within the goal's limits; with the maximum dynamics where a jerk that soft would take the acceleration away too late
+// to keep the coordinate's maximum velocity.
+bool PlanToGoal(const Context& c, const KinematicState& from, const Goal& goal, Profile& out) {
+  const Limits maximum = LimitsOfEach(c.params.xy.maximum.limits());
+  const auto plan = [&](const Limits& limits) {
+    if (!goal.active) return c.planner.Stop(from, limits, out).ok();
+    return c.planner.ToPosition(from, goal.target, 0, limits, out).ok();
+  };
+  if (!plan(goal.limits)) return false;
+  return KeepsVelocity(out, maximum.velocity) || plan(WithMaximumDynamics(goal.limits, maximum));
 }
 
 std::array<Goal, 2> RestingGoals(const Context& c) {
@@ -74,7 +81,7 @@ std::optional<Plan> PlanEach(const Context& c, const State& s, Coordinate which,
     y.Skip(now);
     move.motion = MotionOfEach(x, y);
     Profile& its = Of(move.motion, which);
-    if (!PlanToGoal(c.planner, Of(at, which), goal, its)) return {};
+    if (!PlanToGoal(c, Of(at, which), goal, its)) return {};
     plan.duration = its.duration();
     move.motion = MotionOfEach(move.motion.along, move.motion.across);
     return plan;
@@ -146,7 +153,9 @@ Answer MoveEndlessly(const Given& g, Coordinate which, double velocity, const Li
   const double sense = std::copysign(1.0, velocity);
   const PlaneState at = At(g.s.plane.motion, Elapsed(c, g.s.plane.begin));
   const KinematicState from = which == kX ? at.x : at.y;
-  const double stop = trajectory::StopPosition(from, limits);
+  Profile rest;
+  if (!PlanToGoal(c, from, {.limits = limits}, rest)) return Refused(ErrorId::kPlanning);
+  const double stop = rest.end().position;
   std::optional<Plan> best;
   planar::Verdict end{ErrorId::kTargetBehindLimit, {}};
   const auto reaches = [&](double way) {
@@ -275,8 +284,7 @@ constexpr Slot kSlotOfEndless[] = {kMoveX, kMoveY, kMoveC};
 
 bool PlanToGoals(const Context& c, const PlaneState& from, PlaneMove& move) noexcept {
   Profile x, y;
-  if (!PlanToGoal(c.planner, from.x, move.goals[0], x) || !PlanToGoal(c.planner, from.y, move.goals[1], y))
-    return false;
+  if (!PlanToGoal(c, from.x, move.goals[0], x) || !PlanToGoal(c, from.y, move.goals[1], y)) return false;
   move.motion = MotionOfEach(x, y);
   return true;
 }

@@ -14,9 +14,7 @@ using trajectory::Profile;
 constexpr double kSlack = 1e-9;  // of a limit or window, deg or mm
 
 bool Holds(const Profile& profile, const CoordinateParams& params) {
-  const double speed = params.maximum.velocity * (1 + 1e-9);
-  const Profile::Range velocity = profile.VelocityRange();
-  if (velocity.max > speed || velocity.min < -speed) return false;
+  if (!KeepsVelocity(profile, params.maximum.velocity)) return false;
   const Profile::Range range = profile.PositionRange();
   // One that is outside already may come back.
   return range.min >= std::min(params.lower, profile.start().position) - kSlack &&
@@ -35,10 +33,22 @@ double RoundTowardsZero(double x) {
 
 }  // namespace
 
+bool KeepsVelocity(const Profile& profile, double maximum) noexcept {
+  const double speed = maximum * (1 + 1e-9);
+  const Profile::Range velocity = profile.VelocityRange();
+  return velocity.max <= speed && velocity.min >= -speed;
+}
+
+Limits WithMaximumDynamics(const Limits& limits, const Limits& maximum) noexcept {
+  Limits out = maximum;
+  out.velocity = std::min(limits.velocity, maximum.velocity);
+  return out;
+}
+
 bool PlanCoordinate(trajectory::Planner& planner, const KinematicState& from, double position, const Limits& limits,
                     const CoordinateParams& params, Profile& out) noexcept {
   Profile plan;
-  for (const Limits& as : {limits, params.maximum.limits()}) {
+  for (const Limits& as : {limits, WithMaximumDynamics(limits, params.maximum.limits())}) {
     if (!planner.ToPosition(from, position, 0, as, plan).ok() || !Holds(plan, params)) continue;
     out = plan;
     return true;

@@ -12,7 +12,12 @@ namespace takt::mover {
 
 inline constexpr double kWindow = 90;  // deg from one window of C to the next
 
-// To a position, as these limits say; harder, up to the maximum, where the mover would leave the coordinate's limits or
+// Returns whether the speed stays within `maximum` [mm/s, deg/s].
+bool KeepsVelocity(const trajectory::Profile& profile, double maximum) noexcept;
+// Returns the maximum acceleration, deceleration and jerk with the velocity that was asked for.
+trajectory::Limits WithMaximumDynamics(const trajectory::Limits& limits, const trajectory::Limits& maximum) noexcept;
+
+// To a position, as these limits say; with the maximum dynamics where the mover would leave the coordinate's limits or
 // its largest speed else. False: there is no such motion.
 bool PlanCoordinate(trajectory::Planner& planner, const KinematicState& from, double position,
                     const trajectory::Limits& limits, const CoordinateParams& params,

@@ -198,13 +198,14 @@ ObjectInfo TakeCourseOff(const Context& now, const State& s, const SetPoint& at)
   Area kind = KindOf(c, s, s.others.back(), at);
   AddOff(c, s, at, s.external.given, kind);
   const Course course = CourseOnTrack(c, kind);
-  // Traffic looks at those on tracks in each cycle, as long as one of both moves.
-  const auto passes = [&](std::uint32_t k, bool there) {
-    const planar::Rider& other = c.streets.riders[k];
-    return !there && other.on && !(planar::Rests(c.rider().at) && planar::Rests(other.at));
-  };
-  const std::uint32_t found = GuardOf(c).Find(c.index, s.system, course, passes);
-  if (found == kNobody) GuardOf(c).Put(c.index, course);
+  planar::Guard& guard = GuardOf(c);
+  Streets& streets = c.streets;
+  const std::uint32_t found =
+      streets.traffic.FindAcross(c.cycle, streets.network, streets.riders, guard, c.index, kind, course);
+  if (found == kNobody) {
+    guard.figure(c.index).kind = kind;  // movers that come later in this cycle see it
+    guard.Put(c.index, course);
+  }
   return OneInTheWay(found);
 }
 

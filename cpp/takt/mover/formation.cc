@@ -257,6 +257,7 @@ Answer CarryOut(const Given& g, const JoinFormation& command) noexcept {
   const State& star = fleet.states[index];
   if (IsPlanet(star)) return Refused(ErrorId::kFormationChain, object);
   if (const ErrorId why = WhyNot(star, Ask::kJoinFormation); why != ErrorId::kNone) return Refused(why, object);
+  if (IsAway(g.c, star)) return Refused(ErrorId::kPartDisabled, ObjectAt(ObjectKind::kPart, star.part));
   if (star.system != s.system) return Refused(ErrorId::kReference, object);
   if (!IsResting(g.c, s)) return Refused(ErrorId::kObjectMoves, itself);
   if (!IsResting(g.c, star)) return Refused(ErrorId::kObjectMoves, object);

@@ -28,10 +28,15 @@ Context NextTo(const Context& c) {
   return next;
 }
 
-// At rest on its old line it goes on to its target; off its place on a track not before that leads it nowhere.
+// On a track X and Y have moved when this cycle began, or move in it.
+bool MovesOnTrack(const Context& c, const State& s) {
+  return GoesAlongTrack(c, s) || !planar::Rests(s.set_point[kX]) || !planar::Rests(s.set_point[kY]);
+}
+
+// At rest on its old line it goes on to its target; off its pose on a track once it rests there.
 void GoOn(const Context& c, State& s) {
   if (!s.plane.waits || Elapsed(c, s.plane.begin) < DurationOf(s.plane.motion)) return;
-  if (IsOnTrack(s) ? GoesAlongTrack(c, s) : IsHeld(c, s)) return;
+  if (IsOnTrack(s) ? MovesOnTrack(c, s) : IsHeld(c, s)) return;
   const PlaneState from = At(s.plane.motion, Elapsed(c, s.plane.begin));
   if (s.plane.each) {
     if (!PlanToGoals(c, from, s.plane)) return Fail(c, ErrorId::kPlanning, s);

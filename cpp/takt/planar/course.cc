@@ -166,13 +166,15 @@ bool ApartByOrder(const Network& network, const Rider& behind, const Braking& be
   const double chord = curvature * gap > 1e-9 ? 2 / curvature * maths::Sin(curvature * gap / 2) : gap;
   if (chord >= ReachOf(behind_kind) + ReachOf(ahead_kind)) return true;
   const bool turns = behind_kind.most_c > behind_kind.least_c || ahead_kind.most_c > ahead_kind.least_c;
-  if (turns || behind_kind.count > 0 || ahead_kind.count > 0) return false;
-  // What both cover together along and across the one behind.
+  if (turns) return false;
+  // What both cover together along and across the one behind, grown on all sides by how far both are off the track.
+  const double off = ReachOf(behind_kind) - RadiusOf(behind_kind) + behind_kind.margin + ReachOf(ahead_kind) -
+                     RadiusOf(ahead_kind) + ahead_kind.margin;
   const double turned = (ahead_kind.least_c - behind_kind.least_c) * kDegree;
   const double cosine = std::abs(maths::Cos(turned)), sine = std::abs(maths::Sin(turned));
   const Footprint &own = behind_kind.mover, &its = ahead_kind.mover;
-  const double half_width = (own.width + cosine * its.width + sine * its.height) / 2;
-  const double half_height = (own.height + sine * its.width + cosine * its.height) / 2;
+  const double half_width = (own.width + cosine * its.width + sine * its.height) / 2 + off;
+  const double half_height = (own.height + sine * its.width + cosine * its.height) / 2 + off;
   const double seen = direction - behind_kind.least_c * kDegree;
   return chord >= MostReach(half_width, half_height, seen - bend, seen + bend) - kSame;
 }

@@ -27,6 +27,26 @@ constexpr double kInStepSpeed = 1e-3;
 // mm: further than anything is planned on a loop.
 constexpr double kFarAhead = 1e5;
 
+// Returns whether two movers on tracks keep apart while both brake, though their courses overlap: one behind the other
+// along the track, or by the time at which each comes past.
+bool KeepApart(const Scene& scene, const Network& network, std::uint32_t i, const BrakingMover& own, std::uint32_t k,
+               const BrakingMover& its, double period_s) {
+  const auto in_order = [&](const BrakingMover& behind, const BrakingMover& ahead, double apart) {
+    return ApartByOrder(network, behind.rider, behind.braking, behind.kind, ahead.braking, ahead.kind, apart);
+  };
+  // `ahead` is the next one in the direction of `of`.
+  const auto follows = [&](const Now& now, const BrakingMover& of, const BrakingMover& ahead) {
+    const double apart = now.leader_offset;
+    return of.rider.direction > 0 ? in_order(of, ahead, apart) : in_order(ahead, of, -apart);
+  };
+  if (scene.now[i].leader == k) {
+    if (follows(scene.now[i], own, its)) return true;
+  } else if (scene.now[k].leader == i && follows(scene.now[k], its, own)) {
+    return true;
+  }
+  return ApartInTime(network, own, its, period_s);
+}
+
 }  // namespace
 
 class Traffic::Step_ {
@@ -242,32 +262,10 @@ class Traffic::Step_ {
   }
   bool IsInOrder(std::uint32_t i, std::uint32_t k) const { return s_.now[i].leader == k || s_.now[k].leader == i; }
 
-  // Whether another mover on a track keeps away though the courses overlap: both brake one behind the other.
   bool KeepsAway(std::uint32_t i, const Braking& braking, std::uint32_t k) const {
-    const Rider &r = riders_[i], &other = riders_[k];
-    if (!other.on || !guard_->figure(k).on_track) return false;
-    const Area &own = KindOf(i), &its = KindOf(k);
-    const Braking& its_braking = s_.now[k].braking;
-    const auto in_order = [&](const Rider& behind, const Braking& behind_brakes, const Area& behind_kind,
-                              const Braking& ahead_brakes, const Area& ahead_kind, double apart) {
-      return ApartByOrder(network_, behind, behind_brakes, behind_kind, ahead_brakes, ahead_kind, apart);
-    };
-    if (s_.now[i].leader == k) {
-      const double apart = s_.now[i].leader_offset;
-      const bool forward = r.direction > 0;
-      if (forward ? in_order(r, braking, own, its_braking, its, apart)
-                  : in_order(other, its_braking, its, braking, own, -apart)) {
-        return true;
-      }
-    } else if (s_.now[k].leader == i) {
-      const double apart = s_.now[k].leader_offset;
-      const bool forward = other.direction > 0;
-      if (forward ? in_order(other, its_braking, its, braking, own, apart)
-                  : in_order(r, braking, own, its_braking, its, -apart)) {
-        return true;
-      }
-    }
-    return ApartInTime(network_, {r, braking, own}, {other, its_braking, its}, period());
+    if (!riders_[k].on || !guard_->figure(k).on_track) return false;
+    return KeepApart(s_, network_, i, {riders_[i], braking, KindOf(i)}, k, {riders_[k], s_.now[k].braking, KindOf(k)},
+                     period());
   }
 
   // Whether the guard lets it take this step; then its course is that.
@@ -528,6 +526,23 @@ std::uint32_t Traffic::TooNear(const Cycle& cycle, const Network& network, std::
   RightOfWay all(scene_, network, riders, cycle.period_s);
   all.Begin();
   return all.TooNear(mover);
+}
+
+std::uint32_t Traffic::FindAcross(const Cycle& cycle, const Network& network, std::span<const Rider> riders,
+                                  Guard& guard, std::uint32_t mover, const Area& kind, const Course& course) noexcept {
+  const Rider& own = riders[mover];
+  const Braking braking = Brake(own.at, BrakesOf(own));
+  RightOfWay all(scene_, network, riders, cycle.period_s);
+  bool begun = false;
+  return guard.Find(mover, guard.figure(mover).system, course, [&](std::uint32_t k, bool there) {
+    const Rider& other = riders[k];
+    if (there || !other.on || !guard.figure(k).on_track || (Rests(own.at) && Rests(other.at))) return false;
+    if (!begun) all.Begin();
+    begun = true;
+    const Braking its = Brake(other.at, BrakesOf(other));
+    return KeepApart(scene_, network, mover, {own, braking, kind}, k, {other, its, guard.figure(k).kind},
+                     cycle.period_s);
+  });
 }
 
 std::span<const std::uint32_t> Traffic::On(std::uint32_t track) const noexcept {

@@ -63,6 +63,12 @@ class Traffic {
   std::uint32_t TooNear(const Cycle& cycle, const Network& network, std::span<const Rider> riders,
                         std::uint32_t mover) noexcept;
 
+  // Returns the mover with the least number that this one, turned and as far off its track as `kind` says, would
+  // overlap on `course` if from now on both braked; kNobody: none. Asked between steps, before a mover gets further off
+  // its track.
+  std::uint32_t FindAcross(const Cycle& cycle, const Network& network, std::span<const Rider> riders, Guard& guard,
+                           std::uint32_t mover, const Area& kind, const Course& course) noexcept;
+
   // The movers on a track, from its start to its end. As the last step, or question, left it.
   std::span<const std::uint32_t> On(std::uint32_t track) const noexcept;
   // Movers that were going and had to brake in the last step, against what they follow with.

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from takt.checks.measured import Measured, against, in_range, jerk_against, judge
-from takt.checks.series import Check, Mask, Series
+from takt.checks.series import Check, Mask
 from takt.recording import FloatArray
 from takt.verdict import Verdict
 
@@ -49,7 +49,7 @@ def _in_plane(
     itself: the acceleration there is the one along the track."""
     v, a = (_vector(check, mover, what) for what in ("velocity", "acceleration"))
     along = check.series(mover, "track_acceleration")
-    added = _modes(check, mover) & (check.series(mover, "external").values > 0)
+    added = _added(check, mover)
     push = np.where(added, np.abs(along.values), np.hypot(*a))
     speed = check.series(mover, "velocity_x")
     # Rounding of the direction and the curvature of a track.
@@ -63,7 +63,7 @@ def _in_plane(
     ]
     if len(push) > 1:
         steps = np.hypot(*(np.diff(one) for one in a))
-        steps[_pushed(check, mover)] = 0
+        steps[_pushed(_given(check, mover) | added)] = 0
         label = f"{mover}: jerk (by differences)"
         margin = max(jerk_tolerance, 10 * CURVATURE)
         found.append(jerk_against("jerk", replace(along, values=push), steps, limits["jerk"], margin, label))
@@ -95,7 +95,7 @@ def _alone(
         for what, s in (("velocity", v), ("acceleration", a))
     ]
     if len(a.values) > 1:
-        steps = np.where(_pushed(check, mover), 0, np.diff(a.values))
+        steps = np.where(_pushed(_given(check, mover)), 0, np.diff(a.values))
         label = f"{mover}.jerk_{name} (by differences)"
         found.append(jerk_against(f"jerk of {big}", a, steps, most["jerk"], jerk_tolerance, label))
     if name != "c":
@@ -115,8 +115,21 @@ def _modes(check: Check, mover: str) -> Mask:
     return np.isin(mode, codes)
 
 
-def _pushed(check: Check, mover: str) -> Mask:
-    """For each pair of neighbouring samples: set points came from outside, of whose jerk nobody asks."""
-    outside: Series = check.series(mover, "external")
-    given: Mask = outside.values > 0
+def _given(check: Check, mover: str) -> Mask:
+    """Set points come from outside."""
+    return np.asarray(check.series(mover, "external").values > 0)
+
+
+def _added(check: Check, mover: str) -> Mask:
+    """On a track: set points come from outside, or have ended and the mover is not back on the track and at rest yet.
+    What they add there and the motion along the track each keep the limits by themselves."""
+    given = _given(check, mover)
+    rests = ~given & (check.series(mover, "busy_xyc").values == 0)
+    count = np.arange(len(given))
+    last_given, last_rest = (np.maximum.accumulate(np.where(one, count, -1)) for one in (given, rests))
+    return np.asarray(_modes(check, mover) & (last_given > last_rest))
+
+
+def _pushed(given: Mask) -> Mask:
+    """For each pair of neighbouring samples: set points from outside, whose jerk is not checked."""
     return given[1:] | given[:-1]
