@@ -23,6 +23,7 @@ import yaml
 
 from takt import _core
 from takt.engine import read_machine
+from takt.yaml_text import legible, to_json
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -151,7 +152,7 @@ class Table:
     @classmethod
     def from_dict(cls, cam: Mapping[str, Any]) -> Table:
         """A cam as it stands in a machine file, and in `source`."""
-        text = json.dumps(_plain(cam))  # which is YAML, too
+        text = to_json(_plain(cam))  # which is YAML, too
         return cls(*_core.cam_from_yaml(text.encode(), "cam"))
 
     @classmethod
@@ -331,7 +332,7 @@ def is_machine(text: bytes) -> bool:
     """Whether a text of YAML is a machine file rather than a cam: whose keys it has."""
     depth, key = 0, True  # of mappings and lists; whether a key comes next
     try:
-        for event in yaml.parse(text, Loader=yaml.SafeLoader):
+        for event in yaml.parse(legible(text.decode()), Loader=yaml.SafeLoader):
             depth -= isinstance(event, yaml.CollectionEndEvent)
             if depth == 1 and isinstance(event, (yaml.ScalarEvent, yaml.AliasEvent, yaml.CollectionEndEvent)):
                 name = event.value if key and isinstance(event, yaml.ScalarEvent) else None

@@ -5,13 +5,14 @@
 from __future__ import annotations
 
 import functools
-import json
 from collections.abc import Mapping
 from typing import Any
 
 import yaml
 
+from takt import _core
 from takt.errors import ConfigError
+from takt.yaml_text import legible, to_json
 
 NAMES = ("name", "axis")  # what elements of lists go by
 MARK = "__takt_change_{}__"
@@ -27,9 +28,10 @@ def changed(text: bytes, file_name: str, changes: Mapping[str, Value]) -> bytes:
         return text
     try:
         parts = _parts(text.decode(), file_name, tuple(changes))
-    except (UnicodeDecodeError, yaml.YAMLError):
-        return text  # the engine says what is wrong with it, and where
-    values = [json.dumps(value, ensure_ascii=False) for value in changes.values()]
+    except (UnicodeDecodeError, yaml.YAMLError) as error:
+        _core.load_machine(text, file_name)  # says what is wrong with it, and where
+        raise ConfigError([f"{file_name}: values cannot be changed in this text: {error}"]) from None
+    values = [to_json(value) for value in changes.values()]
     return "".join(part if isinstance(part, str) else values[part] for part in parts).encode()
 
 
@@ -51,40 +53,52 @@ def _parts(text: str, file_name: str, paths: tuple[str, ...]) -> tuple[str | int
 
 
 def _edited(text: str, file_name: str, path: str, value: str) -> str:
-    node = yaml.compose(text, Loader=yaml.SafeLoader)
+    node = yaml.compose(legible(text), Loader=yaml.SafeLoader)
     keys = path.split(".")
-    if not all(keys):
-        raise ConfigError([f"{file_name}: {path}: is no path of keys, as axes.x.limits.velocity is one"])
-    for depth, key in enumerate(keys):
+    depth = 0
+    while depth < len(keys):
         if isinstance(node, yaml.SequenceNode):
-            node = _element(node, file_name, keys[:depth], key)
-        elif isinstance(node, yaml.MappingNode):
-            found = next((of for name, of in node.value if getattr(name, "value", None) == key), None)
-            if found is None:
-                return _added(text, node, keys[depth:], value)
-            node = found
-        elif isinstance(node, yaml.ScalarNode) and node.tag.endswith(":null"):
+            node, depth = _element(node, file_name, keys, depth)
+            continue
+        if isinstance(node, yaml.MappingNode):
+            found = next((of for name, of in node.value if getattr(name, "value", None) == keys[depth]), None)
+            if found is not None:
+                node, depth = found, depth + 1
+                continue
+        if not all(keys[depth:]):
+            raise _no_path(file_name, path)
+        if isinstance(node, yaml.MappingNode):
+            return _added(text, node, keys[depth:], value)
+        if isinstance(node, yaml.ScalarNode) and node.tag.endswith(":null"):
             return _replaced(text, node, f" {_flow(keys[depth:], value)}")
-        else:
-            raise ConfigError([f"{file_name}: {'.'.join(keys[:depth])}: holds a value, so there is no {path}"])
+        raise ConfigError([f"{file_name}: {'.'.join(keys[:depth])}: holds a value, so there is no {path}"])
     if not isinstance(node, yaml.ScalarNode):
         raise ConfigError([f"{file_name}: {path}: holds further keys; only single values can be changed"])
     return _replaced(text, node, f" {value}" if node.start_mark.index == node.end_mark.index else value)
 
 
-def _element(node: yaml.SequenceNode, file_name: str, above: list[str], key: str) -> yaml.Node:
+def _element(node: yaml.SequenceNode, file_name: str, keys: list[str], depth: int) -> tuple[yaml.Node, int]:
+    """The element of a list that the keys from `depth` on name, and the depth behind its name. Names may have dots;
+    the longest one counts."""
     named: dict[str, yaml.Node] = {}
     for one in node.value:
         pairs = one.value if isinstance(one, yaml.MappingNode) else ()
         own = {getattr(name, "value", ""): getattr(of, "value", "") for name, of in pairs}
         named |= {own[name]: one for name in NAMES[::-1] if isinstance(own.get(name), str)}
-    if key in named:
-        return named[key]
+    for end in range(len(keys), depth, -1):
+        if (name := ".".join(keys[depth:end])) in named:
+            return named[name], end
+    key = keys[depth]
     if key.isdecimal() and int(key) < len(node.value):
-        element: yaml.Node = node.value[int(key)]
-        return element
+        return node.value[int(key)], depth + 1
+    if not key:
+        raise _no_path(file_name, ".".join(keys))
     there = ", ".join(named) or f"{len(node.value)} without names"
-    raise ConfigError([f"{file_name}: {'.'.join(above)}: has no element '{key}' (it has {there})"])
+    raise ConfigError([f"{file_name}: {'.'.join(keys[:depth])}: has no element '{key}' (it has {there})"])
+
+
+def _no_path(file_name: str, path: str) -> ConfigError:
+    return ConfigError([f"{file_name}: {path}: is no path of keys, as axes.x.limits.velocity is one"])
 
 
 def _flow(keys: list[str], value: str) -> str:

@@ -7,7 +7,7 @@ import itertools
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING
 
-import yaml
+from takt.yaml_text import texts_of
 
 if TYPE_CHECKING:
     from takt.axis import Axis
@@ -36,7 +36,7 @@ def why_refused(
 
 def unknown_sentence(arguments: str, axes: Mapping[str, Axis], movers: Collection[str]) -> str:
     """Which name among the arguments nobody has."""
-    asked = yaml.safe_load(arguments) or {}
+    asked = texts_of(arguments)
     coordinates = [name + suffix for name in movers for suffix in COORDINATES]
     for key in ("master", "master1", "master2"):
         if not asked.get(key) or asked[key] in axes or asked[key] in coordinates:
@@ -51,7 +51,7 @@ def unknown_sentence(arguments: str, axes: Mapping[str, Axis], movers: Collectio
 
 def unknown_cam_sentence(arguments: str, cams: Collection[str]) -> str:
     """Which name among the arguments no cam has; `cams` are the known names."""
-    asked = yaml.safe_load(arguments) or {}
+    asked = texts_of(arguments)
     for key in ("cam", "profile"):
         if asked.get(key):
             near = difflib.get_close_matches(asked[key], cams, 1)
@@ -73,7 +73,7 @@ def masters_of(axis: Axis, axes: Mapping[str, Axis]) -> list[str]:
 def loop_sentence(target: str, arguments: str, axes: Mapping[str, Axis]) -> str:
     """Why this coupling was refused: "x would follow itself: x follows z, z follows y, y follows x". Empty where what
     closes the loop is not published (a coupling that still waits in a buffer)."""
-    asked = yaml.safe_load(arguments) or {}
+    asked = texts_of(arguments)
     wanted = [asked[key] for key in ("master", "master1", "master2") if asked.get(key) in axes]
     chain = _chain(wanted, target, axes, [target])
     if not chain:

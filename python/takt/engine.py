@@ -33,6 +33,7 @@ from takt.saved import JournalEntry, Saved
 from takt.session import Recorder, Session
 from takt.tables import KINDS, fields_of_kind, make_recording
 from takt.track import Track
+from takt.yaml_text import to_json
 
 if TYPE_CHECKING:
     from takt.cam import Table
@@ -77,7 +78,7 @@ def read_machine(machine: Machine | _Text) -> tuple[bytes, str]:
 def _text_of(machine: Mapping[str, Any]) -> bytes:
     """The machine file that says the same: JSON, which is YAML."""
     try:
-        text = json.dumps(machine, indent=1, allow_nan=False, default=_plain)
+        text = to_json(machine, indent=1, allow_nan=False, default=_plain)
     except (TypeError, ValueError) as error:
         raise ConfigError([f"machine: a dict that no machine file can hold: {error}"]) from None
     return text.encode("utf-8", "surrogatepass")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from takt._commands import GroupCommands, GroupOutputs
 from takt.axis import Axis
 from takt.component import Component
 from takt.errors import TaktError
+from takt.yaml_text import to_json
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -45,7 +45,7 @@ class Group(Component, GroupCommands, GroupOutputs):
     def parts(self) -> tuple[str, ...]:
         """What its workspace knows by name, in the order of their numbers from 1: the tool and its bounds, parts of
         links and gripper, obstacles. Empty without a workspace."""
-        text = json.dumps(self.session.machine).encode()
+        text = to_json(self.session.machine).encode()
         return tuple(_core.parts_of_groups(text, "machine").get(self.name, ()))
 
     @property

@@ -709,5 +709,6 @@ def _places() -> tuple[Place, ...]:
 
 
 def _clean(text: str) -> str:
-    """What cannot be written as UTF-8 becomes a question mark, which the engine then complains about."""
-    return text.encode("utf-8", "replace").decode()
+    """What cannot be written as UTF-8, and NUL, which ends a text in LCM, becomes a question mark, which the engine
+    then complains about."""
+    return text.replace("\0", "?").encode("utf-8", "replace").decode()

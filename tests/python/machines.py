@@ -37,6 +37,13 @@ def machine_with(lcm: str) -> str:
 
 MACHINE = machine_with("{dead_man_s: 0.5}")
 
+# Arguments of gear_in with a master that there is not, and its name.
+UNKNOWN = {
+    "{master: none,\tratio_numerator: 1}": "none",
+    "{master:\tnone}": "none",
+    '{master: "7"}': "7",
+}
+
 _ports = itertools.count(12_000 + os.getpid() % 500 * 40)  # below those that systems give away by themselves
 
 

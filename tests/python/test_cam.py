@@ -250,6 +250,16 @@ GIVEN = st.one_of(st.just(math.nan), st.floats(-1e3, 1e3, allow_nan=False))
 ROWS = st.lists(st.tuples(st.floats(1e-3, 1e3), NUMBERS, GIVEN, GIVEN), min_size=2, max_size=30)
 
 
+def test_names_of_all_characters() -> None:
+    """CAM-04: names with characters beyond U+FFFF stay as they are."""
+    table = cam.Table.from_segments([{"to": {"x": 360, "y": 10}}], name="𠮷 😀")
+    assert table.name == "𠮷 😀"
+    assert cam.Table.from_yaml(table.to_yaml()).name == table.name
+    with takt.Engine(MACHINE.replace("linear", "quintic")) as session:
+        session.make_cam(table).wait()
+        assert session.cam("𠮷 😀").name == table.name
+
+
 @settings(deadline=None)
 @given(ROWS)
 def test_what_was_written_is_the_same_cam(rows: list[tuple[float, float, float, float]]) -> None:

@@ -65,6 +65,14 @@ def test_every_cam_of_a_machine(files: Path, capsys: pytest.CaptureFixture[str])
     assert text.index("saw: cam of 3 points, linear") < text.index("feed: cyclic cam of 2 segments")
 
 
+def test_files_with_tabs(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """CAM-04: a machine file is told from a cam whatever stands between its words."""
+    for text in (MACHINE.replace("name: m", "name:\tm", 1), "# a\u2028b\n" + MACHINE):
+        (files / "machine.yaml").write_text(text, encoding="utf-8")
+        assert main(["cam", "machine.yaml"]) == 0
+        assert "saw: cam of 3 points, linear" in capsys.readouterr().out
+
+
 def test_check_shows_warnings(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """CAM-03: takt check, too."""
     assert main(["check", "machine.yaml"]) == 0

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 import takt
@@ -97,6 +99,54 @@ def test_an_engine_with_changes() -> None:
 def test_what_cannot_be_changed(key: str, wrong: str) -> None:
     with pytest.raises(takt.ConfigError, match=wrong):
         changed(MACHINE.encode(), "m", {key: 1})
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        MACHINE.replace("velocity: 500", "velocity:\t500"),
+        MACHINE.replace("velocity: 100\n", "velocity: 100\t# mm/s\n"),
+        MACHINE.replace("name: x, unit", "name: x,\tunit"),
+        MACHINE.replace("# flow", "# a\u2028b"),
+        MACHINE.replace("# flow", "# a\uffffb"),
+        json.dumps(yaml.safe_load(MACHINE), indent="\t"),
+    ],
+)
+def test_texts_that_the_engine_reads_can_be_changed(text: str) -> None:
+    """PY-24: tabs and line separators do not keep values from being changed."""
+    changes = {"axes.x.limits.velocity": 300, "axes.y.limits.velocity": 200, "cycle.period_s": 0.002}
+    with takt.Engine(text, changes=changes) as session:
+        assert [axis.parameters["limits"]["velocity"] for axis in session.axes.values()] == [300, 200]
+        assert session.period == 0.002
+
+
+def test_a_text_in_which_no_values_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """PY-24: such a text is refused; the run does not have the values that it was given otherwise."""
+
+    def refuse(*_: Any, **__: Any) -> None:
+        raise yaml.YAMLError("why")
+
+    monkeypatch.setattr(yaml, "compose", refuse)
+    with pytest.raises(takt.ConfigError, match="m: values cannot be changed in this text: why"):
+        changed(MACHINE.encode(), "m", {"axes.x.limits.velocity": 70})
+
+
+def test_a_run_of_a_file_with_a_tab(folder: Path) -> None:
+    """PY-24."""
+    (folder / "machine.yaml").write_text(MACHINE.replace("velocity: 500", "velocity:\t500"))
+    assert main(["run", "scenario.py", "--set", "velocity=200"]) == 0
+    assert main(["run", "scenario.py", "--set", "velocity=200", "--set", "axes.x.limits.velocity=150"]) == 1
+
+
+def test_names_with_dots() -> None:
+    """PY-24: elements of lists go by their names, of which the longest one counts."""
+    text = MACHINE.replace("name: x,", "name: a.b,").replace("axis: x}", "axis: a.b}").replace("name: y", "name: a")
+    changes = {"axes.a.b.limits.velocity": 3, "axes.a.limits.velocity": 4, "simulation.servos.a.b.mechanics.inertia": 5}
+    found = yaml.safe_load(changed(text.encode(), "m", changes))
+    assert [axis["limits"]["velocity"] for axis in found["axes"]] == [3, 4]
+    assert found["simulation"]["servos"][0] == {"axis": "a.b", "mechanics": {"inertia": 5}}
+    with pytest.raises(takt.ConfigError, match=r"axes: has no element 'c' \(it has a\.b, a\)"):
+        changed(text.encode(), "m", {"axes.c.d.limits.velocity": 3})
 
 
 def test_a_value_is_given_once() -> None:

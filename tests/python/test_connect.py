@@ -18,7 +18,7 @@ import lcm
 import numpy as np
 import pytest
 import takt
-from machines import command_for, machine_with, new_url, running
+from machines import MACHINE, UNKNOWN, command_for, machine_with, new_url, running
 from takt import msgs, remote
 from takt.feedback import QUEUE_FULL, Feedback
 from takt.network import DEFAULT_URL, open_network
@@ -337,6 +337,37 @@ def test_random_bytes_on_every_channel(tmp_path: Path) -> None:
         session.run(0.3)
         assert session.axis("x").move_relative(distance=1.0).wait().done
         assert session.figures["malformed"] > 0
+
+
+@pytest.mark.parametrize("arguments", UNKNOWN)
+def test_a_refused_command_as_text(arguments: str, tmp_path: Path) -> None:
+    """EN-22: the session hears on, whatever the text of a refused command."""
+    url = new_url()
+    with running(tmp_path, url), takt.connect(url) as session:
+        gear = session.command("x", "gear_in", arguments).wait_final()
+        assert gear.error_id == 3010
+        assert gear.sentence.startswith(f"master: there is no axis '{UNKNOWN[arguments]}'; there are x")
+        assert session.axis("x").power().wait().done
+
+
+@pytest.mark.parametrize(
+    ("command", "sentence"),
+    [
+        (("x\0", "halt"), "x?"),
+        (("x", "halt\0"), "halt?"),
+        (("x", "halt", "{deceleration: 1\0}"), "1?"),
+    ],
+)
+def test_nul_in_a_command(command: tuple[str, ...], sentence: str, tmp_path: Path) -> None:
+    """EN-22: NUL, which ends a text of LCM, is refused by the engine in the same words as in process."""
+    url = new_url()
+    with takt.Engine(MACHINE) as engine:
+        in_process = engine.command(*command).wait_final()
+    with running(tmp_path, url), takt.connect(url) as session:
+        feedback = session.command(*command).wait_final()
+    assert (feedback.error_id, feedback.sentence) == (in_process.error_id, in_process.sentence)
+    assert feedback.error
+    assert sentence in feedback.sentence
 
 
 def test_all_that_is_sent_is_for_this_engine_alone(tmp_path: Path) -> None:

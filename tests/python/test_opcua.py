@@ -275,6 +275,9 @@ def test_lists_and_whole_texts_of_arguments() -> None:
     text = "[{x: 0, y: 1}, {x: 2, y: 3}]"
     points = [{"x": 0, "y": 1}, {"x": 2, "y": 3}]
     assert values(("machine", "add_cam_points"), "points", text, ua.VariantType.String) == points
+    for text in ("[{x: 0,\ty: 1e-5}]", "[{x: 0, y: 1e-05}]"):
+        points = [{"x": 0, "y": 0.00001}]
+        assert values(("machine", "add_cam_points"), "points", text, ua.VariantType.String) == points
     assert values(("axis", "power"), "enable_positive", False, ua.VariantType.Boolean) is False
     for of, name, wrong, kind, status in (
         (("machine", "add_cam_points"), "points", "[{x: 0", ua.VariantType.String, ua.StatusCodes.BadOutOfRange),

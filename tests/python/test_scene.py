@@ -289,7 +289,7 @@ def test_urdf_has_its_meshes(tmp_path: Path) -> None:
     (tmp_path / "arm" / "meshes").mkdir(parents=True)
     (tmp_path / "arm" / "two.urdf").write_text(URDF)
     (tmp_path / "arm" / "meshes" / "tip.stl").write_text(STL)
-    text = one_group(KINDS["serial"]).replace(json.dumps({"urdf": URDF}), "{urdf: arm/two.urdf}")
+    text = one_group(KINDS["serial"]).replace(json.dumps({"urdf": URDF}), "{urdf:\tarm/two.urdf}")
     nodes = {node["name"]: node for node in described(text, tmp_path).scene["nodes"]}
     (lower,) = nodes["robot.lower"]["solids"]
     assert (lower["kind"], lower["size"], lower["at"][11]) == ("box", [50, 60, 200], 100)

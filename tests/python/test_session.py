@@ -18,7 +18,7 @@ import pytest
 import takt
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from machines import MACHINE, new_url, running, taktd
+from machines import MACHINE, UNKNOWN, new_url, running, taktd
 from takt import _core
 from takt.arguments import to_text
 from takt.session import CLASSES as COMPONENTS
@@ -430,6 +430,24 @@ def test_arguments_as_text() -> None:
     assert to_text({"d": takt.Direction.POSITIVE, "t": "on", "q": 'a "b"'}) == '{d: positive, t: "on", q: "a \\"b\\""}'
     assert to_text({"d": "positive"}, {"d": takt.Direction.POSITIVE}) == ""
     assert to_text({}) == ""
+
+
+@pytest.mark.parametrize("name", ["Cell 😀", "𠮷", "é\u2028", "a\uffff"])
+def test_characters_of_all_kinds(name: str) -> None:
+    """EN-22: texts with characters beyond U+FFFF reach the engine as they are."""
+    limits = {"velocity": 500, "acceleration": 5000, "jerk": 100000}
+    with takt.Engine({"name": name, "axes": [{"name": "x", "unit": "mm", "limits": limits}]}) as session:
+        assert session.machine["name"] == name
+        gear = session.axis("x").gear_in(master=name).wait_final()
+        assert gear.sentence == f"master: there is no axis '{name}'; there are x"
+
+
+@pytest.mark.parametrize("arguments", UNKNOWN)
+def test_a_refused_command_as_text(arguments: str, engine: takt.Engine) -> None:
+    """EN-22: the names of a refused command are found in any text that the engine reads."""
+    gear = engine.command("x", "gear_in", arguments).wait_final()
+    assert gear.error_id == 3010
+    assert gear.sentence.startswith(f"master: there is no axis '{UNKNOWN[arguments]}'; there are x")
 
 
 # --- whatever comes in ---

@@ -372,14 +372,11 @@ def test_parts_have_numbers() -> None:
         assert robot.parts[7:10] == ("upper_arm_1", "upper_arm_2", "upper_arm_3")
         assert robot.parts[-2:] == ("finger", "post")
     with takt.Engine(
-        json.dumps(
-            {
-                "name": "m",
-                "axes": [{"name": "x", "limits": {"velocity": 1, "acceleration": 1, "jerk": 1}}],
-                "groups": [{"name": "robot", "axes": ["x"], "path": {"velocity": 1, "acceleration": 1, "jerk": 1}}],
-            }
-        )
-        + "\n"
+        {
+            "name": "m 😀",
+            "axes": [{"name": "x", "limits": {"velocity": 1, "acceleration": 1, "jerk": 1}}],
+            "groups": [{"name": "robot", "axes": ["x"], "path": {"velocity": 1, "acceleration": 1, "jerk": 1}}],
+        }
     ) as engine:
         assert engine.group("robot").parts == ()
 

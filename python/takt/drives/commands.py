@@ -28,6 +28,7 @@ from takt.drives.ethercat_link import parse as parse_ethercat
 from takt.drives.sdo import Objects, SdoError
 from takt.errors import TaktError
 from takt.network import network_of
+from takt.yaml_text import to_json
 
 FILE = click.Path(path_type=Path)
 BUS = click.option(
@@ -311,7 +312,7 @@ def standing_alone(bus: str, nodes: int) -> tuple[bytes, str, Mapping[str, Any]]
     lines += [
         f"  - {{name: x{k}, limits: {limits}, encoder: {{increments_per_unit: 1000}}}}" for k in range(1, nodes + 1)
     ]
-    lines += ["external:", f"  buses:\n    - bus: {json.dumps(bus)}", "      drives:"]
+    lines += ["external:", f"  buses:\n    - bus: {to_json(bus)}", "      drives:"]
     key = "position" if is_ethercat(bus) else "node"
     lines += [f"        - {{axis: x{k}, {key}: {k}}}" for k in range(1, nodes + 1)]
     text = "\n".join(lines).encode()

@@ -11,6 +11,7 @@ from asyncua import ua
 
 from takt.arguments import to_text
 from takt.opcua.descriptions import Argument, enumerations
+from takt.yaml_text import load
 
 Types = Mapping[str, ua.NodeId]  # data types of enumerations, by name
 
@@ -124,7 +125,7 @@ def _scalar(argument: Argument, value: Any, given: ua.VariantType) -> Any:
         return value or None
     if argument.kind == "yaml":
         try:
-            loaded = yaml.safe_load(value) if value else None
+            loaded = load(value) if value else None
         except yaml.YAMLError:
             raise ValueError from None
         to_text({"value": loaded})  # raises ValueError where a key is no name

@@ -22,7 +22,6 @@ groups leave a line, `followed` what a camera can follow. Nothing is there whose
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -36,6 +35,7 @@ from takt.kinematics import Kinematics, KinematicsError
 from takt.recording import Array
 from takt.scene.mechanisms import solids_of_links
 from takt.scene.solids import Solid, ball, box, cylinder, from_file, pose_matrix, rounded, shift
+from takt.yaml_text import load, to_json
 
 Node = dict[str, Any]
 Mechanisms = Mapping[str, tuple[Kinematics, list[str], Array]]  # of groups: kinematics, axes, base
@@ -117,7 +117,7 @@ class _Maker:
         """What `first_part` and `second_part` of groups with a workspace count."""
         if not any(group.get("workspace") for group in self.machine["groups"]):
             return {}
-        return dict(_core.parts_of_groups(json.dumps(self.machine).encode(), "machine"))
+        return dict(_core.parts_of_groups(to_json(self.machine).encode(), "machine"))
 
     # --- movers and what is under them ---
 
@@ -358,7 +358,7 @@ def _urdf_folders(text: str, folder: Path | None) -> dict[str, Path | None]:
     if folder is None or "urdf" not in text:
         return {}
     try:
-        said = yaml.safe_load(text)
+        said = load(text)
         return {
             group["name"]: (folder / _folder_of(serial["urdf"]))
             for group in said["groups"]

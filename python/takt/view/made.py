@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import OrderedDict
 from collections.abc import Callable
 from typing import Any
@@ -11,6 +10,7 @@ import yaml
 
 from takt import cam, msgs
 from takt.errors import ConfigError
+from takt.yaml_text import load
 
 MOST_PIECES = 500  # of one cam; of a longer one the page shows no curve
 DRAFTS = 4  # that are remembered; an engine has two
@@ -21,13 +21,6 @@ VERBS = {"begin_cam", "add_cam_points", "add_cam_segments", "build_cam"}
 
 Key = tuple[str, int, int]
 Draft = OrderedDict[Key, str]  # the commands that sent a cam, as texts
-
-
-class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
-    """YAML as the engine reads it: 1e-05 is a number."""
-
-
-_Loader.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"[-+]?\d+[eE][-+]?\d+$"), list("-+0123456789"))
 
 
 class MadeCams:
@@ -98,7 +91,7 @@ def _table(draft: Draft) -> cam.Table | None:
 
 def _read(text: str) -> dict[str, Any]:
     try:
-        read = yaml.load(text, Loader=_Loader)
+        read = load(text)
     except (yaml.YAMLError, ValueError):
         return {}
     return read if isinstance(read, dict) else {}

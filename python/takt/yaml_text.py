@@ -1,0 +1,52 @@
+"""YAML and JSON between Python and the engine: PyYAML refuses or splits some texts that the engine reads, and the
+engine refuses surrogate pairs, which are JSON's usual form of characters beyond U+FFFF."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+import yaml
+
+# Space to the engine, or part of a comment or a text; to PyYAML an error or the end of the line.
+_LEGIBLE = str.maketrans(dict.fromkeys("\t\u2028\u2029\ufffe\uffff", " "))
+_ESCAPED = re.compile("[\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]")
+
+
+class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
+    """YAML as the engine reads it: 1e-05 is a number."""
+
+
+_Loader.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"[-+]?\d+[eE][-+]?\d+$"), list("-+0123456789"))
+
+
+def legible(text: str) -> str:
+    """The text as PyYAML must be given it for the structure that the engine reads; each character keeps its index."""
+    return text.translate(_LEGIBLE)
+
+
+def load(text: str) -> Any:
+    """The value of a text that the engine accepts. Raises yaml.YAMLError or ValueError."""
+    try:
+        return yaml.load(text, Loader=_Loader)
+    except yaml.YAMLError:
+        if legible(text) == text:
+            raise
+        return yaml.load(legible(text), Loader=_Loader)
+
+
+def texts_of(arguments: str) -> dict[str, str]:
+    """The arguments of a command that are single values, as texts, for sentences. Empty if they cannot be read."""
+    try:
+        read = yaml.load(legible(arguments), Loader=yaml.BaseLoader)
+    except (yaml.YAMLError, ValueError, RecursionError):
+        return {}
+    pairs = read.items() if isinstance(read, dict) else ()
+    return {key: value for key, value in pairs if isinstance(key, str) and isinstance(value, str)}
+
+
+def to_json(value: Any, **options: Any) -> str:
+    """JSON that the engine reads: json.dumps without surrogate pairs."""
+    text = json.dumps(value, ensure_ascii=False, **options)
+    return _ESCAPED.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
