@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import takt
 from machines import new_url, running
+from takt import msgs
 
 MACHINE = """
 name: plane
@@ -242,3 +243,34 @@ def test_what_is_reached_is_told_with_its_cycle(engine: takt.Engine, mover: takt
         move = mover.move_x(position=50)
         engine.wait(lambda: move.done, 5)
     assert move.cycle == engine.cycle - 1
+
+
+def test_a_refused_release_of_a_mover_is_told(engine: takt.Engine) -> None:
+    """PY-20: `release` of a mover is a command like any other, not the release of a level-sensitive one."""
+    refused = engine.mover("two").release()
+    engine.step()
+    assert engine.unheeded == [refused]
+    assert refused.error_id == 3040
+
+
+def test_a_release_given_up_is_not_sent_again(tmp_path: Path) -> None:
+    """EN-22: as any command of a mover that the engine has not answered in time."""
+    url = new_url()
+    with running(tmp_path, url, machine=MACHINE), takt.connect(url) as session:
+        sent: list[msgs.command] = []
+        publish = session._publish
+
+        def losing(channel: str, data: bytes) -> None:
+            if channel == "takt/command":
+                sent.append(msgs.command.decode(data))
+            else:
+                publish(channel, data)
+
+        session._publish = losing  # type: ignore[method-assign]
+        session._answer_s = 0.2
+        for give_up in (session.mover("one").release, session.mover("one").halt):
+            with pytest.raises(takt.ConnectionError, match="does not answer"):
+                give_up()
+            count = len(sent)
+            session.run(1.0)
+            assert len(sent) == count
