@@ -221,6 +221,46 @@ def test_the_same_over_lcm(tmp_path: Path) -> None:
         assert all(0 <= record.cycle <= record.begun <= record.changed for record in mover.history())
 
 
+def rows_of(session: takt.Session) -> list[tuple[object, ...]]:
+    """The history of a mover that gets commands of every end; cycles relative to that which took the command."""
+    mover = session.mover("one")
+    mover.move_x(position=1)  # is refused by the mover
+    mover.enable().wait()
+    with pytest.raises(takt.CommandError):
+        session.command("one", "nonsense").wait()  # refused before any mover has it
+    with pytest.raises(takt.CommandError):
+        session.command("one", "move_x", "{x: }").wait()
+    first = mover.move_to_position(x=500, y=0, velocity=9000)
+    aborted = mover.move_to_position(x=0, y=0, buffer_mode="buffered")
+    session.run(0.1)
+    mover.halt().wait()
+    assert first.aborted
+    assert aborted.aborted
+    mover.move_z(position=99)
+    mover.move_to_position(x=300, y=0, velocity=100)
+    mover.move_to_position(x=0, y=0, buffer_mode="buffered").wait()
+    stop = session.emergency_stop(hold=True)
+    session.run(0.1)
+    with pytest.raises(takt.CommandError, match="emergency stop"):
+        mover.enable().wait()
+    stop.release()
+    return [
+        (r.ticket > 0, r.verb, r.state.name, r.error_id, r.cycle >= 0, r.begun > r.cycle, r.limited_by)
+        for r in mover.history()
+    ]
+
+
+def test_the_last_commands_are_the_same_over_lcm(engine: takt.Engine, tmp_path: Path) -> None:
+    """PL-70, PL-85: those that movers have taken, a buffered one begun in the cycle that took it until it begins."""
+    url = new_url()
+    rows = rows_of(engine)
+    verbs = ["move_x", "enable", "move_to_position", "move_to_position", "halt", "move_z"]
+    assert [row[1] for row in rows] == [*verbs, "move_to_position", "move_to_position"]
+    assert [row[5] for row in rows] == [False] * 7 + [True]
+    with running(tmp_path, url, machine=MACHINE), takt.connect(url) as session:
+        assert rows_of(session) == rows
+
+
 def test_set_position_and_enable_in_one_cycle() -> None:
     """PL-11: the position that was measured before is no deviation."""
     engine = takt.Engine("name: plane\naxes: []\nmovers: [{name: one, deviation: 2}]\n")
