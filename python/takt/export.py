@@ -15,8 +15,9 @@ from takt.counted import counted
 from takt.errors import TaktError
 from takt.missing import troubles
 from takt.recording import Array, Recording
+from takt.scene.foxglove import EVENTS, topic_of
 
-EVENTS = "events"  # the channel of marks, starts and ends of commands, errors
+LATEST_S = 2**63 / 1e9  # s; log times count ns from 0 up
 LEVELS = {"error": 4, "mark": 2}  # of foxglove.Log: ERROR, INFO; all others are DEBUG
 DEBUG = 1
 LOG = {
@@ -82,11 +83,13 @@ def to_mcap(recording: Recording, path: Path, scene: bool = True) -> int:
     """Writes MCAP and says how many messages: a channel of JSON for each component, named like it, and one for the
     events. Log times are engine time in ns. Units stand in the descriptions of the schemas; enumerations are texts;
     what is no number is left out, as JSON does not know it. The machine file is attached. `scene`: what can be seen of
-    it is there, too, and how it moved (/scene, /tf). Needs the package mcap."""
+    it is there, too, and how it moved (/scene, /tf). Needs the package mcap. Raises ExportError, and writes nothing,
+    where a time is below 0 or too large for MCAP."""
     try:
         from mcap.writer import Writer
     except ImportError:
         raise ExportError("writing MCAP needs the package mcap: pip install mcap") from None
+    _check_times(recording)
     with path.open("wb") as file:
         writer: Any = Writer(file)
         writer.start(profile="", library="takt")
@@ -100,6 +103,18 @@ def to_mcap(recording: Recording, path: Path, scene: bool = True) -> int:
         _about(writer, recording)
         writer.finish()
     return count
+
+
+def _check_times(recording: Recording) -> None:
+    """Raises ExportError where a time is none that MCAP can hold."""
+    times = [*(recording[name]["time_s"] for name in recording), [event.time_s for event in recording.events]]
+    for time_s in map(np.asarray, times):
+        wrong = time_s[~((time_s >= 0.0) & (time_s < LATEST_S))]
+        if len(wrong):
+            raise ExportError(
+                f"MCAP has no time {wrong[0]:g} s, only times from 0 s to {LATEST_S:.3g} s: export a part (--from, --to),"
+                " or shift the recording (Recording.shifted)"
+            )
 
 
 Message = tuple[int, int, bytes]
@@ -120,7 +135,7 @@ def _component(writer: Any, recording: Recording, name: str) -> tuple[Array, int
     properties |= {field: _property(recording, name, field) for field in fields}
     schema = {"title": name, "type": "object", "properties": properties}
     number = writer.register_schema(name=f"takt.{name}", encoding="jsonschema", data=json.dumps(schema).encode())
-    channel = writer.register_channel(topic=f"/{name}", message_encoding="json", schema_id=number)
+    channel = writer.register_channel(topic=topic_of(name), message_encoding="json", schema_id=number)
     table = recording[name]
     return _ns(table["time_s"]), channel, _rows(recording, name)
 
@@ -148,7 +163,7 @@ def _rows(recording: Recording, name: str) -> Iterator[bytes]:
 
 def _events(writer: Any, recording: Recording) -> tuple[Array, int, Iterator[bytes]]:
     number = writer.register_schema(name=LOG["title"], encoding="jsonschema", data=json.dumps(LOG).encode())
-    channel = writer.register_channel(topic=f"/{EVENTS}", message_encoding="json", schema_id=number)
+    channel = writer.register_channel(topic=EVENTS, message_encoding="json", schema_id=number)
     times = _ns(np.array([event.time_s for event in recording.events]))
 
     def messages() -> Iterator[bytes]:

@@ -136,6 +136,11 @@ class Feedback:
         return self._session._release(self)
 
     @property
+    def _lets_go_of_another(self) -> bool:
+        """Whether it is the release of a level-sensitive command; movers have a command `release` of their own."""
+        return self.target == "machine" and self.verb == "release"
+
+    @property
     def _release_is_settled(self) -> bool:
         """The release has done what it can: it need not be given again."""
         return self._release is not None and self._release._final and self._release._error_id != QUEUE_FULL

@@ -9,7 +9,7 @@ import itertools
 import json
 import math
 import os
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -52,6 +52,7 @@ STATES = ("busy", "active", "done", "aborted", "error")
 
 PATIENCE_S = 30.0  # that writing may be behind
 SILENCE_S = 0.1  # of one component while others are heard, and three of its samples at least
+BEFORE = 8  # messages that are kept to tell when a command was refused: some may be damaged
 EARLY_S = 1.0  # of engine time: a log that begins by then holds all that was said
 
 
@@ -98,6 +99,8 @@ class Run:
     impossible: int = 0  # messages that were decoded, but cannot be true
     returned: bool = False  # it was described again after another one
     contradictions: int = 0  # states whose cycle does not fit in the order, or that another one says otherwise
+    heard: deque[Any] = field(default_factory=lambda: deque(maxlen=BEFORE))  # the latest messages that have a cycle
+    refused: list[tuple[msgs.feedback, list[Any]]] = field(default_factory=list)  # before a cycle; what was heard then
 
 
 @dataclass
@@ -279,16 +282,20 @@ def _sort_in(runs: list[Run], message: Any) -> None:
         run.descriptions[message.text, message.period_s, message.version] += 1
     elif isinstance(message, STATE_TYPES):
         run.states.setdefault(message.name, []).append(message)
+        run.heard.append(message)
     elif isinstance(message, msgs.belt_objects):
         run.objects.append(message)
     elif isinstance(message, msgs.track_shape):
         run.shapes.append(message)
     elif isinstance(message, msgs.engine_state):
         run.engine_states.append(message)
+        run.heard.append(message)
     elif isinstance(message, msgs.command):
         run.commands.append(message)
     elif isinstance(message, msgs.feedback):
         run.feedback.append(message)
+        if message.cycle < 0 and message.state == STATES.index("error") and message.id > 0:  # 0: of a heartbeat
+            run.refused.append((message, list(run.heard)))
     elif isinstance(message, msgs.journal_command):
         run.journal.append(message)
     elif isinstance(message, msgs.journal_drive):
@@ -409,7 +416,7 @@ def _unheard(
 
 def _events(run: Run, period: float) -> Iterator[tuple[float, str, str, str]]:
     """Starts and ends of commands. What was asked is known of commands that the log holds, from clients or from the
-    journal."""
+    journal. A command that was refused before it came to a cycle has the time of what was heard last before."""
     asked: dict[Any, tuple[str, str]] = {}
     for command in run.commands:
         asked[(command.client, command.session, command.id)] = (command.target, _text(command))
@@ -420,15 +427,18 @@ def _events(run: Run, period: float) -> Iterator[tuple[float, str, str, str]]:
     journaled = bool(run.journal)
     started: set[Any] = set()
     ended: set[Any] = set()
+    refused = {id(report): _cycle_before(heard, period) for report, heard in run.refused}
     for report in run.feedback:
         key = (report.client, report.session, report.id)
-        if report.cycle < 0 or key in ended:
+        cycle = refused.get(id(report), report.cycle)
+        if cycle < 0 or key in ended:
             continue
-        target, text = asked.get(report.ticket) or asked.get(key) or ("", f"command {report.id} of {report.client}")
-        time_s, component = report.cycle * period, _component(target)
+        known = asked.get(report.ticket) if report.ticket > 0 else None
+        target, text = known or asked.get(key) or ("", f"command {report.id} of {report.client}")
+        time_s, component = cycle * period, _component(target)
         if key not in started:
             started.add(key)
-            if not journaled:
+            if not journaled or report.cycle < 0:
                 yield time_s, component, text, "start"
         if report.state >= STATES.index("done"):
             ended.add(key)
@@ -436,6 +446,11 @@ def _events(run: Run, period: float) -> Iterator[tuple[float, str, str, str]]:
                 yield time_s, component, f"{without_arguments(text)}: {report.sentence}", "error"
             else:
                 yield time_s, component, f"{without_arguments(text)}: {STATES[report.state]}", "end"
+
+
+def _cycle_before(heard: list[Any], period: float) -> int:
+    """The cycle of the latest message that can be true; 0: none of them."""
+    return next((int(message.cycle) for message in reversed(heard) if is_possible(message, period)), 0)
 
 
 def _text(command: msgs.command | msgs.journal_command) -> str:

@@ -421,7 +421,7 @@ class RemoteSession(Session):
             if not self._news.wait_for(lambda: sent.answered or (self._trouble and not lets_go), self._answer_s):
                 if feedback.level_sensitive:
                     feedback.released = True  # should the engine have taken it up: goes on until it answers
-                elif feedback.verb != "release":
+                elif not feedback._lets_go_of_another:
                     del self._sent[sent.message.id]
                 late = "" if lets_go else f"; it refuses what reaches it later than {self._command_age_s:g} s"
                 if self._key is not None and self._key.changing and self._wrong_keys() > wrong_keys:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
 from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 from takt import msgs
+from takt._commands import MoverCommands
 from takt.feedback import FeedbackState
 
 KEPT = 100  # commands of each mover, as the engine keeps
 OPEN = 10_000  # commands that are not finished
 UNTOLD = frozenset({"set_external_setpoint"})  # the engine keeps none of these either
+BEFORE_MOVERS = frozenset({3015, 3033, 3100})  # errors of the cycle: stopping, too old, emergency stop
 
 Key = tuple[str, int, int]  # client, session, number of the command
 
@@ -37,6 +41,7 @@ class CommandLog:
     def __init__(self, movers: Iterable[str]) -> None:
         self._rows: dict[str, deque[_Row]] = {name: deque(maxlen=KEPT) for name in movers}
         self._open: dict[Key, tuple[str, _Row]] = {}
+        self._begun: dict[str, _Row] = {}  # of each mover, the command that began last
 
     def command(self, message: msgs.command) -> None:
         key = (message.client, message.session, message.id)
@@ -51,26 +56,29 @@ class CommandLog:
         mover, row = self._open.get(key, ("", None))
         if row is None or message.cycle < row.changed:
             return
-        if row.cycle < 0:
-            self._rows[mover].append(row)
-            row.cycle = message.cycle
-        row.ticket = message.ticket or row.ticket
-        if message.state != row.state or row.changed < 0:
-            row.changed = message.cycle
-        if message.state == FeedbackState.ACTIVE and row.state != FeedbackState.ACTIVE:
-            row.begun = message.cycle
-        row.state, row.error = message.state, message.error_id
-        if message.object_number:
-            row.kind, row.number = message.object_kind, message.object_number
-        if message.state > FeedbackState.ACTIVE:
-            row.begun = row.begun or message.cycle
+        final = message.state > FeedbackState.ACTIVE
+        if final:
             del self._open[key]
+        if message.cycle < 0:  # refused before, or still on its way to the engine's cycle
+            return
+        if row.cycle < 0:
+            if message.state == FeedbackState.ERROR and message.error_id in BEFORE_MOVERS:
+                return
+            self._rows[mover].append(row)
+            row.cycle = row.begun = message.cycle
+            row.ticket = message.ticket
+        if message.state == FeedbackState.ACTIVE:
+            row.begun = message.cycle
+            self._begun[mover] = row
+        row.changed = message.cycle
+        row.state, row.error = message.state, message.error_id
+        row.kind, row.number = message.object_kind, message.object_number
 
     def state(self, message: Any) -> None:
         """Of a mover: what the dynamics of its last command were reduced by."""
-        rows = self._rows.get(message.name)
-        if rows and rows[-1].limited < 0 and message.cycle >= rows[-1].cycle >= 0:
-            rows[-1].limited = message.limited_by
+        row = self._begun.get(message.name)
+        if row is not None and row.limited < 0 and message.cycle >= row.begun and _has_dynamics(row.verb):
+            row.limited = message.limited_by
 
     def of(self, mover: str) -> list[tuple[Any, ...]]:
         """Rows as an engine in process gives them, the oldest first."""
@@ -78,3 +86,9 @@ class CommandLog:
             (r.ticket, r.verb, r.state, r.error, r.cycle, r.begun, r.changed, r.kind, r.number, max(r.limited, 0))
             for r in self._rows[mover]
         ]
+
+
+@functools.cache
+def _has_dynamics(verb: str) -> bool:
+    method = getattr(MoverCommands, verb, None)
+    return method is not None and "jerk" in inspect.signature(method).parameters

@@ -549,7 +549,7 @@ class Session(SessionWithCams):
         name = without_arguments(feedback.text)
         if feedback._state is FeedbackState.ERROR:
             self._event(feedback.target, f"{name}: {feedback._sentence}", "error", feedback.time_s)
-            if feedback._refused and feedback.verb != "release":
+            if feedback._refused and not feedback._lets_go_of_another:
                 self._refused.append(feedback)
         else:
             self._event(feedback.target, f"{name}: {feedback._state.name.lower()}", "end", feedback.time_s)

@@ -19,6 +19,8 @@ from motion_curves import one_axis
 from takt.cli import main
 from takt.recording import Recording
 
+LIMITS = ("velocity", "acceleration", "jerk")
+
 
 def two_rates() -> Recording:
     """x each ms, belt each fourth, with all kinds of fields."""
@@ -195,6 +197,43 @@ def test_an_empty_run(empty: str, tmp_path: Path) -> None:
     assert main(["export", str(tmp_path / "a.npz"), *files]) == 0
     assert read(tmp_path / "a.mcap")[1] == []
     assert len((tmp_path / "a.csv").read_text().splitlines()) == 1
+
+
+def test_components_named_like_topics_of_their_own(tmp_path: Path) -> None:
+    """PY-27: each topic is there once, with one schema."""
+    names = ["events", "tf", "scene", "x"]
+    machine = {"name": "m", "axes": [{"name": n, "limits": dict.fromkeys(LIMITS, 100.0)} for n in names]}
+    with takt.Engine(machine) as engine:
+        recorder = engine.record()
+        engine.run(0.01)
+        engine.mark("now")
+        recorder.stop().save(tmp_path / "a.npz")
+    assert main(["export", str(tmp_path / "a.npz"), "--mcap", str(tmp_path / "a.mcap")]) == 0
+    with (tmp_path / "a.mcap").open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    topics = [channel.topic for channel in summary.channels.values()]
+    assert len(topics) == len(set(topics))
+    assert {"/components/events", "/components/tf", "/components/scene", "/x", "/events"} <= set(topics)
+
+
+@pytest.mark.parametrize("by_s", [-3.0, 1e10])
+def test_times_that_mcap_does_not_have(by_s: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """PY-27: one sentence, and no file."""
+    two_rates().shifted(by_s).save(tmp_path / "a.npz")
+    assert main(["export", str(tmp_path / "a.npz"), "--mcap", str(tmp_path / "a.mcap")]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert f"MCAP has no time {2.0 + by_s:g} s" in said
+    assert not (tmp_path / "a.mcap").exists()
+
+
+def test_the_part_from_0_s_on_has_times_of_mcap(tmp_path: Path) -> None:
+    """PY-27: `--from 0` leaves out what was before."""
+    two_rates().shifted(-2.01).save(tmp_path / "a.npz")
+    assert main(["export", str(tmp_path / "a.npz"), "--mcap", str(tmp_path / "a.mcap"), "--from", "0"]) == 0
+    _, messages, _ = read(tmp_path / "a.mcap")
+    assert min(time_ns for _, time_ns, _ in messages) == 0
 
 
 BAD = {

@@ -100,6 +100,20 @@ def test_a_client_sees_frames_solids_and_signals_of_a_running_engine(tmp_path: P
         link.stop()
 
 
+def test_an_axis_named_like_a_topic(tmp_path: Path) -> None:
+    """PY-27: `/tf` keeps its transforms, and the axis `tf` its values."""
+    url = new_url()
+    machine = "name: m\naxes: [{name: tf, limits: {velocity: 100, acceleration: 1000, jerk: 10000}}]\n"
+    with running(tmp_path, url, machine=machine):
+        link = Link(Feed(url), 0)
+        with client_of(link) as client:
+            heard = client.hear({"/components/tf", "/scene"})
+        named = {channel["topic"]: channel["schemaName"] for channel in client.channels.values()}
+        assert named["/tf"] == "foxglove.FrameTransforms"
+        assert "set_position" in heard["/components/tf"]
+        link.stop()
+
+
 def test_without_the_package(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is said how to get it."""
     monkeypatch.setitem(sys.modules, "foxglove", None)

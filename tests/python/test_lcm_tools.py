@@ -121,6 +121,33 @@ def test_lcm_logplayer_plays(logged: tuple[Path, takt.Recording]) -> None:
         session.wait(lambda: x.actual_position > 39.0, 60.0)
 
 
+def test_commands_refused_before_a_cycle_are_in_recordings(tmp_path: Path) -> None:
+    """PY-20: at their time, as in a live recording; taktd's own log does not hold their texts."""
+    url, own, heard = new_url(), tmp_path / "own.lcm", tmp_path / "heard.lcm"
+    with (
+        takt.write_log(heard, url),
+        running(tmp_path, url, "--log", str(own)),
+        takt.connect(url, client="c") as session,
+    ):
+        session.run(0.3)
+        recorder = session.record("x")
+        with pytest.raises(takt.CommandError):
+            session.axis("x").move_absolute(position=100, velocity=-1).wait()
+        session.run(0.1)
+        live = [event for event in recorder.stop().events if event.kind != "mark"]
+    assert [event.kind for event in live] == ["start", "error"]
+    for file, component in ((heard, "x"), (own, "")):
+        found = [event for event in takt.read_log(file).events if event.kind in ("start", "error")]
+        assert [(event.component, event.kind) for event in found] == [(component, "start"), (component, "error")]
+        assert found[0].time_s == pytest.approx(live[0].time_s, abs=0.1)
+        assert "velocity: expected a number" in found[1].text
+        if component:
+            assert found[0].text == live[0].text
+            assert found[1].text.startswith("x.move_absolute: ")
+        else:
+            assert found[1].text.startswith("command 1 of c: ")
+
+
 def rmem_max() -> int:
     return int(Path("/proc/sys/net/core/rmem_max").read_text())
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import takt
 from machines import new_url, running
+from takt import msgs
 
 MACHINE = """
 name: plane
@@ -220,6 +221,46 @@ def test_the_same_over_lcm(tmp_path: Path) -> None:
         assert all(0 <= record.cycle <= record.begun <= record.changed for record in mover.history())
 
 
+def rows_of(session: takt.Session) -> list[tuple[object, ...]]:
+    """The history of a mover that gets commands of every end; cycles relative to that which took the command."""
+    mover = session.mover("one")
+    mover.move_x(position=1)  # is refused by the mover
+    mover.enable().wait()
+    with pytest.raises(takt.CommandError):
+        session.command("one", "nonsense").wait()  # refused before any mover has it
+    with pytest.raises(takt.CommandError):
+        session.command("one", "move_x", "{x: }").wait()
+    first = mover.move_to_position(x=500, y=0, velocity=9000)
+    aborted = mover.move_to_position(x=0, y=0, buffer_mode="buffered")
+    session.run(0.1)
+    mover.halt().wait()
+    assert first.aborted
+    assert aborted.aborted
+    mover.move_z(position=99)
+    mover.move_to_position(x=300, y=0, velocity=100)
+    mover.move_to_position(x=0, y=0, buffer_mode="buffered").wait()
+    stop = session.emergency_stop(hold=True)
+    session.run(0.1)
+    with pytest.raises(takt.CommandError, match="emergency stop"):
+        mover.enable().wait()
+    stop.release()
+    return [
+        (r.ticket > 0, r.verb, r.state.name, r.error_id, r.cycle >= 0, r.begun > r.cycle, r.limited_by)
+        for r in mover.history()
+    ]
+
+
+def test_the_last_commands_are_the_same_over_lcm(engine: takt.Engine, tmp_path: Path) -> None:
+    """PL-70, PL-85: those that movers have taken, a buffered one begun in the cycle that took it until it begins."""
+    url = new_url()
+    rows = rows_of(engine)
+    verbs = ["move_x", "enable", "move_to_position", "move_to_position", "halt", "move_z"]
+    assert [row[1] for row in rows] == [*verbs, "move_to_position", "move_to_position"]
+    assert [row[5] for row in rows] == [False] * 7 + [True]
+    with running(tmp_path, url, machine=MACHINE), takt.connect(url) as session:
+        assert rows_of(session) == rows
+
+
 def test_set_position_and_enable_in_one_cycle() -> None:
     """PL-11: the position that was measured before is no deviation."""
     engine = takt.Engine("name: plane\naxes: []\nmovers: [{name: one, deviation: 2}]\n")
@@ -242,3 +283,34 @@ def test_what_is_reached_is_told_with_its_cycle(engine: takt.Engine, mover: takt
         move = mover.move_x(position=50)
         engine.wait(lambda: move.done, 5)
     assert move.cycle == engine.cycle - 1
+
+
+def test_a_refused_release_of_a_mover_is_told(engine: takt.Engine) -> None:
+    """PY-20: `release` of a mover is a command like any other, not the release of a level-sensitive one."""
+    refused = engine.mover("two").release()
+    engine.step()
+    assert engine.unheeded == [refused]
+    assert refused.error_id == 3040
+
+
+def test_a_release_given_up_is_not_sent_again(tmp_path: Path) -> None:
+    """EN-22: as any command of a mover that the engine has not answered in time."""
+    url = new_url()
+    with running(tmp_path, url, machine=MACHINE), takt.connect(url) as session:
+        sent: list[msgs.command] = []
+        publish = session._publish
+
+        def losing(channel: str, data: bytes) -> None:
+            if channel == "takt/command":
+                sent.append(msgs.command.decode(data))
+            else:
+                publish(channel, data)
+
+        session._publish = losing  # type: ignore[method-assign]
+        session._answer_s = 0.2
+        for give_up in (session.mover("one").release, session.mover("one").halt):
+            with pytest.raises(takt.ConnectionError, match="does not answer"):
+                give_up()
+            count = len(sent)
+            session.run(1.0)
+            assert len(sent) == count

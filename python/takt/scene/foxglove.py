@@ -39,6 +39,9 @@ COLOURS = {
     "axis_y": (0.18, 0.62, 0.42, 1.0),
     "axis_z": (0.18, 0.44, 0.87, 1.0),
 }
+EVENTS = "/events"  # the topic of marks, starts and ends of commands, errors
+SHAPES = "/scene"
+POSES = "/tf"
 ONE = 0  # of Foxglove's kinds of deletions: the entity of that id
 TRACK = (0.18, 0.44, 0.87, 0.75)
 
@@ -52,6 +55,12 @@ class Stream(NamedTuple):
     messages: Iterator[dict[str, Any]]
 
 
+def topic_of(component: str) -> str:
+    """The topic of a component's values: /NAME; /components/NAME where that is a topic of another kind."""
+    topic = f"/{component}"
+    return f"/components{topic}" if topic in (EVENTS, SHAPES, POSES) else topic
+
+
 def streams_of(recording: Recording, machine: Any) -> list[Stream]:
     """Transforms and solids of a recorded machine (`takt.view.machine.Machine`); none of one that was not recorded."""
     scene, start, end = machine.scene, recording.start_s, recording.end_s
@@ -63,8 +72,8 @@ def streams_of(recording: Recording, machine: Any) -> list[Stream]:
     solids = [(start, {"deletions": [], "entities": [*entities(scene, start), *tracks(machine, start)]}), *looks]
     solids.sort(key=lambda one: one[0])
     return [
-        Stream("/tf", TRANSFORMS, np.array([at for at, _ in moved]), (message for _, message in moved)),
-        Stream("/scene", SCENE, np.array([at for at, _ in solids]), (message for _, message in solids)),
+        Stream(POSES, TRANSFORMS, np.array([at for at, _ in moved]), (message for _, message in moved)),
+        Stream(SHAPES, SCENE, np.array([at for at, _ in solids]), (message for _, message in solids)),
     ]
 
 

@@ -78,29 +78,29 @@ class Link:
             self._complete.clear()
             self._last.clear()
             entities = [*types.entities(machine.scene, time_s), *types.tracks(machine, time_s)]
-            self._say("/scene", {"deletions": [], "entities": entities}, time_s)
+            self._say(types.SHAPES, {"deletions": [], "entities": entities}, time_s)
         self._say_transforms(machine, time_s)
         for node in machine.scene["nodes"]:
             shown = is_shown(node, overview.value)
             if "shown" in node and self._last.get(f"shown {node['name']}", False) != shown:
                 self._last[f"shown {node['name']}"] = shown
-                self._say("/scene", types.coming_or_going(node, shown, time_s), time_s)
+                self._say(types.SHAPES, types.coming_or_going(node, shown, time_s), time_s)
         for belt, rows in self._feed.objects.items():
             size = machine.scene.get("belts", {}).get(belt, {}).get("size")
             if size and self._last.get(f"belt {belt}") != rows:
                 self._last[f"belt {belt}"] = rows
                 entity = types.products_on(belt, size, rows, time_s)
-                self._say("/scene", {"deletions": [], "entities": [entity]}, time_s)
+                self._say(types.SHAPES, {"deletions": [], "entities": [entity]}, time_s)
         for source in machine.sources:
             if overview.heard(source.index):
-                self._say(f"/{source.name}", self._values(source, time_s), time_s)
+                self._say(types.topic_of(source.name), self._values(source, time_s), time_s)
 
     def _begin(self, machine: Machine) -> None:
         self._epoch = self._feed.epoch
         for channel in self._channels.values():
             channel.close()
-        schemas = {"/scene": types.SCENE, "/tf": types.TRANSFORMS}
-        schemas |= {f"/{source.name}": _schema(machine, source) for source in machine.sources}
+        schemas = {types.SHAPES: types.SCENE, types.POSES: types.TRANSFORMS}
+        schemas |= {types.topic_of(source.name): _schema(machine, source) for source in machine.sources}
         self._channels = {
             topic: self._foxglove.Channel(topic, schema=schema, context=self._context)
             for topic, schema in schemas.items()
@@ -126,7 +126,7 @@ class Link:
                 self._last[node["name"]] = pose
                 changed.append(types.transform(node["name"], pose, time_s))
         if changed:
-            self._say("/tf", {"transforms": changed}, time_s)
+            self._say(types.POSES, {"transforms": changed}, time_s)
 
     def _values(self, source: Source, time_s: float) -> dict[str, Any]:
         overview, kind = self._feed.overview, KINDS[source.kind]
