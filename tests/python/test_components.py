@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 import takt
+from every_kind import FULL
 from machines import new_url, running
 from takt import _commands, _core, plot, report, style
 from takt.session import CLASSES
@@ -39,6 +40,26 @@ def test_every_kind_is_known_everywhere() -> None:
     for kind in REFERENCE["kinds"]:
         assert kind["section"] in {field["name"] for field in REFERENCE["machine"]["fields"]}
         assert PREFIXES[kind["name"]] == f"takt/{kind['name']}/"
+
+
+def test_values_before_the_first_cycle() -> None:
+    """PY-02: those of an idle one, as another process would have heard them; of every kind, also what is set up there."""
+    with takt.Engine({"name": "full", **FULL}) as engine:
+        kinds = {c.KIND: c for c in engine.components.values()}
+        fields = {name: list(KINDS[c.KIND].places) for name, c in engine.components.items()}
+
+        def values() -> dict[str, list[object]]:
+            return {name: [engine.components[name]._value(f) for f in of] for name, of in fields.items()}
+
+        assert set(kinds) == set(KINDS)
+        members = engine.group("arm").members
+        first = values()
+        assert [axis.name for axis in members] == ["x", "y", "z"]
+        engine.step()
+        for name, after in values().items():
+            wrong = [f for f, a, b in zip(fields[name], first[name], after, strict=True) if a != b and b == b]
+            tracks = engine.components[name].KIND == "track"
+            assert not wrong or tracks, (name, wrong)  # tracks are made while the first cycles run
 
 
 def test_speeds_have_units_of_speeds() -> None:

@@ -508,3 +508,71 @@ def test_power_off_ends_a_track_that_waits(how: str) -> None:
         session.axis("drive").move_velocity(velocity=100)
         session.run(1.0)
         assert gantry.x == 0
+
+
+@pytest.mark.parametrize("buffered", [True, False])
+@pytest.mark.parametrize("early_s", [0.1, 0.06, 0.02, 0.004])
+@pytest.mark.parametrize("event", ["interrupted", "interrupted and continued", "faster"])
+def test_a_move_is_done_where_the_tool_is_on_its_place(buffered: bool, early_s: float, event: str) -> None:
+    """GR-22, CT-03: whether another move waits behind it or not, and whatever comes before its end."""
+    text = MACHINE.replace("400000}\n", "400000}\n    tracking: {after_sync: limited}\n") if event == "faster" else MACHINE
+    text = text.replace("limits: {velocity: 500, acceleration: 2000,", "limits: {velocity: 500, acceleration: 50000,", 1)
+
+    def begin(engine: takt.Engine) -> tuple[takt.Group, list[takt.Feedback]]:
+        gantry = ready(engine)
+        gantry.set_dyn_coord_transform(pcs=1, carrier="infeed").wait()
+        gantry.move_linear_absolute(x=0, y=0, z=30).wait()
+        engine.axis("drive").move_velocity(velocity=100 if event == "faster" else 300)
+        engine.run(0.5)
+        moves = [gantry.move_linear_absolute(x=-100, y=0, z=0, coordinate_system=PCS, pcs=1)]
+        if buffered:
+            moves.append(
+                gantry.move_linear_absolute(x=-100, y=50, z=0, coordinate_system=PCS, pcs=1, buffer_mode="buffered")
+            )
+        return gantry, moves
+
+    with takt.Engine(text) as engine:
+        _, moves = begin(engine)
+        moves[0].wait()
+        undisturbed_s = engine.now
+    with takt.Engine(text) as engine:
+        gantry, moves = begin(engine)
+        engine.run(undisturbed_s - early_s - engine.now)
+        if event == "faster":
+            engine.axis("drive").move_velocity(velocity=450)
+        else:
+            gantry.interrupt()
+            engine.run(0.05)
+            assert not moves[0].done or math.dist(on_object(gantry), (-100, 0, 0)) < 1e-6
+            if event == "interrupted":
+                engine.run(0.5)
+                assert not moves[0].done or math.dist(on_object(gantry), (-100, 0, 0)) < 1e-6
+            gantry.continue_path()
+        engine.wait(lambda: moves[0].final, timeout=5)
+        assert moves[0].done
+        assert on_object(gantry) == pytest.approx((-100, 0, 0), abs=0.01)
+        moves[-1].wait()
+        assert on_object(gantry) == pytest.approx((-100, 50 if buffered else 0, 0), abs=0.01)
+
+
+def test_a_system_of_which_nothing_is_known() -> None:
+    """CT-12: a pose that was never given, and a group without kinematics, carry nothing; there is no move in them."""
+    text = MACHINE.replace(
+        "belts:\n",
+        "  - {name: pair, axes: [u, v]}\nposes: [{name: camera}]\nbelts:\n",
+    ).replace("groups:\n", "".join(f"  - {{name: {n}, unit: mm}}\n" for n in "uv") + "groups:\n")
+    with takt.Engine(text) as engine:
+        gantry = ready(engine)
+        gantry.move_linear_absolute(x=200, y=50, z=10).wait()
+        place = gantry.pose
+        for carrier in ("camera", "pair"):
+            gantry.set_dyn_coord_transform(pcs=1, carrier=carrier).wait_final()
+            moves = [
+                gantry.move_linear_absolute(x=0, y=0, coordinate_system=PCS, pcs=1),
+                gantry.move_direct_absolute(x=0, y=0, coordinate_system=PCS, pcs=1),
+                gantry.jog(x=10, coordinate_system="pcs", pcs=1),
+            ]
+            engine.run(0.3)
+            assert [move.error_id for move in moves] == [3035] * 3
+            assert "is not known" in moves[0].sentence
+        assert gantry.pose == pytest.approx(place)
