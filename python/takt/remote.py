@@ -28,7 +28,7 @@ from takt.recording import Recording
 from takt.remote_cams import RemoteCams
 from takt.remote_history import CommandLog
 from takt.remote_tracks import RemoteTracks
-from takt.session import Recorder, Session, release_of
+from takt.session import Recorder, Session, _clean, release_of
 from takt.tables import KINDS, PREFIXES, State, is_possible, kind_of_channel, make_recording, named, table_of
 from takt.track import Track
 
@@ -591,6 +591,8 @@ def connect(
     """
     url = url or usual_url()
     name = client if client is not None else f"python-{os.getpid()}-{random.SystemRandom().getrandbits(24):06x}"
+    if _clean(name) != name:
+        raise ValueError(f"client: expected a name without NUL and lone surrogates, found {name!r}")
     return RemoteSession(url, name, timeout, read_key(key))
 
 

@@ -370,6 +370,13 @@ def test_nul_in_a_command(command: tuple[str, ...], sentence: str, tmp_path: Pat
     assert sentence in feedback.sentence
 
 
+@pytest.mark.parametrize("name", ["a\0b", "a\udc00"])
+def test_a_name_that_cannot_be_sent(name: str) -> None:
+    """EN-22: such a name of a client is refused at once."""
+    with pytest.raises(ValueError, match="client: expected a name without NUL and lone surrogates, found 'a"):
+        takt.connect(new_url(), client=name, timeout=0.1)
+
+
 def test_all_that_is_sent_is_for_this_engine_alone(tmp_path: Path) -> None:
     """EN-22: a log of it, played into another engine's network, moves nothing."""
     url = new_url()

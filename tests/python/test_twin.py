@@ -23,6 +23,7 @@ mujoco = pytest.importorskip("mujoco")
 
 from takt.twin import Twin, judge  # noqa: E402
 from takt.twin import command as twin_command  # noqa: E402
+from takt.twin.places import problem  # noqa: E402
 
 LIMITS = "limits: {velocity: 300, acceleration: 3000, jerk: 60000}"
 TURNS = "limits: {velocity: 180, acceleration: 1500, jerk: 30000}"
@@ -173,6 +174,12 @@ def test_what_the_loader_refuses(tmp_path: Path) -> None:
             takt.Engine(file)
         assert said in str(caught.value), (said, str(caught.value))
         assert re.search(r"machine\.yaml:\d+:\d+: twin", str(caught.value)), str(caught.value)
+
+
+def test_places_in_files_with_tabs() -> None:
+    """With line and column, whatever stands between the words."""
+    text = "name:\tm # a\u2028b\ntwin:\n  axes:\n    - {axis: x,\tjoint: rail}\n"
+    assert problem(text.encode(), "m", "twin.axes[0].joint", "why") == "m:4:24: twin.axes[0].joint: why"
 
 
 def test_what_only_the_model_shows(tmp_path: Path) -> None:
