@@ -112,8 +112,8 @@ def _check_times(recording: Recording) -> None:
         wrong = time_s[~((time_s >= 0.0) & (time_s < LATEST_S))]
         if len(wrong):
             raise ExportError(
-                f"MCAP has no time {wrong[0]:g} s, only times from 0 s to {LATEST_S:.3g} s: export a part (--from, --to),"
-                " or shift the recording (Recording.shifted)"
+                f"MCAP has no time {wrong[0]:g} s, only times from 0 s to {LATEST_S:.3g} s: export a part"
+                " (--from, --to), or shift the recording (Recording.shifted)"
             )
 
 

@@ -22,6 +22,7 @@ from takt.errors import ConfigError
 from takt.events import Event, EventLog, LogError, Progress
 from takt.figures import DROPPED, figures_of
 from takt.lying import Lying, objects_of
+from takt.made_cams import is_kept
 from takt.network import open_network, roomy, usual_url
 from takt.recording import Array, Recording
 from takt.sequences import OBJECTS, Sequences
@@ -361,6 +362,7 @@ def to_recording(log: Log, run: int = -1) -> Recording:
         "starts": log.starts(run),
         "objects": _lying(one, period).columns(),
         "engine": figures_of(one.engine_states[-1]) if one.engine_states else {},
+        **_made_cams(one),
     }
     return make_recording(machine, tables, _events(one, period), meta, text)
 
@@ -446,6 +448,29 @@ def _events(run: Run, period: float) -> Iterator[tuple[float, str, str, str]]:
                 yield time_s, component, f"{without_arguments(text)}: {report.sentence}", "error"
             else:
                 yield time_s, component, f"{without_arguments(text)}: {STATES[report.state]}", "end"
+
+
+def _made_cams(run: Run) -> dict[str, Any]:
+    """Cams made at run time, as live recordings keep them, by anyone: from the journal where there is one, else from
+    the commands of clients."""
+    from takt.view.made import MadeCams
+
+    made = MadeCams(lambda table: {"table": table}, builds=max(1, len(run.feedback)))
+    for entry in run.journal:  # it has no client; the feedback has its ticket
+        command = msgs.command()
+        command.id, command.target = entry.ticket, entry.target
+        command.verb, command.arguments = entry.verb, entry.arguments
+        made.take_command(command)
+    for command in () if run.journal else run.commands:
+        made.take_command(command)
+    for report in run.feedback:
+        answer = report
+        if run.journal:
+            answer = msgs.feedback()
+            answer.id, answer.state, answer.value = report.ticket, report.state, report.value
+        made.take_feedback(answer)
+    cams = [(one["number"], one["table"].source) for one in made.since(0) if is_kept(one["table"])]
+    return {"made_cams": cams} if cams else {}
 
 
 def _cycle_before(heard: list[Any], period: float) -> int:

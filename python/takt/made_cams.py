@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from takt._commands import MachineCommands
@@ -36,6 +37,15 @@ class MadeCam:
     def found(self) -> bool:
         """Whether its name stands for it, unless a later one has it."""
         return self.feedback._done and not (self.dropped and self.dropped._done)
+
+    @cached_property
+    def named(self) -> Table:
+        """The cam under the name it was sent with, as the engine has it."""
+        from takt.cam import Table
+
+        if self.table.name == self.name:
+            return self.table
+        return Table.from_dict({**self.table.source, "name": self.name})
 
 
 class MadeCams:
@@ -78,7 +88,7 @@ class MadeCams:
         """The cam that this name stands for, as far as this session knows."""
         for made in reversed(self.cams):
             if made.name == name and made.found:
-                return made.table
+                return made.named
         for number, cam in enumerate(self._session.machine["cams"], 1):
             if cam["name"] == name:
                 return self._session._cam(number)
@@ -92,15 +102,15 @@ class MadeCams:
             return Table.from_dict(self._session.machine["cams"][number - 1])
         for made in self.cams:
             if made.feedback._done and made.feedback.value == number:
-                return made.table
+                return made.named
         return None
 
     def kept(self) -> dict[str, Any]:
         """What recordings keep of the cams made so far, by number; of the largest ones nothing."""
         made = [
-            (made.feedback.value, made.table.source)
+            (made.feedback.value, made.named.source)
             for made in self.cams
-            if made.feedback._done and _count(made.table) <= MOST_KEPT
+            if made.feedback._done and is_kept(made.table)
         ]
         return {"made_cams": made} if made else {}
 
@@ -120,6 +130,11 @@ class MadeCams:
 
         if not few() and not self._session._wait_for(few, DEFAULT_TIMEOUT_S, on_feedback=True):
             raise TaktError(f"the engine does not answer: {most} {what}")
+
+
+def is_kept(table: Table) -> bool:
+    """Whether recordings keep the data of a cam: of the largest ones they do not."""
+    return _count(table) <= MOST_KEPT
 
 
 def _count(table: Table) -> int:

@@ -129,6 +129,7 @@ class RemoteSession(Session):
             self._period = description.period_s
             self._run_id = description.run_id
             machine = json.loads(_core.load_machine(description.text.encode(), "machine", files=False))
+            machine["cycle"]["period_s"] = self._period  # taktd --cycle-time
             super().__init__(machine, description.text)
             self._geometry = RemoteTracks(self)
             with self._news:

@@ -18,7 +18,11 @@ import lcm
 import numpy as np
 import pytest
 import takt
+<<<<<<< HEAD
 from machines import MACHINE, UNKNOWN, command_for, machine_with, new_url, running
+=======
+from machines import MACHINE, command_for, machine_with, new_url, running
+>>>>>>> bkb
 from takt import msgs, remote
 from takt.feedback import QUEUE_FULL, Feedback
 from takt.network import DEFAULT_URL, open_network
@@ -179,6 +183,17 @@ def test_a_stop_goes_on_when_its_sender_becomes_a_client(tmp_path: Path) -> None
             pass
         assert len({a.ticket for a in answers if a.client == "cell" and a.id == 1}) == 1
         session.wait(lambda: x.state is takt.PlcState.STANDSTILL, 2.0, what="the end of the lease")
+
+
+def test_the_period_of_the_engine_is_that_of_its_machine(tmp_path: Path) -> None:
+    """EN-20: `taktd --cycle-time` changes both, as `Engine(period=)` does."""
+    url = new_url()
+    with takt.Engine(MACHINE, period=0.002) as engine:
+        here = engine.machine
+    with running(tmp_path, url, "--cycle-time", "2ms", machine=MACHINE), takt.connect(url) as session:
+        assert session.period == 0.002
+        assert session.machine["cycle"]["period_s"] == 0.002
+        assert session.machine == here
 
 
 def test_states_that_cannot_be_true(tmp_path: Path) -> None:

@@ -309,6 +309,34 @@ def test_over_lcm_and_in_the_log_of_the_run(tmp_path):  # CAM-88, EN-07: real ti
     assert replay(log).same
 
 
+def test_a_cam_sent_under_another_name(tmp_path):  # CAM-88: the client that made it reads what others read
+    url = new_url()
+    with running(tmp_path, url, machine=MACHINE), takt.connect(url) as session:
+        session.make_cam(hill(33), name="other").wait()
+        assert session.cam("other").name == "other"
+        assert session.cam("other").source == {**hill(33).source, "name": "other"}
+        with takt.connect(url) as another:
+            assert another.cam("other").source == session.cam("other").source
+
+
+@pytest.mark.parametrize("count", [61, 5_001])
+def test_recordings_of_logs_have_cams_made_at_run_time(count, tmp_path):  # CAM-88, PY-20: as live ones have them
+    url, own, heard = new_url(), tmp_path / "own.lcm", tmp_path / "heard.lcm"
+    with (
+        takt.write_log(heard, url),
+        running(tmp_path, url, "--log", str(own), machine=MACHINE),
+        takt.connect(url) as session,
+    ):
+        recorder = session.record()
+        session.make_cam(hill(33, count=count), name="other").wait()
+        for height in range(1, 21):
+            session.make_cam(steps(height)).wait()
+        live = recorder.stop().meta["made_cams"]
+    assert [cam["name"] for _, cam in live] == ["other"] * (count <= 5_000) + ["steps"] * 20
+    for file in (own, heard):
+        assert takt.read_log(file).meta["made_cams"] == live
+
+
 FROM_FILE = MACHINE.replace("flex_cams:", "  - {name: drawn, file: drawn.csv}\nflex_cams:")
 
 

@@ -1,4 +1,4 @@
-"""Cams made at run time, gathered from the commands that pass by (CAM-88), for the page."""
+"""Cams made at run time, gathered from commands (CAM-88): those that pass by, for the page, or those of a log."""
 
 from __future__ import annotations
 
@@ -24,11 +24,13 @@ Draft = OrderedDict[Key, str]  # the commands that sent a cam, as texts
 
 
 class MadeCams:
-    """Cams by number, as the page draws them. What was made before anyone listened, or only heard in part, is not
+    """Cams by number, and what is kept of each. What was made before anyone listened, or only heard in part, is not
     among them."""
 
-    def __init__(self, drawn: Callable[[cam.Table], dict[str, Any]]) -> None:
+    def __init__(self, drawn: Callable[[cam.Table], dict[str, Any]], builds: int = BUILDS) -> None:
+        """drawn: what is kept of a cam. builds: how many may be under way."""
         self.count = 0  # of cams so far
+        self._most_builds = builds
         self._drawn = drawn
         self._drafts: OrderedDict[str, Draft] = OrderedDict()  # by name
         self._builds: OrderedDict[Key, Draft] = OrderedDict()
@@ -52,7 +54,7 @@ class MadeCams:
             return
         _remember(draft, key, message.arguments, MOST_PIECES)
         if message.verb == "build_cam":
-            _remember(self._builds, key, self._drafts.pop(name), BUILDS)
+            _remember(self._builds, key, self._drafts.pop(name), self._most_builds)
 
     def take_feedback(self, message: msgs.feedback) -> None:
         key = (message.client, message.session, message.id)
