@@ -18,11 +18,7 @@ import lcm
 import numpy as np
 import pytest
 import takt
-<<<<<<< HEAD
 from machines import MACHINE, UNKNOWN, command_for, machine_with, new_url, running
-=======
-from machines import MACHINE, command_for, machine_with, new_url, running
->>>>>>> bkb
 from takt import msgs, remote
 from takt.feedback import QUEUE_FULL, Feedback
 from takt.network import DEFAULT_URL, open_network
