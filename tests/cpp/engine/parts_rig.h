@@ -60,7 +60,8 @@ class PartsRig {
     return End(Give(target, verb, arguments));
   }
   ErrorId ErrorOf(const std::string& target, const std::string& verb, const std::string& arguments = "{}") {
-    return Do(target, verb, arguments).error;
+    const ParsedCommand parsed = ParseCommand(machine, target, verb, arguments);
+    return parsed.sentence.empty() ? Do(target, verb, arguments).error : parsed.error;
   }
 
   const mover::Outputs& Mover(const std::string& name) const {
