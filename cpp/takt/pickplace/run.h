@@ -33,6 +33,8 @@ inline bool StopIsAsked(const State& s) noexcept {
 ErrorId Tell(const Context& c, const group::Command& command, group::State& g) noexcept;
 // All axes are on and the group takes moves.
 bool IsOn(const Context& c, const group::State& g) noexcept;
+// Why it is not, by its cause: an axis that is off, or the state of the group. kNone: it is.
+ErrorId WhyOff(const Context& c, const group::State& g) noexcept;
 // Nothing moves, whether a path is held or not.
 bool Stands(const Context& c, const group::State& g) noexcept;
 // It stands and has nothing to do.
