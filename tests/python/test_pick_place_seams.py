@@ -9,6 +9,48 @@ import takt
 from test_pick_place import started
 
 Other = Callable[[takt.Engine], object]
+READY = takt.PickPlaceState.READY
+
+
+def a_fault(engine: takt.Engine) -> None:
+    picker = engine.pick_place("picker")
+    picker.execute(0)
+    engine.run(0.1)
+    engine.axis("x").power(enable=False)
+    engine.run(0.5)
+    assert picker.state is takt.PickPlaceState.ERROR
+    picker.control(reset_error=True)
+    engine.run(1)
+    picker.control(reset_error=False)
+
+
+def enabled_by_others(engine: takt.Engine) -> None:
+    picker, group = engine.pick_place("picker"), engine.group("portal")
+    picker.control(stop_all=True)
+    engine.run(0.3)
+    group.enable()
+    engine.run(0.3)
+    picker.control(stop_all=False)
+
+
+@pytest.mark.parametrize(
+    "before", [lambda engine: None, a_fault, enabled_by_others], ids=["nothing", "fault", "others"]
+)
+def test_a_disable_of_its_group_is_not_undone(before: Other) -> None:
+    """PP-20: whatever the module was about to enable before; profiles never go on by themselves."""
+    engine = started()
+    picker, group = engine.pick_place("picker"), engine.group("portal")
+    before(engine)
+    engine.run(0.5)
+    assert (picker.state, picker.axes_group_enabled) == (READY, True)
+    placed = picker.placed
+    going = picker.execute(0)
+    engine.run(0.1)
+    group.disable()
+    engine.run(0.8)
+    assert going.aborted
+    assert (picker.state, picker.placed, picker.axes_group_enabled) == (READY, placed, False)
+
 
 REFUSALS: dict[str, tuple[Other, int]] = {
     "disabled": (lambda engine: engine.group("portal").disable(), 3025),

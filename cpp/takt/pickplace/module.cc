@@ -79,6 +79,7 @@ void Leave(const Context& c, FeedbackState feedback, ErrorId error, group::State
 void SwitchPower(const Context& c, group::State& g, State& s) {
   const bool rises = s.inputs.enable && s.inputs.regulator_on && (!s.before.regulator_on || !s.before.enable);
   const bool falls = !s.inputs.regulator_on && s.before.regulator_on;
+  if (IsOn(c, g)) s.enables = false;  // enabled, by any command: a `disable` given later holds
   if (rises && !IsOn(c, g)) {
     Tell(c, group::Power{.enable = true}, g);
     s.enables = true;
@@ -250,7 +251,7 @@ void InError(const Context& c, group::State& g, State& s) {
       !group::AllMembers(c.group, g, [](const axis::State& m) { return m.emergency == axis::Emergency::kNone; });
   if (!s.inputs.regulator_on || IsOn(c, g) || stopped) return;  // after an emergency stop it has to be asked for anew
   Tell(c, group::Power{.enable = true}, g);
-  s.enables = true;
+  s.enables = g.state == GroupState::kDisabled;
 }
 
 // READY and SERVICE are one another's: what the group does by itself is a service.
