@@ -178,8 +178,9 @@ def test_a_group_interrupted_by_itself_stays_the_rest_of_its_time() -> None:
     engine.run(1)
     assert not picker.synchronised
     assert not picking.final
-    begin = engine.now
     group.continue_path()
+    engine.wait(lambda: picker.synchronised, 1)
+    begin = engine.now
     picking.wait()
     assert engine.now - begin == pytest.approx(0.4, abs=0.005)
 

@@ -24,6 +24,7 @@ bool Push(const Request& move, State& s) noexcept {
 void Pop(const Context& c, FeedbackState feedback, ErrorId error, State& s, std::uint32_t element) noexcept {
   Report(c, MoveAt(s, s.done).ticket, feedback, error, element);
   MoveAt(s, s.done) = {};
+  if (feedback != FeedbackState::kDone) s.failed = s.done;
   s.queue.first = (s.queue.first + 1) % kQueue;
   --s.queue.count;
   ++s.done;

@@ -29,7 +29,7 @@ void Resume(const Context& c, Ticket ticket, group::State& g, State& s) {
 void Execute(const Context& c, Ticket ticket, group::State& g, State& s) {
   const bool moves = s.state == PickPlaceState::kPreparingPath || s.state == PickPlaceState::kMovePp;
   const bool returns = s.hold.returning;
-  if (!IsOn(c, g)) return Refuse(c, ticket, ErrorId::kPowerOff, s);
+  if (!IsOn(c, g)) return Refuse(c, ticket, WhyOff(c, g), s);
   if (StopIsAsked(s) || returns || !(moves || s.state == PickPlaceState::kReady)) {
     return Refuse(c, ticket, ErrorId::kState, s);
   }
@@ -43,7 +43,7 @@ void Execute(const Context& c, Ticket ticket, group::State& g, State& s) {
 }
 
 void Return(const Context& c, Ticket ticket, group::State& g, State& s) {
-  if (!IsOn(c, g)) return Refuse(c, ticket, ErrorId::kPowerOff, s);
+  if (!IsOn(c, g)) return Refuse(c, ticket, WhyOff(c, g), s);
   if (s.state != PickPlaceState::kReady || StopIsAsked(s) || !s.hold.held || !IsFree(c, g)) {
     return Refuse(c, ticket, ErrorId::kState, s);
   }
@@ -82,7 +82,7 @@ void CarryOut(const Context& c, Ticket ticket, double lease_s, const Jog& comman
   ErrorId error = ErrorId::kNone;
   if (!may) error = ErrorId::kState;
   if (s.jog.ticket == 0 && command.positive && command.negative) error = ErrorId::kParameter;  // which was first?
-  if (!IsOn(c, g)) error = ErrorId::kPowerOff;
+  if (!IsOn(c, g)) error = WhyOff(c, g);
   if (held && error != ErrorId::kNone) return Refuse(c, ticket, error, s);
   Report(c, ticket, FeedbackState::kActive);
   if (s.jog.ticket != 0) Report(c, s.jog.ticket, FeedbackState::kAborted);

@@ -101,7 +101,7 @@ void ComeToRest(const Context& c, const PathRamps& ramps, group::State& g, State
   if (s.lifting) return;
   const bool low = IsLow(c, g, s);
   const std::uint32_t belt = s.at_belt != 0 ? s.at_belt : s.parked_at;
-  LosePath(c, g, false, s);
+  LosePath(c, false, s);
   if (!low) return HaltGroup(c, g, s);
   // What moves is braked in step, and rises meanwhile; IsLifted gives the rest of the way up.
   const bool moves = g.pace.now.velocity > 0 || s.over.system != group::CoordinateSystem::kPcs;

@@ -21,6 +21,21 @@ bool IsOn(const Context& c, const group::State& g) noexcept {
   return takes && group::AllMembers(c.group, g, [](const axis::State& m) { return m.loop_closed; });
 }
 
+ErrorId WhyOff(const Context& c, const group::State& g) noexcept {
+  if (IsOn(c, g)) return ErrorId::kNone;
+  if (!group::AllMembers(c.group, g, [](const axis::State& m) { return m.loop_closed; })) return ErrorId::kPowerOff;
+  switch (g.state) {
+    case GroupState::kDisabled:
+      return ErrorId::kGroupDisabled;
+    case GroupState::kStopping:
+      return ErrorId::kAxisStopping;
+    case GroupState::kErrorStop:
+      return ErrorId::kErrorStop;
+    default:
+      return ErrorId::kState;
+  }
+}
+
 bool Stands(const Context& c, const group::State& g) noexcept {
   if (!group::AllMembers(c.group, g, axis::AtRest)) return false;
   return !g.begun || (g.interrupted && group::Rests(g));

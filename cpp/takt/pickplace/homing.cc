@@ -47,7 +47,7 @@ bool IsLooking(const axis::State& member) {
 void BeginHoming(const Context& c, Ticket ticket, group::State& g, State& s) noexcept {
   ErrorId error = ErrorId::kNone;
   if (s.state != PickPlaceState::kReady || StopIsAsked(s) || s.hold.held) error = ErrorId::kState;
-  if (!IsOn(c, g)) error = ErrorId::kPowerOff;
+  if (!IsOn(c, g)) error = WhyOff(c, g);
   if (error == ErrorId::kNone && !IsFree(c, g)) error = ErrorId::kState;
   if (error != ErrorId::kNone) {
     s.warning = error;

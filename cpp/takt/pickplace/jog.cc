@@ -171,7 +171,7 @@ void BeginJog(const Context& c, group::State& g, State& s) noexcept {
   if (!s.jog.keys.positive && !s.jog.keys.negative) return EndJog(c, FeedbackState::kDone, ErrorId::kNone, s);
   s.jog_sense = s.jog.keys.positive ? 1 : -1;
   const bool on_path = s.hold.held && g.interrupted;
-  if (s.hold.held) LosePath(c, g, on_path, s);
+  if (s.hold.held) LosePath(c, on_path, s);
   s.hold.off |= on_path;
   s.at_known = false;
   s.parked_at = 0;

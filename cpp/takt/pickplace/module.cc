@@ -64,8 +64,16 @@ PathRamps PathRampsOf(const State& s) {
   return {p.path_velocity, p.path_acceleration, p.path_deceleration, p.path_jerk};
 }
 
-// Forgets all and brings the tool to rest, as high as it can.
+// All that is done in this cycle.
+void ArriveAll(const Context& c, const group::State& g, State& s) {
+  while (Arrive(c, g, s)) {
+  }
+}
+
+// Forgets all and brings the tool to rest, as high as it can. A pick on its workpiece ends as with ack_gripper.
 void Leave(const Context& c, FeedbackState feedback, ErrorId error, group::State& g, State& s) {
+  ArriveAll(c, g, s);
+  if (IsOnWorkpiece(c, g, s)) Complete(c, s);
   const bool moves = IsOn(c, g) && !IsFree(c, g);
   if (moves && (s.lifting || IsLow(c, g, s))) {
     const PathRamps ramps = s.order_count > 0 ? s.orders[0].ramps : PathRampsOf(s);
@@ -79,6 +87,7 @@ void Leave(const Context& c, FeedbackState feedback, ErrorId error, group::State
 void SwitchPower(const Context& c, group::State& g, State& s) {
   const bool rises = s.inputs.enable && s.inputs.regulator_on && (!s.before.regulator_on || !s.before.enable);
   const bool falls = !s.inputs.regulator_on && s.before.regulator_on;
+  if (IsOn(c, g)) s.enables = false;  // enabled, by any command: a `disable` given later holds
   if (rises && !IsOn(c, g)) {
     Tell(c, group::Power{.enable = true}, g);
     s.enables = true;
@@ -111,24 +120,38 @@ double PathDeceleration(const State& s) {
   return s.order_count > 0 ? s.orders[0].ramps.deceleration : s.settings.path_deceleration;
 }
 
+// Where the path is held, for the way back.
+void NoteHold(const Context& c, const group::State& g, State& s) {
+  const Place place = PresentPlace(c, g);
+  s.hold.pose = place.pose;
+  s.hold.aux1 = place.aux1;
+  const bool going = s.order_count > 0 && s.orders[0].phase == Phase::kGoing && g.done > s.orders[0].first;
+  s.hold.legs = going ? static_cast<std::uint32_t>(g.done - s.orders[0].first) : 0;
+}
+
 void Interrupt(const Context& c, double deceleration, double jerk, group::State& g, State& s) {
   s.hold.held = true;
+  NoteHold(c, g, s);
   Tell(c, group::Interrupt{.deceleration = std::max(deceleration, PathDeceleration(s)), .jerk = jerk}, g);
 }
 
 // On its path; a tool that is low over a belt rises in step first, and its order begins anew from there (PP-61). A pick
 // that has arrived ends at once, whatever its height, as with ack_gripper: the tool does not return to that workpiece.
+// It is missed if the tool is not on it: another command had interrupted the group.
 void StopOnPath(const Context& c, double deceleration, double jerk, group::State& g, State& s) {
+  const std::uint32_t orders = s.order_count;
+  ArriveAll(c, g, s);
+  if (s.order_count == 0 && orders > 0 && !s.loop.active) return;  // nothing of the path is left
   const bool stays = s.order_count > 0 && s.orders[0].phase == Phase::kStaying;
   const bool low = s.lifting || IsLow(c, g, s);
   if (!stays && !low) return Interrupt(c, deceleration, jerk, g, s);
-  if (stays) Complete(c, s);
+  if (IsOnWorkpiece(c, g, s)) Complete(c, s);
   s.hold.held = s.order_count > 0 || s.loop.active;
   PathRamps ramps = PathRampsOf(s);
   ramps.deceleration = std::max(deceleration, PathDeceleration(s));
   ramps.jerk = jerk;
   if (low) return ComeToRest(c, ramps, g, s);
-  LosePath(c, g, false, s);
+  LosePath(c, false, s);
   HaltGroup(c, g, s, {.deceleration = ramps.deceleration, .jerk = jerk});
 }
 
@@ -150,7 +173,8 @@ void BeginStop(const Context& c, group::State& g, State& s) {
   if (s.order_count > 0) s.orders[0].gripper_off = true;
   if (s.inputs.stop_all) {
     if (s.hold.returning) EndReturn(c, FeedbackState::kAborted, s);
-    LosePath(c, g, false, s);
+    ArriveAll(c, g, s);
+    LosePath(c, false, s);
     s.hold = {};
     s.hold.held = s.order_count > 0 || s.loop.active;
     s.halting = false;
@@ -170,20 +194,19 @@ void BeginStop(const Context& c, group::State& g, State& s) {
   if (s.state != PickPlaceState::kStop) Enter(PickPlaceState::kStop, s);
 }
 
-// Where the path is held, for the way back. Somebody else may have moved the tool on.
-void WatchHold(const Context& c, const group::State& g, State& s) {
+// A path that is held is lost as soon as its group is not interrupted any more, whatever has ended that: another move,
+// a halt, a stop, power off, disable. What the group counts as over then says nothing about where the tool is. So is
+// one that is to be given again when the group moves meanwhile.
+void WatchHold(const Context& c, group::State& g, State& s) {
   if (!s.hold.held || s.hold.off) return;
-  if (g.interrupted && Stands(c, g)) {
-    const Place place = PresentPlace(c, g);
-    s.hold.pose = place.pose;
-    s.hold.aux1 = place.aux1;
-    return;
-  }
-  const bool going = s.order_count > 0 && s.orders[0].phase == Phase::kGoing && g.done <= s.orders[0].last;
-  if (going && !g.interrupted) {
-    LosePath(c, g, true, s);
-    s.hold.off = true;
-  }
+  if (g.interrupted) return NoteHold(c, g, s);
+  const Phase phase = s.order_count > 0 ? s.orders[0].phase : Phase::kNew;
+  s.hold.off = phase == Phase::kGoing || (phase == Phase::kHeld && !Stands(c, g));
+  if (phase != Phase::kGoing && !s.parking) return;
+  // Continued by another command it would go on to a workpiece that is not the order's any more.
+  const bool goes_on = g.failed < (phase == Phase::kGoing ? s.orders[0].first : s.parking_move) && g.queue.count > 0;
+  LosePath(c, true, s);
+  if (goes_on) HaltGroup(c, g, s);
 }
 
 void Abort(const Context& c, group::State& g, State& s) {
@@ -217,7 +240,7 @@ void InInterrupt(const Context& c, group::State& g, State& s) {
 
 void InReturn(const Context& c, group::State& g, State& s) {
   if (g.ends && g.reason != kinematics::Reason::kNone) return Fail(c, TroubleOf(g), g, s);
-  if (g.ends) {  // another command has stopped the group: the tool stays off its path
+  if (g.ends || g.failed >= s.hold.move) {  // another command has stopped the group: the tool stays off its path
     EndReturn(c, FeedbackState::kAborted, s);
     return Enter(PickPlaceState::kReady, s);
   }
@@ -250,7 +273,7 @@ void InError(const Context& c, group::State& g, State& s) {
       !group::AllMembers(c.group, g, [](const axis::State& m) { return m.emergency == axis::Emergency::kNone; });
   if (!s.inputs.regulator_on || IsOn(c, g) || stopped) return;  // after an emergency stop it has to be asked for anew
   Tell(c, group::Power{.enable = true}, g);
-  s.enables = true;
+  s.enables = g.state == GroupState::kDisabled;
 }
 
 // READY and SERVICE are one another's: what the group does by itself is a service.

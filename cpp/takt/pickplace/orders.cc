@@ -1,10 +1,18 @@
 // Targets, one behind the other: profiles to them are given to the group as moves, and watched.
+//
+// Invariant: a workpiece counts as picked, or a product as placed, only in a cycle in which the tool is at its place.
+// Complete() alone counts. It is called for a static order whose moves have all ended as done (HasArrived: a move that
+// was aborted is none), and for an order over a belt while IsOnWorkpiece() holds: the same, and the tool rests on the
+// workpiece in step. Both are looked at in the cycle itself, so a group that is interrupted, halted, disabled or moved
+// by other commands meanwhile never completes an order. An order that had arrived on its workpiece and ends otherwise
+// counts as missed, and deletes it: whether the gripper has it is not known (LetGoOfWorkpiece).
 #include <algorithm>
 #include <cmath>
 
 #include "takt/group/plan.h"
 #include "takt/group/switches.h"
 #include "takt/group/systems.h"
+#include "takt/group/track.h"
 #include "takt/pickplace/run.h"
 
 namespace takt::pickplace {
@@ -52,8 +60,34 @@ void Push(const Order& order, State& s) {
   s.orders[s.order_count++] = order;
 }
 
+// No other order gets the workpiece; `cause`: the counter of missed ones that says why.
+void MissWorkpiece(const Context& c, Order& order, std::uint32_t& cause, State& s) {
+  if (order.workpiece == 0) return;
+  conveyor::Remove(order.workpiece, *c.belts[order.belt - 1].state);
+  order.workpiece = 0;
+  ++s.counters.missed;
+  ++cause;
+}
+
+// Of an order that ends, or begins anew, before it is done.
+void LetGoOfWorkpiece(const Context& c, Order& order, State& s) {
+  if (order.phase == Phase::kStaying) MissWorkpiece(c, order, s.counters.interrupted, s);
+  GiveBackWorkpiece(c, order);
+}
+
+// Its moves are over, and none of them was aborted.
+bool HasArrived(const group::State& g, const Order& order) {
+  return order.phase == Phase::kGoing && g.done > order.last && g.failed < order.first;
+}
+
+// The group has aborted moves of the order, or of the way to the parking position.
+bool IsLost(const group::State& g, const State& s) {
+  const bool order = s.order_count > 0 && s.orders[0].phase == Phase::kGoing && g.failed >= s.orders[0].first;
+  return order || (s.parking && g.failed >= s.parking_move);
+}
+
 void Drop(const Context& c, std::uint32_t index, FeedbackState feedback, ErrorId error, State& s) {
-  GiveBackWorkpiece(c, s.orders[index]);
+  LetGoOfWorkpiece(c, s.orders[index], s);
   Report(c, s.orders[index].ticket, feedback, error);
   for (std::uint32_t i = index; i + 1 < s.order_count; ++i) s.orders[i] = s.orders[i + 1];
   s.orders[--s.order_count] = {};
@@ -230,6 +264,33 @@ void CountPick(const Context& c, const Order& order, State& s) {
 
 }  // namespace
 
+bool IsInStep(const Context& c, const group::State& g) noexcept {
+  return !g.interrupted && !g.ends && group::TrackStateOf(c.group, g) == group::TrackState::kInSync;
+}
+
+bool IsOnWorkpiece(const Context& c, const group::State& g, const State& s) noexcept {
+  if (s.order_count == 0 || s.orders[0].phase != Phase::kStaying) return false;
+  const bool at_end = g.done == s.orders[0].last + 1 && trajectory::Stands(g.pace);
+  return at_end && IsOn(c, g) && IsInStep(c, g);
+}
+
+bool Arrive(const Context& c, const group::State& g, State& s) noexcept {
+  if (s.parking && g.done > s.parking_move && g.failed < s.parking_move) s.parking = false;
+  if (g.ends || g.reason != kinematics::Reason::kNone) return false;
+  if (s.order_count == 0 || !HasArrived(g, s.orders[0])) return false;
+  Order& order = s.orders[0];
+  s.in_target = true;
+  if (order.pulse_at_end && order.gripper_time > 0 && !order.pulsed) s.pulse = order.pulsed = true;
+  if (IsStatic(order)) {
+    Complete(c, s);
+    return true;
+  }
+  Learn(TimeGone(c, order), order, s);
+  order.phase = Phase::kStaying;
+  order.stay_cycle = c.group.cycle.count;
+  return true;
+}
+
 void Complete(const Context& c, State& s) noexcept {
   Order& order = s.orders[0];
   CountPick(c, order, s);
@@ -252,29 +313,22 @@ void Go(const Context& c, group::State& g, State& s) {
     return;
   }
   if (g.reason != kinematics::Reason::kNone) return Fail(c, TroubleOf(g), g, s);
-  s.in_target = true;
-  if (order.pulse_at_end && order.gripper_time > 0 && !order.pulsed) s.pulse = order.pulsed = true;
-  if (IsStatic(order)) return Complete(c, s);
-  Learn(TimeGone(c, order), order, s);
-  order.phase = Phase::kStaying;
-  order.stay_cycle = c.group.cycle.count;
+  Arrive(c, g, s);
 }
 
 void Stay(const Context& c, const group::State& g, State& s) {
   Order& order = s.orders[0];
-  if (g.interrupted) ++order.stay_cycle;  // by another command: the tool stands, the workpiece moves on
+  const bool on = IsOnWorkpiece(c, g, s);
+  if (!on) ++order.stay_cycle;  // another command has interrupted the group: the workpiece moves on alone
   const double period = c.group.cycle.period_s;
   const double wanted = std::round(order.own.sync_time / period);
   const auto cycles = static_cast<std::uint64_t>(std::max(1.0, wanted));
   const std::uint64_t gone = c.group.cycle.count - order.stay_cycle;
-  if (s.ack || gone >= cycles) return Complete(c, s);
+  if (on && (s.ack || gone >= cycles)) return Complete(c, s);
   const bool there = conveyor::Find(*c.belts[order.belt - 1].state, order.workpiece) != nullptr;
-  if (!there || StaysWithin(c, g, order, static_cast<double>(cycles - gone) * period)) return;
-  // Whether the gripper has it is not known: nobody else gets it. What comes next leads up.
-  conveyor::Remove(order.workpiece, *c.belts[order.belt - 1].state);
-  order.workpiece = 0;
-  ++s.counters.missed;
-  ++s.counters.too_late;
+  if (on && !there) return;
+  if (there && StaysWithin(c, g, order, static_cast<double>(cycles - gone) * period)) return;
+  MissWorkpiece(c, order, s.counters.too_late, s);  // what comes next leads up
   order.phase = Phase::kNew;
 }
 
@@ -447,18 +501,17 @@ void EndOrders(const Context& c, FeedbackState feedback, ErrorId error, State& s
   s.scout = s.next_scout = {};
 }
 
-void LosePath(const Context& c, const group::State& g, bool kept, State& s) noexcept {
+void LosePath(const Context& c, bool kept, State& s) noexcept {
   for (std::uint32_t i = 0; i < s.order_count; ++i) {
     Order& order = s.orders[i];
     if (i == 0 && kept && order.phase == Phase::kGoing && IsStatic(order)) {
-      const std::uint64_t gone = g.done > order.first ? g.done - order.first : 0;
-      order.next_leg = std::min(order.next_leg + static_cast<std::uint32_t>(gone), order.profile.count - 1);
+      order.next_leg = std::min(order.next_leg + s.hold.legs, order.profile.count - 1);
       order.phase = Phase::kHeld;
       continue;
     }
     if (i == 0 && kept && order.phase == Phase::kHeld) continue;
-    if (order.workpiece != 0) order.left = order.workpiece;
-    GiveBackWorkpiece(c, order);
+    if (order.workpiece != 0 && order.phase != Phase::kStaying) order.left = order.workpiece;
+    LetGoOfWorkpiece(c, order, s);
     order.phase = Phase::kNew;
   }
   ForgetPlace(s);
@@ -481,11 +534,12 @@ void RunOrders(const Context& c, group::State& g, State& s) noexcept {
   }
   if (s.lifting && !IsLifted(c, g, s)) return;
   if (g.gets_off) {  // its belt would have carried it into a zone that it waits for: from there anew
-    LosePath(c, g, false, s);
+    LosePath(c, false, s);
     return HaltGroup(c, g, s);
   }
   if (g.ends && g.reason != kinematics::Reason::kNone) return Fail(c, TroubleOf(g), g, s);
-  if (g.ends) {  // somebody else told the group to
+  // Other commands have ended the group's moves.
+  if (g.ends || (IsLost(g, s) && g.reason == kinematics::Reason::kNone)) {
     EndOrders(c, FeedbackState::kAborted, ErrorId::kNone, s);
     return Enter(PickPlaceState::kReady, s);
   }

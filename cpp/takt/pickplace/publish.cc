@@ -84,7 +84,7 @@ double PicksPerMinute(const Context& c, const State& s) {
   return 60 * static_cast<double>(known - 1) / (static_cast<double>(last - first) * c.group.cycle.period_s);
 }
 
-void PublishOrder(const group::State& g, const State& s, Outputs& out) {
+void PublishOrder(const Context& c, const group::State& g, const State& s, Outputs& out) {
   out.profiles = s.order_count;
   if (s.order_count == 0) return;
   const Order& order = s.orders[0];
@@ -92,7 +92,7 @@ void PublishOrder(const group::State& g, const State& s, Outputs& out) {
   out.workpiece = order.workpiece;
   out.gripper_control_active =
       order.gripper_time > 0 && !order.gripper_off && !order.pulse_at_end && !HasOverride(g, s);
-  out.synchronised = order.phase == Phase::kStaying && !g.interrupted;
+  out.synchronised = IsOnWorkpiece(c, g, s);
   if (order.phase != Phase::kGoing) return;
   const std::uint64_t gone = g.done > order.first ? g.done - order.first : 0;
   const auto leg = std::min(order.next_leg + static_cast<std::uint32_t>(gone), order.profile.count);
@@ -102,8 +102,8 @@ void PublishOrder(const group::State& g, const State& s, Outputs& out) {
   if (!carried || !moves) return;
   out.acc_dec_sync = order.profile.legs[leg].turns;
   const bool lifts = leg == 0;
-  out.synchronised =
-      !out.acc_dec_sync && (lifts ? order.start.system == group::CoordinateSystem::kPcs : order.belt != 0);
+  out.synchronised = !out.acc_dec_sync &&
+                     (lifts ? order.start.system == group::CoordinateSystem::kPcs : order.belt != 0) && IsInStep(c, g);
 }
 
 }  // namespace
@@ -125,7 +125,7 @@ void Publish(const Context& c, const group::State& g, const State& s, Outputs& o
   out.precalculated_profile_time = s.profile_time;
   PublishAxes(c, g, s, out);
   PublishTool(c, g, out);
-  PublishOrder(g, s, out);
+  PublishOrder(c, g, s, out);
   PublishCounters(s.counters, out);
   out.picks_per_minute = PicksPerMinute(c, s);
   out.internal_control_active = s.inputs.internal_control;

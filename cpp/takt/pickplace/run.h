@@ -33,6 +33,8 @@ inline bool StopIsAsked(const State& s) noexcept {
 ErrorId Tell(const Context& c, const group::Command& command, group::State& g) noexcept;
 // All axes are on and the group takes moves.
 bool IsOn(const Context& c, const group::State& g) noexcept;
+// Why it is not, by its cause: an axis that is off, or the state of the group. kNone: it is.
+ErrorId WhyOff(const Context& c, const group::State& g) noexcept;
 // Nothing moves, whether a path is held or not.
 bool Stands(const Context& c, const group::State& g) noexcept;
 // It stands and has nothing to do.
@@ -80,7 +82,14 @@ void CountLost(const Context& c, State& s) noexcept;
 // Takes a target; belt 0: the static one. An error: it was refused, and told.
 void Accept(const Context& c, Ticket ticket, std::uint32_t belt, State& s) noexcept;
 void BeginLoop(const Context& c, Ticket ticket, State& s) noexcept;
-// The order that is gone is done.
+// The tool moves with what carries it, and nothing is left to catch up with.
+bool IsInStep(const Context& c, const group::State& g) noexcept;
+// It does at the end of the order's profile: on its workpiece.
+bool IsOnWorkpiece(const Context& c, const group::State& g, const State& s) noexcept;
+// Notes that the moves of the order that is gone have ended as done in this cycle: a static one is done then. False:
+// they have not.
+bool Arrive(const Context& c, const group::State& g, State& s) noexcept;
+// The order that is gone is done. Requires: see the invariant in orders.cc.
 void Complete(const Context& c, State& s) noexcept;
 // Goes on with what is to be done; MOVE_PP and PREPARING_PATH.
 void RunOrders(const Context& c, group::State& g, State& s) noexcept;
@@ -98,8 +107,8 @@ inline double TimeGone(const Context& c, const Order& order) noexcept {
 void Learn(double takes_s, const Order& order, State& s) noexcept;
 // All are forgotten.
 void EndOrders(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
-// What was given to the group is lost: orders begin anew, where `kept` from where the path was left.
-void LosePath(const Context& c, const group::State& g, bool kept, State& s) noexcept;
+// What was given to the group is lost: orders begin anew, where `kept` from where the path was held (Hold::legs).
+void LosePath(const Context& c, bool kept, State& s) noexcept;
 // The group comes to rest and forgets its moves.
 void HaltGroup(const Context& c, group::State& g, State& s, const group::Halt& halt = {}) noexcept;
 

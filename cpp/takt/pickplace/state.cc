@@ -71,6 +71,7 @@ void describe(Description<Hold>& d) {
   d.internal<&Hold::ticket>("Of the way back.");
   d.internal<&Hold::pose>("Where it was left, in the MCS.");
   d.internal<&Hold::aux1>("Of the auxiliary axis there.");
+  d.internal<&Hold::legs>("Legs of the order that were done there.");
   d.internal<&Hold::move>("Number of the way back.");
 }
 

@@ -85,6 +85,7 @@ struct Hold {
   Ticket ticket = 0;      // of the way back
   kinematics::Pose pose;  // in the MCS: where it was left
   double aux1 = 0;
+  std::uint32_t legs = 0;  // of the order, from its first one given on, that were done then
   std::uint64_t move = 0;  // of the way back
 };
 

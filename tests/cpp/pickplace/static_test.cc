@@ -206,7 +206,9 @@ TEST(Static, ProfileTimeIsKnownWhenTheToolSetsOut) {
     EXPECT_NEAR(told, 0.001 * cycles, k == 0 ? 0.0051 : 0.0021) << k;
     EXPECT_NEAR(later, told, 0.0021) << k;
     // The corner before the last line stays open as long as there is time.
-    if (k + 1 < tickets.size()) EXPECT_LE(known, k == 0 ? 60 : 1) << k;
+    if (k + 1 < tickets.size()) {
+      EXPECT_LE(known, k == 0 ? 60 : 1) << k;
+    }
   }
 }
 
