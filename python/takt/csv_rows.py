@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import os
 import re
 from collections.abc import Sequence
@@ -44,9 +45,10 @@ def read_rows(file: str | os.PathLike[str], error: type[TaktError]) -> Rows:
     OSError where it cannot be read."""
     with Path(file).open(encoding="utf-8-sig", newline="") as source:
         try:
-            delimiter = _delimiter(source.readline())
-            source.seek(0)
-            table = csv.DictReader(source, restkey="", delimiter=delimiter, skipinitialspace=True, strict=True)
+            text = io.StringIO(source.read(), newline="")
+            delimiter = _delimiter(text.readline())
+            text.seek(0)
+            table = csv.DictReader(text, restkey="", delimiter=delimiter, skipinitialspace=True, strict=True)
             head, rows = table.fieldnames or (), []
             for row in table:
                 more: Any = row.get("")  # text where the head ends in a comma

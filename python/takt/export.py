@@ -109,7 +109,7 @@ def _check_times(recording: Recording) -> None:
     """Raises ExportError where a time is none that MCAP can hold."""
     times = [*(recording[name]["time_s"] for name in recording), [event.time_s for event in recording.events]]
     for time_s in map(np.asarray, times):
-        wrong = time_s[~((time_s >= 0.0) & (time_s < LATEST_S))]
+        wrong = time_s[~((time_s > -0.5e-9) & (time_s < LATEST_S))]  # in whole ns
         if len(wrong):
             raise ExportError(
                 f"MCAP has no time {wrong[0]:g} s, only times from 0 s to {LATEST_S:.3g} s: export a part"

@@ -18,12 +18,13 @@ import difflib
 import importlib.util
 import inspect
 import os
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 from urllib.parse import urlencode
 
 import numpy as np
@@ -131,6 +132,8 @@ class Scenario:
 
     def _like(self, name: str, value: Any, default: Any) -> Any:
         """A value of the kind of the default; ScenarioError where it is of another kind."""
+        if isinstance(value, np.generic):
+            value = value.item()
         number = isinstance(value, int | float) and not isinstance(value, bool)
         hint = ""
         if isinstance(default, bool):
@@ -158,10 +161,13 @@ class Scenario:
         raise ScenarioError(f"{self.path}: {name}: expected {expected}, found {shown}{hint}")
 
     def _is_float(self, name: str) -> bool:
-        """Whether a function annotates a parameter as float."""
+        """Whether a function annotates a parameter as float, maybe among others."""
         functions = (self.scenario, self.verify, self.pictures, self.results)
         found = [getattr(function, "__annotations__", {}).get(name) for function in functions if function is not None]
-        return any(kind is float or kind == "float" for kind in found)
+        return any(
+            kind is float or float in get_args(kind) or (isinstance(kind, str) and re.search(r"\bfloat\b", kind))
+            for kind in found
+        )
 
     def _arguments_of(self, function: Callable[..., object]) -> dict[str, Any]:
         if not self.arguments:

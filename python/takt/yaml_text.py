@@ -11,6 +11,8 @@ import yaml
 
 # Space to the engine, or part of a comment or a text; to PyYAML an error or the end of the line.
 _LEGIBLE = str.maketrans(dict.fromkeys("\t\u2028\u2029\ufffe\uffff", " "))
+_INDENT = re.compile(r"^ +", re.MULTILINE)
+DEEPEST = 100  # levels of a text
 _ESCAPED = re.compile("[\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]")
 
 
@@ -21,6 +23,22 @@ class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[mi
 _Loader.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"[-+]?\d+[eE][-+]?\d+$"), list("-+0123456789"))
 
 
+def _may_nest_deeper(text: str) -> bool:
+    """Whether values might nest deeper than DEEPEST: by all brackets, dashes and the largest indentation."""
+    opened = text.count("[") + text.count("{") + text.count("- ") + text.count("? ")
+    if opened <= DEEPEST and max((len(indent) for indent in _INDENT.findall(text)), default=0) <= DEEPEST:
+        return False
+    level = 0
+    try:
+        for event in yaml.parse(legible(text), Loader=_Loader):
+            level += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+            if level > DEEPEST:
+                return True
+    except yaml.YAMLError:  # said by the one that calls
+        pass
+    return False
+
+
 def legible(text: str) -> str:
     """The text as PyYAML must be given it for the structure that the engine reads; each character keeps its index."""
     return text.translate(_LEGIBLE)
@@ -28,6 +46,8 @@ def legible(text: str) -> str:
 
 def load(text: str) -> Any:
     """The value of a text that the engine accepts. Raises yaml.YAMLError or ValueError."""
+    if _may_nest_deeper(text):  # libyaml's composer recurses without a limit
+        raise ValueError(f"expected YAML that nests {DEEPEST} levels at most")
     try:
         return yaml.load(text, Loader=_Loader)
     except yaml.YAMLError:

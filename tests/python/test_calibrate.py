@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -124,6 +126,16 @@ def test_tables_with_decimal_commas(separator: str, tmp_path: Path, capsys: pyte
     (tmp_path / "points.csv").write_text("x;y;z\n0;0;0\n1,5;2,5;3,5;4\n0;9;0\n")
     assert main(["calibrate", "frame", str(tmp_path / "points.csv")]) == 2
     assert ":3: expected 3 fields as in the head, found 4" in capsys.readouterr().err
+
+
+def test_a_table_from_a_pipe(tmp_path: Path) -> None:
+    """GR-46: what cannot be read twice."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    writer = threading.Thread(target=pipe.write_text, args=("x,y,z\n100,50,10\n100,150,10\n20,60,10\n",))
+    writer.start()
+    assert main(["calibrate", "frame", str(pipe)]) == 0
+    writer.join()
 
 
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

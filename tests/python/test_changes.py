@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import takt
 import yaml
@@ -207,6 +208,7 @@ def test_parameters_have_defaults(folder: Path) -> None:
         ("n=1", "3.0", 3),
         ("n=1", "1e3", 1000),
         ("n: float = 1", "2.5", 2.5),
+        ("n: float | None = 1", "2.5", 2.5),
         ("n=1.0", "2", 2.0),
         ('mode="a"', "3", "3"),
         ('mode="a"', "007", "007"),
@@ -221,6 +223,14 @@ def test_values_are_of_the_kind_of_their_default(folder: Path, parameter: str, v
     scenario, _ = with_settings(load_scenario("scenario.py"), settings_of([f"{name}={value}"]))
     assert scenario.arguments == {name: expected}
     assert type(scenario.arguments[name]) is type(expected)
+
+
+def test_values_of_numpy(folder: Path) -> None:
+    """PY-24: as arrays hold them."""
+    (folder / "scenario.py").write_text("def scenario(session, v=50.0, n=3, up=True): pass\n")
+    given = {"v": np.float32(40), "n": np.arange(5)[4], "up": np.bool_(False)}
+    assert load_scenario("scenario.py").with_arguments(given).arguments == {"v": 40.0, "n": 4, "up": False}
+    assert load_scenario("scenario.py").with_arguments({"v": np.int64(40)}).arguments == {"v": 40.0}
 
 
 @pytest.mark.parametrize(

@@ -43,7 +43,7 @@ def test_every_kind_is_known_everywhere() -> None:
 
 
 def test_values_before_the_first_cycle() -> None:
-    """PY-02: those of an idle one, as another process would have heard them; of every kind, also what is set up there."""
+    """PY-02: those of an idle one, as another process would have heard them, of every kind."""
     with takt.Engine({"name": "full", **FULL}) as engine:
         kinds = {c.KIND: c for c in engine.components.values()}
         fields = {name: list(KINDS[c.KIND].places) for name, c in engine.components.items()}

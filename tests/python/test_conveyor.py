@@ -515,8 +515,8 @@ def test_power_off_ends_a_track_that_waits(how: str) -> None:
 @pytest.mark.parametrize("event", ["interrupted", "interrupted and continued", "faster"])
 def test_a_move_is_done_where_the_tool_is_on_its_place(buffered: bool, early_s: float, event: str) -> None:
     """GR-22, CT-03: whether another move waits behind it or not, and whatever comes before its end."""
-    text = MACHINE.replace("400000}\n", "400000}\n    tracking: {after_sync: limited}\n") if event == "faster" else MACHINE
-    text = text.replace("limits: {velocity: 500, acceleration: 2000,", "limits: {velocity: 500, acceleration: 50000,", 1)
+    limited = "400000}\n    tracking: {after_sync: limited}\n" if event == "faster" else "400000}\n"
+    text = MACHINE.replace("400000}\n", limited).replace("acceleration: 2000,", "acceleration: 50000,", 1)
 
     def begin(engine: takt.Engine) -> tuple[takt.Group, list[takt.Feedback]]:
         gantry = ready(engine)
@@ -557,10 +557,12 @@ def test_a_move_is_done_where_the_tool_is_on_its_place(buffered: bool, early_s: 
 
 def test_a_system_of_which_nothing_is_known() -> None:
     """CT-12: a pose that was never given, and a group without kinematics, carry nothing; there is no move in them."""
-    text = MACHINE.replace(
-        "belts:\n",
-        "  - {name: pair, axes: [u, v]}\nposes: [{name: camera}]\nbelts:\n",
-    ).replace("groups:\n", "".join(f"  - {{name: {n}, unit: mm}}\n" for n in "uv") + "groups:\n")
+    pair = "  - {name: pair, axes: [u, v], path: {velocity: 800, acceleration: 8000, jerk: 400000}}\n"
+    limits = "limits: {velocity: 1000, acceleration: 10000, jerk: 500000}"
+    axes = "".join(f"  - {{name: {name}, unit: mm, {limits}}}\n" for name in "uv")
+    text = MACHINE.replace("belts:\n", f"{pair}poses: [{{name: camera}}]\nbelts:\n").replace(
+        "groups:\n", f"{axes}groups:\n"
+    )
     with takt.Engine(text) as engine:
         gantry = ready(engine)
         gantry.move_linear_absolute(x=200, y=50, z=10).wait()

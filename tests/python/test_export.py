@@ -228,6 +228,15 @@ def test_times_that_mcap_does_not_have(by_s: float, tmp_path: Path, capsys: pyte
     assert not (tmp_path / "a.mcap").exists()
 
 
+def test_times_that_are_0_but_for_rounding(tmp_path: Path) -> None:
+    """PY-27: in nanoseconds they are."""
+    shifted = two_rates().shifted(-2.0).shifted(-5.6e-17)
+    assert min(shifted[name]["time_s"][0] for name in shifted) < 0
+    shifted.save(tmp_path / "a.npz")
+    assert main(["export", str(tmp_path / "a.npz"), "--mcap", str(tmp_path / "a.mcap")]) == 0
+    assert read(tmp_path / "a.mcap")[1]
+
+
 def test_the_part_from_0_s_on_has_times_of_mcap(tmp_path: Path) -> None:
     """PY-27: `--from 0` leaves out what was before."""
     two_rates().shifted(-2.01).save(tmp_path / "a.npz")

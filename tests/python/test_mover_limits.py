@@ -319,6 +319,12 @@ def test_the_way_back_to_a_track_is_within_the_limits(cycles: int, how: str) -> 
     recording = recorder.recording
     verdict = checks.within_limits(recording, "one")
     assert verdict.passed, verdict.sentence
+    # A part of it begins on the way back.
+    time_s = recording["one"]["time_s"]
+    ended_s = float(time_s[np.flatnonzero(recording["one"]["external"] > 0)[-1]])
+    for later_s in (0.002, 0.02, 0.05, 0.3):
+        part = checks.within_limits(recording, "one", window=(ended_s + later_s, float(time_s[-1])))
+        assert part.passed, part.sentence
     # From where it is back and at rest all is checked again.
     last = len(recording["one"]) - 2
     assert not checks.within_limits(changed(recording, "acceleration_y", put(last, 9000)), "one").passed

@@ -281,6 +281,8 @@ def test_lists_and_whole_texts_of_arguments() -> None:
     assert values(("axis", "power"), "enable_positive", False, ua.VariantType.Boolean) is False
     for of, name, wrong, kind, status in (
         (("machine", "add_cam_points"), "points", "[{x: 0", ua.VariantType.String, ua.StatusCodes.BadOutOfRange),
+        (("machine", "add_cam_points"), "points", "[" * 30_000, ua.VariantType.String, ua.StatusCodes.BadOutOfRange),
+        (("machine", "add_cam_points"), "points", "- " * 30_000, ua.VariantType.String, ua.StatusCodes.BadOutOfRange),
         (("machine", "add_cam_points"), "points", "[{1: 0}]", ua.VariantType.String, ua.StatusCodes.BadOutOfRange),
         (("axis", "power"), "buffer_mode", 99, ua.VariantType.Int32, ua.StatusCodes.BadOutOfRange),
         (("axis", "power"), "buffer_mode", "later", ua.VariantType.String, ua.StatusCodes.BadOutOfRange),

@@ -496,3 +496,31 @@ def test_a_phase_stays_when_the_ratio_changes(s: takt.Engine, done: bool) -> Non
     rest = 0.0 if done else lag[-1] - lag[r["y"]["phase_shift"] > r["y"]["phase_shift"][300]][0]
     assert rest == pytest.approx(0.0 if done else 1.5 * (10 - r["y"]["phase_shift"][300]), abs=0.2)
     takt.expect.within_limits(r, "y")
+
+
+def test_a_cam_that_waits_keeps_what_is_on_top_when_it_changes(s: takt.Engine) -> None:
+    """AX-111, AX-35: its phase, done or on its way, and added cams."""
+    places = []
+    for scale in (None, 1 + 1e-9):
+        with takt.Engine(MACHINE) as engine:
+            x, y = engine.axis("x"), engine.axis("y")
+            for axis in (x, y):
+                axis.power().wait()
+            cam = {"master": "x", "cam": "hill", "periodic": True, "start_mode": "absolute"}
+            waits = {**cam, "master_start_distance": 20.0, "master_sync_position": 50.0}
+            y.cam_in(**waits)
+            added = y.cam_add(cam="hill", slave_scaling=0.5)
+            shift = y.phasing_absolute(phase_shift=10, velocity=20)
+            engine.run(0.1)
+            if scale is not None:
+                assert not shift.done
+                y.cam_in(**waits, slave_scaling=scale, update=True)
+            engine.run(2)
+            assert added.done
+            x.move_absolute(position=130, velocity=100).wait()
+            engine.run(0.2)
+            assert y.in_step
+            assert shift.done
+            assert y.phase_shift == pytest.approx(10)
+            places.append(y.set_position)
+    assert places[0] == pytest.approx(places[1], abs=1e-4)

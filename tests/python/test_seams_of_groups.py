@@ -216,14 +216,23 @@ def test_a_blend_that_cuts_a_zone_waits_however_much_is_planned(lines: int) -> N
     assert last.wait().done
 
 
+@pytest.mark.parametrize("waits", [False, True])
 @pytest.mark.parametrize("what", ["kinematics", "member", "all members", "tool", "position"])
-def test_a_tool_that_carries_another_stays(what: str) -> None:
-    """GR-05, GR-30: what takes the tool of a group away, or makes it jump, is refused while another rides on it."""
+def test_a_tool_that_carries_another_stays(what: str, waits: bool) -> None:
+    """GR-05, GR-30: what takes the tool of a group away, or makes it jump, is refused while another rides on it, and
+    while a move waits that will."""
     engine = enabled(TWO)
     left, right = engine.group("left"), engine.group("right")
     left.move_linear_absolute(x=200, y=100).wait()
     right.set_dyn_coord_transform(pcs=1, carrier="left", x=10).wait()
-    right.move_linear_absolute(x=0, y=0, z=20, coordinate_system="pcs", pcs=1).wait()
+    if waits:
+        right.move_linear_absolute(x=300, y=300)
+        mode = "buffered"
+    else:
+        mode = "aborting"
+    move = right.move_linear_absolute(x=0, y=0, z=20, coordinate_system="pcs", pcs=1, buffer_mode=mode)
+    if not waits:
+        move.wait()
     engine.run(0.1)
     commands = {
         "kinematics": lambda: left.set_kin_transform(enable=False),
@@ -233,7 +242,7 @@ def test_a_tool_that_carries_another_stays(what: str) -> None:
         "position": lambda: left.define_position(a1=150, coordinate_system="acs"),
     }
     assert commands[what]().wait_final().error_id == NOT_LEGAL
-    engine.run(0.5)
+    engine.run(10 if waits else 0.5)
     assert right.pose[:3] == pytest.approx((210, 100, 20), abs=1e-6)
     right.stop().wait()
     right.move_linear_absolute(x=0).wait()

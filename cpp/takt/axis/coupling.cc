@@ -473,10 +473,14 @@ void Couple(const Context& c, const Request& r, State& s) noexcept {
   Enter(s, PlcState::kSynchronizedMotion);
 }
 
-void UpdateGear(const Context& c, const Request& r, State& s) noexcept {
+namespace {
+
+// Couples anew and keeps what has been put on top: the phase, and the cams of a cam.
+void CoupleAgain(const Context& c, const Request& r, State& s) {
   const CouplingState was = s.coupling;
   Couple(c, r, s);
   CouplingState& k = s.coupling;
+  k.added = was.added;
   k.phase = was.phase;
   k.phase_start = was.phase_start;
   k.phase_now = was.phase_now;
@@ -490,9 +494,15 @@ void UpdateGear(const Context& c, const Request& r, State& s) noexcept {
   }
 }
 
+}  // namespace
+
+void UpdateGear(const Context& c, const Request& r, State& s) noexcept {
+  CoupleAgain(c, r, s);
+}
+
 void UpdateCam(const Context& c, const Request& r, State& s) noexcept {
   CouplingState& k = s.coupling;
-  if (k.joining == Joining::kWaiting) return Couple(c, r, s);  // it has not begun yet
+  if (k.joining == Joining::kWaiting) return CoupleAgain(c, r, s);  // it has not begun yet
   const CamLaw was = CamOf(c, s.active);
   const CamLaw law = CamOf(c, r);
   const bool fixed = k.law.master_absolute || k.law.at_sync_position;  // x counts from a place of the master

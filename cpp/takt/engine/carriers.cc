@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <variant>
 
+#include "takt/group/queue.h"
 #include "takt/kinematics/kinematics.h"
 
 namespace takt::engine {
@@ -79,7 +80,11 @@ bool TakesToolAway(const group::Command& command) noexcept {
 bool IsRidden(const World& w, std::size_t group) noexcept {
   const std::size_t number = w.belts.size() + group + 1;
   return std::ranges::any_of(w.group_states, [&](const group::State& rider) {
-    return std::ranges::any_of(rider.ridden, [&](std::uint32_t carrier) { return carrier == number; });
+    bool rides = std::ranges::find(rider.ridden, number) != rider.ridden.end();
+    for (std::size_t i = 0; i < rider.queue.count; ++i) {
+      rides = rides || group::MoveAt(rider, rider.done + i).cargo.carrier == number;
+    }
+    return rides;
   });
 }
 

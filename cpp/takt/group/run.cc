@@ -114,9 +114,12 @@ bool Follow(const Context& c, State& s) {
   return true;
 }
 
-// Whether the path is at the end of a move and the tool is not, for what carries it goes on without it.
+// Whether the path is at the end of a move and the tool is not: what carries it goes on without it, or the axes come
+// after both.
 bool ComesAfter(const Context& c, const State& s) {
-  return s.pace.raw_stands && c.ahead.window[s.pace.node].stop && (s.lets_go || Slips(s));
+  const bool at_end = s.pace.raw_stands && c.ahead.window[s.pace.node].stop;
+  const bool rides = std::ranges::any_of(s.ridden, [](std::uint32_t carrier) { return carrier != 0; });
+  return at_end && rides && (s.lets_go || Slips(s) || !AreInStep(c, s));
 }
 
 // Moves whose last stretch is behind are done; the one that is being gone is active.

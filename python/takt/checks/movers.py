@@ -121,13 +121,17 @@ def _given(check: Check, mover: str) -> Mask:
 
 
 def _added(check: Check, mover: str) -> Mask:
-    """On a track: set points come from outside, or have ended and the mover is not back on the track and at rest yet.
-    What they add there and the motion along the track each keep the limits by themselves."""
-    given = _given(check, mover)
-    rests = ~given & (check.series(mover, "busy_xyc").values == 0)
+    """On a track: set points come from outside, or have ended and the mover is not back on the track and at rest yet,
+    also where they ended before the window. What they add there and the motion along the track each keep the limits by
+    themselves."""
+    table = check.recording[mover]
+    given = np.asarray(table["external"] > 0)
+    rests = ~given & (np.asarray(table["busy_xyc"]) == 0)
     count = np.arange(len(given))
     last_given, last_rest = (np.maximum.accumulate(np.where(one, count, -1)) for one in (given, rests))
-    return np.asarray(_modes(check, mover) & (last_given > last_rest))
+    cycles = check.series(mover, "external").cycle
+    behind = np.asarray(last_given > last_rest)[np.isin(table["cycle"], cycles)]
+    return np.asarray(_modes(check, mover) & behind)
 
 
 def _pushed(given: Mask) -> Mask:

@@ -286,8 +286,8 @@ TEST(GearInPos, IsInStepAtTheSyncPosition) {
   }
 }
 
-// AX-45: on rotary axes the next turn ahead counts; the sync mode says which turn of the slave, alike in both senses and
-// with both signs of the ratio.
+// AX-45: on rotary axes the next turn ahead counts; the sync mode says which turn of the slave, alike in both senses
+// and with both signs of the ratio.
 TEST(GearInPos, ChoosesTheTurn) {
   for (const axis::SyncMode mode : {axis::SyncMode::kShortest, axis::SyncMode::kCatchUp, axis::SyncMode::kSlowDown}) {
     for (const auto& [sense, ratio] : {std::pair{1, 1}, {-1, 1}, {1, -1}, {-1, -1}}) {
