@@ -524,10 +524,26 @@ def test_targets_that_cannot_be_are_named() -> None:
         takt.plan_surface(engine, {"d": at((0, 0))})
     with pytest.raises(TypeError, match="dynamics are velocity, acceleration, jerk, not speed"):
         takt.plan_surface(engine, {"a": at((4, 0))}, speed=1)
-    with pytest.raises(takt.RoutingError, match="velocity is above 0"):
-        takt.plan_surface(engine, {"a": at((4, 0))}, velocity=0)
-    with pytest.raises(takt.RoutingError, match="effort and seed are 0 or more"):
-        takt.plan_surface(engine, {"a": at((4, 0))}, effort=-1)
+    with pytest.raises(takt.RoutingError, match="targets are places by mover, or a list of places, not 5"):
+        takt.plan_surface(engine, 5)  # type: ignore[arg-type]
+    given: list[tuple[dict[str, object], str]] = [
+        ({"velocity": 0}, "velocity is a number above 0, not 0"),
+        ({"velocity": "fast"}, "velocity is a number above 0, not 'fast'"),
+        ({"jerk": math.nan}, "jerk is a number above 0, not nan"),
+        ({"pitch": "a"}, "the pitch is a number above 0 mm, not 'a'"),
+        ({"origin": (math.nan, 0)}, r"the origin is X and Y in mm, not \(nan, 0\)"),
+        ({"origin": (5,)}, r"the origin is X and Y in mm, not \(5,\)"),
+        ({"origin": "ab"}, "the origin is X and Y in mm, not 'ab'"),
+        ({"effort": -1}, "effort is a whole number from 0 to 9223372036854775807, not -1"),
+        ({"effort": 1.5}, "effort is a whole number .* not 1.5"),
+        ({"effort": "x"}, "effort is a whole number .* not 'x'"),
+        ({"seed": 2**70}, "seed is a whole number from 0"),
+    ]
+    for options, sentence in given:
+        with pytest.raises(takt.RoutingError, match=sentence):
+            takt.plan_surface(engine, {"a": at((4, 0))}, **options)  # type: ignore[arg-type]
+        with pytest.raises(takt.RoutingError, match=sentence):
+            takt.SurfaceRouter(engine, **options)  # type: ignore[arg-type]
     assert takt.plan_surface(engine, {}).sum_s == 0
     assert takt.plan_surface(engine, {"a": at((0, 0))}).targets == {"a": at((0, 0))}  # it is there
 
@@ -536,7 +552,7 @@ def test_rasters_that_cannot_be_are_named() -> None:
     engine = engine_of({"a": (0, 0), "b": (3, 3)}, square(2))
     with pytest.raises(takt.RoutingError, match="mover a is 113 mm large, and has no room in places of 80 mm"):
         takt.plan_surface(engine, {"a": at((1, 0))}, pitch=80)
-    with pytest.raises(takt.RoutingError, match="the pitch is above 0 mm"):
+    with pytest.raises(takt.RoutingError, match="the pitch is a number above 0 mm"):
         takt.plan_surface(engine, {"a": at((1, 0))}, pitch=-1)
     with pytest.raises(takt.RoutingError, match=r"mover a at \(60, 60\) is not in the middle of a place"):
         takt.plan_surface(engine, {"a": at((1, 0))}, pitch=160)

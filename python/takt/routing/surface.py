@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any
 
 from takt import _core
@@ -114,10 +115,19 @@ class Options:
         for key, value in self.dynamics.items():
             if key not in DYNAMICS:
                 raise TypeError(f"dynamics are {', '.join(DYNAMICS)}, not {key}")
-            if not 0 < value < math.inf:
-                raise RoutingError(f"{key} is above 0, not {value:.6g}")
-        if self.effort < 0 or self.seed < 0:
-            raise RoutingError(f"effort and seed are 0 or more, not {self.effort} and {self.seed}")
+            if not (_is_number(value) and 0 < value < math.inf):
+                raise RoutingError(f"{key} is a number above 0, not {value!r}")
+        if self.pitch is not None and not (_is_number(self.pitch) and 0 < self.pitch < math.inf):
+            raise RoutingError(f"the pitch is a number above 0 mm, not {self.pitch!r}")
+        if self.origin is not None:
+            _point("the origin", self.origin)
+        for key, count in (("effort", self.effort), ("seed", self.seed)):
+            if not isinstance(count, Integral) or not 0 <= count < 2**63:
+                raise RoutingError(f"{key} is a whole number from 0 to {2**63 - 1}, not {count!r}")
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)
 
 
 def plan_surface(
@@ -173,6 +183,8 @@ def plan_surface(
 
 def orders_of(session: Session, targets: Targets, movers: Iterable[str] | None) -> list[Order]:
     """Targets as they are given, in one form. RoutingError: no such target, or one mover has two."""
+    if not isinstance(targets, Iterable):
+        raise RoutingError(f"targets are places by mover, or a list of places, not {targets!r}")
     if not isinstance(targets, Mapping):
         points = tuple(_point(f"target {i}", target) for i, target in enumerate(targets, 1))
         able = [name for name, mover in session.movers.items() if _cannot_move(mover) is None]
