@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import html
+import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -84,7 +85,7 @@ def component_table(component: Component) -> str:
             if number >= FIELDS and (value != value or not value):  # NaN, 0, off
                 continue
             unit = unit_of(kind.name, field, own).removeprefix("1") if isinstance(value, float) else ""
-            rows.append((field, f"{value:.6g}" if isinstance(value, float) else _text(value), unit))
+            rows.append((field, _text(value), unit))
     except TaktError as error:  # over LCM, where nothing was heard of it yet
         return table(title, (), (), str(error))
     rest = len(kind.units) - len(rows)
@@ -94,6 +95,8 @@ def component_table(component: Component) -> str:
 def _text(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
+    if isinstance(value, float):
+        return "unknown" if math.isnan(value) else f"{value:.6g}"
     return str(getattr(value, "value", value))  # of enumerations
 
 
