@@ -122,12 +122,16 @@ class Options:
         if self.origin is not None:
             _point("the origin", self.origin)
         for key, count in (("effort", self.effort), ("seed", self.seed)):
-            if not isinstance(count, Integral) or not 0 <= count < 2**63:
+            if not _is_whole(count) or not 0 <= count < 2**63:
                 raise RoutingError(f"{key} is a whole number from 0 to {2**63 - 1}, not {count!r}")
 
 
 def _is_number(value: object) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool)
+
+
+def _is_whole(value: object) -> bool:
+    return isinstance(value, Integral) and not isinstance(value, bool)
 
 
 def plan_surface(
