@@ -66,7 +66,7 @@ def test_every_cam_of_a_machine(files: Path, capsys: pytest.CaptureFixture[str])
 
 
 def test_files_with_tabs(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """CAM-04: a machine file is told from a cam whatever stands between its words."""
+    """CAM-04: a machine file is told from a cam by its words, not by what is between them."""
     for text in (MACHINE.replace("name: m", "name:\tm", 1), "# a\u2028b\n" + MACHINE):
         (files / "machine.yaml").write_text(text, encoding="utf-8")
         assert main(["cam", "machine.yaml"]) == 0

@@ -352,7 +352,7 @@ def test_random_bytes_on_every_channel(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("arguments", UNKNOWN)
 def test_a_refused_command_as_text(arguments: str, tmp_path: Path) -> None:
-    """EN-22: the session hears on, whatever the text of a refused command."""
+    """EN-22: the session hears on after a refused command with any text."""
     url = new_url()
     with running(tmp_path, url), takt.connect(url) as session:
         gear = session.command("x", "gear_in", arguments).wait_final()

@@ -514,7 +514,7 @@ def test_power_off_ends_a_track_that_waits(how: str) -> None:
 @pytest.mark.parametrize("early_s", [0.1, 0.06, 0.02, 0.004])
 @pytest.mark.parametrize("event", ["interrupted", "interrupted and continued", "faster"])
 def test_a_move_is_done_where_the_tool_is_on_its_place(buffered: bool, early_s: float, event: str) -> None:
-    """GR-22, CV-03: whether another move waits behind it or not, and whatever comes before its end."""
+    """GR-22, CV-03: with and without another move behind it, after any event before its end."""
     limited = "400000}\n    tracking: {after_sync: limited}\n" if event == "faster" else "400000}\n"
     text = MACHINE.replace("400000}\n", limited).replace("acceleration: 2000,", "acceleration: 50000,", 1)
 

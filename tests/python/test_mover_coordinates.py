@@ -173,7 +173,7 @@ def test_a_velocity_may_be_changed_turned_round_and_taken_away() -> None:
 @pytest.mark.parametrize("straight", [False, True])
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_no_jerk_takes_a_coordinate_beyond_its_maxima(seed: int, straight: bool) -> None:
-    """PL-86: whatever X and Y do, a command with a softer jerk takes the acceleration away in time."""
+    """PL-86: for any motion of X and Y, a command with a softer jerk takes the acceleration away in time."""
     rng = random.Random(seed)
     engine = engine_of()
     a = engine.mover("a")

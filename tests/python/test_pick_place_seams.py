@@ -79,7 +79,7 @@ LOSSES: dict[str, Other] = {
 @pytest.mark.parametrize("hold", ["path_stop", "path_halt", "path_interrupt"])
 @pytest.mark.parametrize("by", LOSSES)
 def test_a_held_path_that_is_lost_is_not_done(by: str, hold: str, target: int, brakes: bool) -> None:
-    """PP-20: whatever has ended the interrupt; the tool moves back first, or the profile is aborted."""
+    """PP-20: however the interrupt ended; the tool moves back first, or the profile is aborted."""
     engine = running(20)
     picker = engine.pick_place("picker")
     engine.belt("infeed").detect(x=100).wait()
@@ -161,7 +161,7 @@ def enabled_by_others(engine: takt.Engine) -> None:
     "before", [lambda engine: None, a_fault, enabled_by_others], ids=["nothing", "fault", "others"]
 )
 def test_a_disable_of_its_group_is_not_undone(before: Other) -> None:
-    """PP-20: whatever the module was about to enable before; profiles never go on by themselves."""
+    """PP-20: also after the module was about to enable it; profiles never continue by themselves."""
     engine = started()
     picker, group = engine.pick_place("picker"), engine.group("portal")
     before(engine)

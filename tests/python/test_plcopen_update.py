@@ -399,7 +399,7 @@ MODES = ("buffered", "blending_low", "blending_previous", "blending_next", "blen
 def test_what_waits_behind_a_change_stays(
     s: takt.Engine, mode: Any, block_of: Any, first: dict[str, Any], then: dict[str, Any], ends: float
 ) -> None:
-    """AX-111: a change is no new command: one that waits comes after it, whatever it is, and in its mode."""
+    """AX-111: a change is no new command: one of any kind that waits comes after it, in its mode."""
     x = s.axis("x")
     block = block_of(x, ContinuousUpdate=True)
     with s.record("x") as recorder:

@@ -177,7 +177,7 @@ def test_what_the_loader_refuses(tmp_path: Path) -> None:
 
 
 def test_places_in_files_with_tabs() -> None:
-    """With line and column, whatever stands between the words."""
+    """With line and column, for any blanks between the words."""
     text = "name:\tm # a\u2028b\ntwin:\n  axes:\n    - {axis: x,\tjoint: rail}\n"
     assert problem(text.encode(), "m", "twin.axes[0].joint", "why") == "m:4:24: twin.axes[0].joint: why"
 

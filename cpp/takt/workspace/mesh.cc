@@ -108,7 +108,7 @@ bool ReadNumber(std::string_view word, double& number) {
   return error == std::errc() && read == end;
 }
 
-// The words of a text, and the lines they are in, whatever ends these: LF, CR LF or CR.
+// The words of a text, and the lines they are in, which end in LF, CR LF or CR.
 class Words {
  public:
   explicit Words(std::string_view text) : text_(text) {}
