@@ -98,7 +98,7 @@ Status Change(const Context& c, const Request& r, State& s) {
       return Status::Ok();
     }
     Report(c, s.active.ticket, FeedbackState::kAborted, ErrorId::kNone, s.reported);
-    gear ? UpdateGear(c, r, s) : FollowsTable(r.kind) ? UpdateTable(c, r, s) : UpdateCam(c, r, s);
+    gear ? CoupleAgain(c, r, s) : FollowsTable(r.kind) ? UpdateTable(c, r, s) : UpdateCam(c, r, s);
     return Status::Ok();
   }
   Plan plan;

@@ -95,8 +95,8 @@ double NextAhead(double turn, double position, double from, double sense) {
   return position + turn * (sense < 0 ? std::floor(turns) : std::ceil(turns));
 }
 
-// Where the slave is to be when both are in step, over all turns, if it goes on to about `expected` meanwhile. `sense`:
-// of its travel then; catching up is further in that sense, slowing down less far.
+// Where the slave is to be when both are in step, over all turns, if it continues to about `expected` meanwhile.
+// `sense`: of its travel then; catching up is further in that sense, slowing down less far.
 double SlaveSync(const AxisParams& p, double position, double expected, SyncMode mode, double sense) {
   if (!p.rotary()) return position;
   const double turns = (expected - position) / p.modulus;
@@ -159,8 +159,8 @@ KinematicState DemandOf(const cam::Value& at, const KinematicState& master) {
   return trajectory::AlongWay({at.y, at.dy, at.ddy}, master);
 }
 
-// Moves the place where both are in step to the turn, or for a relative cam the place, that lies at hand if the slave
-// goes on to about `expected` meanwhile. `master_sense`: of the master's travel.
+// Moves the place where both are in step to the turn, or for a relative cam the place, that is the nearest if the
+// slave continues to about `expected` meanwhile. `master_sense`: of the master's travel.
 void PlaceSlave(const Context& c, double expected, double master_sense, State& s) {
   CouplingState& k = s.coupling;
   const cam::Value place = InStep(c, k.master_sync, s);
@@ -473,10 +473,7 @@ void Couple(const Context& c, const Request& r, State& s) noexcept {
   Enter(s, PlcState::kSynchronizedMotion);
 }
 
-namespace {
-
-// Couples anew and keeps what has been put on top: the phase, and the cams of a cam.
-void CoupleAgain(const Context& c, const Request& r, State& s) {
+void CoupleAgain(const Context& c, const Request& r, State& s) noexcept {
   const CouplingState was = s.coupling;
   Couple(c, r, s);
   CouplingState& k = s.coupling;
@@ -492,12 +489,6 @@ void CoupleAgain(const Context& c, const Request& r, State& s) {
     const bool same = now.master == before.master && now.source == before.source && now.filter_s == before.filter_s;
     if (same) k.filters[i] = was.filters[i];
   }
-}
-
-}  // namespace
-
-void UpdateGear(const Context& c, const Request& r, State& s) noexcept {
-  CoupleAgain(c, r, s);
 }
 
 void UpdateCam(const Context& c, const Request& r, State& s) noexcept {

@@ -82,8 +82,9 @@ Status FindNamed(const Context& c, Request& r) noexcept;
 Status MayCouple(const Context& c, const Request& r, const State& s) noexcept;
 // Puts a request that couples in control. What was in control must have been ended.
 void Couple(const Context& c, const Request& r, State& s) noexcept;
-// Takes over from the gear in control with other ratios or ramps (AX-111): its phase stays, and goes on once in step.
-void UpdateGear(const Context& c, const Request& r, State& s) noexcept;
+// Couples anew in place of the coupling in control (AX-111). Its phase stays, and continues once in step; so do the
+// cams that have been added to a cam.
+void CoupleAgain(const Context& c, const Request& r, State& s) noexcept;
 // Takes over from the cam in control, of the same table and master, with other scales and offsets (AX-111): a relative
 // one stays where it is in the cam. What has been put on top of it, and its phase, stay.
 void UpdateCam(const Context& c, const Request& r, State& s) noexcept;

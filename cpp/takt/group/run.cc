@@ -114,19 +114,18 @@ bool Follow(const Context& c, State& s) {
   return true;
 }
 
-// Whether the path is at the end of a move and the tool is not: what carries it goes on without it, or the axes come
-// after both.
-bool ComesAfter(const Context& c, const State& s) {
+// Whether the path is at the end of a move on a carrier and the tool is not: a clutch slips, or the axes lag.
+bool ToolLags(const Context& c, const State& s) {
   const bool at_end = s.pace.raw_stands && c.ahead.window[s.pace.node].stop;
   const bool rides = std::ranges::any_of(s.ridden, [](std::uint32_t carrier) { return carrier != 0; });
   return at_end && rides && (s.lets_go || Slips(s) || !AreInStep(c, s));
 }
 
-// Moves whose last stretch is behind are done; the one that is being gone is active.
+// Moves whose last stretch is behind are done; the one in execution is active.
 void TellMoves(const Context& c, State& s) {
   if (c.ahead.count == 0) return;
   std::uint64_t at = c.ahead[c.ahead.first].move;
-  if (at > s.done && ComesAfter(c, s)) --at;
+  if (at > s.done && ToolLags(c, s)) --at;
   while (s.queue.count > 0 && s.done < at) Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
   if (s.queue.count > 0 && s.done == at && s.active != MoveAt(s, at).ticket) {
     s.active = MoveAt(s, at).ticket;
@@ -238,7 +237,7 @@ bool Advance(const Context& c, State& s) noexcept {
     // Behind a stop the next motion begins.
     const std::uint64_t next = s.pace.node + 1;
     const trajectory::PathWindow& window = c.ahead.window;
-    if (window[s.pace.node].stop && next + 1 < window.known() && window.swept() && !ComesAfter(c, s)) {
+    if (window[s.pace.node].stop && next + 1 < window.known() && window.swept() && !ToolLags(c, s)) {
       trajectory::BeginAt(window, next, c.cycle.period_s, s.pace);
       const std::uint64_t move = c.ahead[c.ahead.first].move;
       BeginFollowing(c, MoveAt(s, move), move, s);

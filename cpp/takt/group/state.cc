@@ -121,7 +121,7 @@ void describe(Description<State>& d) {
   d.internal<&S::queue>("Moves.");
   d.internal<&S::done>("Moves that are over.");
   d.internal<&S::failed>("Number of the last move that was aborted or failed; 0: none.");
-  d.internal<&S::active>("Ticket of the move being gone.");
+  d.internal<&S::active>("Ticket of the move in execution.");
   d.internal<&S::planning>("Planning.");
   d.internal<&S::pace>("Motion along the path.");
   d.internal<&S::guides>("In control of its members.");

@@ -160,7 +160,7 @@ struct State {
   Queue queue;               // [first] is the one planned or moved along now
   std::uint64_t done = 1;    // number of the move at queue.first
   std::uint64_t failed = 0;  // number of the last one before it that was aborted or failed; 0: none
-  Ticket active = 0;         // of the move being gone
+  Ticket active = 0;         // of the move in execution
   Planning planning;
   trajectory::PathPace pace;
   bool guides = false;        // the members go by the group's set points

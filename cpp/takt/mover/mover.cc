@@ -33,7 +33,7 @@ bool MovesOnTrack(const Context& c, const State& s) {
   return GoesAlongTrack(c, s) || !planar::Rests(s.set_point[kX]) || !planar::Rests(s.set_point[kY]);
 }
 
-// At rest on its old line it goes on to its target; off its pose on a track once it rests there.
+// At rest on its old line it continues to its target; off its pose on a track, once it rests there.
 void GoOn(const Context& c, State& s) {
   if (!s.plane.waits || Elapsed(c, s.plane.begin) < DurationOf(s.plane.motion)) return;
   if (IsOnTrack(s) ? MovesOnTrack(c, s) : IsHeld(c, s)) return;

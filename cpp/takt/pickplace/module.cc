@@ -195,8 +195,8 @@ void BeginStop(const Context& c, group::State& g, State& s) {
 }
 
 // A path that is held is lost as soon as its group is not interrupted any more, by another move, a halt, a stop, power
-// off or disable. What the group counts as over then says nothing about where the tool is. So is
-// one that is to be given again when the group moves meanwhile.
+// off or disable. What the group counts as over then says nothing about where the tool is. So is one that is to be
+// given again when the group moves meanwhile.
 void WatchHold(const Context& c, group::State& g, State& s) {
   if (!s.hold.held || s.hold.off) return;
   if (g.interrupted) return NoteHold(c, g, s);

@@ -323,11 +323,11 @@ void Stay(const Context& c, const group::State& g, State& s) {
   const double period = c.group.cycle.period_s;
   const double wanted = std::round(order.own.sync_time / period);
   const auto cycles = static_cast<std::uint64_t>(std::max(1.0, wanted));
-  const std::uint64_t gone = c.group.cycle.count - order.stay_cycle;
-  if (on && (s.ack || gone >= cycles)) return Complete(c, s);
+  const std::uint64_t stayed = c.group.cycle.count - order.stay_cycle;
+  if (on && (s.ack || stayed >= cycles)) return Complete(c, s);
   const bool there = conveyor::Find(*c.belts[order.belt - 1].state, order.workpiece) != nullptr;
   if (on && !there) return;
-  if (there && StaysWithin(c, g, order, static_cast<double>(cycles - gone) * period)) return;
+  if (there && StaysWithin(c, g, order, static_cast<double>(cycles - stayed) * period)) return;
   MissWorkpiece(c, order, s.counters.too_late, s);  // what comes next leads up
   order.phase = Phase::kNew;
 }
