@@ -20,6 +20,11 @@ from takt.drives.emulation import EmulatedNode, Emulation, emulated_link, emulat
 
 LONG_S = 60.0
 PERIOD_S = 0.004
+
+# In real time on a busy host a drive has failed that is silent for 2 s, and an engine that is for 4 s.
+PATIENT = "missing_cycles: 500\n      heartbeat_s: 0.5"
+PATIENT_WATCHDOG = 1000  # cycles
+
 _channels = itertools.count()
 
 

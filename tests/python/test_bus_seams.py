@@ -182,11 +182,11 @@ def test_a_torque_limit_outlasts_a_fault_and_a_restart(bus: str, mode: str, tmp_
 def test_the_limit_is_at_the_drive_again(tmp_path: Path) -> None:
     """0x6072 after a fault, and, in real time, after the drive has started anew."""
     url, bus = new_url(), buses.new_bus()
-    text = machine(url, bus, bus_keys="missing_cycles: 100\n      heartbeat_s: 0.2")
+    text = machine(url, bus, bus_keys=buses.PATIENT)
     text = text.replace("jerk: 100000}", "jerk: 100000, torque: 0.8}")
     with (
         buses.emulated(text) as emulation,
-        buses.run(text, url, watchdog=1000) as (_, said),
+        buses.run(text, url, watchdog=buses.PATIENT_WATCHDOG) as (_, said),
         running(tmp_path, url, machine=text, pace="real"),
         takt.connect(url) as session,
     ):

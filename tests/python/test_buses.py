@@ -221,6 +221,11 @@ def test_drives_on_ethercat() -> None:
         (", position: 2", "", "drives[1].position: expected this key, or alias, with a whole number from 1 to 65535"),
         ("dc: true", "bitrate: 500000", "buses[0].bitrate: expected this key on CANopen only"),
         ("dc: true", "node: 5", "buses[0].node: expected this key on CANopen only"),
+        (
+            "dc: true",
+            "heartbeat_s: 2.2",
+            "buses[0].heartbeat_s: expected at most 2.1845 s on a bus ethercat:INTERFACE, for a watchdog of its drives",
+        ),
         ("dc: true", "ring: eth1", "buses[0].ring: expected an interface other than that of bus, found 'eth1'"),
         ("ethercat:eth1", "canopen:can0", "external.buses[0].dc: expected this key on a bus ethercat:INTERFACE only"),
         ("ethercat:eth1", "canopen:can0", "drives[1].position: expected this key on a bus ethercat:INTERFACE only"),

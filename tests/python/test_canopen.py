@@ -12,7 +12,7 @@ from typing import Any
 import can
 import pytest
 import takt
-from buses import PERIOD_S, described, emulated, eventually, machine, new_bus, run
+from buses import PATIENT, PATIENT_WATCHDOG, PERIOD_S, described, emulated, eventually, machine, new_bus, run
 from machines import new_url, running
 from takt import drive
 from takt.drives import objects as od
@@ -150,10 +150,10 @@ def test_a_cable_that_breaks_in_motion(tmp_path: Path) -> None:
     """AX-87, in real time: the engine stops the axis with 3002, the drive brakes by itself, and all is said; with the
     cable back MC_Reset brings the axis back."""
     url, bus = new_url(), new_bus()
-    text = machine(url, bus, 2, bus_keys="missing_cycles: 100\n      heartbeat_s: 0.2")
+    text = machine(url, bus, 2, bus_keys=PATIENT)
     with (
         emulated(text) as emulation,
-        run(text, url, watchdog=1000) as (_, said),
+        run(text, url, watchdog=PATIENT_WATCHDOG) as (_, said),
         running(tmp_path, url, machine=text, pace="real"),
         takt.connect(url) as session,
     ):
@@ -163,7 +163,7 @@ def test_a_cable_that_breaks_in_motion(tmp_path: Path) -> None:
         session.wait(lambda: x.actual_velocity > 40, timeout=20)
         emulation.command("cut all")
         session.wait(lambda: x.error == 3002, timeout=20)
-        assert eventually(lambda: any("x1: node 1 is not heard any more" in line for line in said), 10)
+        assert eventually(lambda: any("x1: node 1 is not heard any more" in line for line in said), 20)
         assert eventually(lambda: emulation.nodes[1].drive.machine.state is State.FAULT, 10)
         where = emulation.nodes[1].drive.read(od.POSITION)
         emulation.command("join all")

@@ -285,10 +285,10 @@ def test_homing_and_probes_by_the_clock(tmp_path: Path) -> None:
     homes again."""
     url, bus = new_url(), buses.new_bus()
     text = machine(url, bus, f"{HOMING}, probe_latch: 1", servo=SERVO.replace("-8", "-1").replace("31.5", "5.5"))
-    text = text.replace("      drives:\n", "      missing_cycles: 50\n      heartbeat_s: 0.2\n      drives:\n", 1)
+    text = text.replace("      drives:\n", f"      {buses.PATIENT}\n      drives:\n", 1)
     with (
         buses.emulated(text) as emulation,
-        buses.run(text, url, watchdog=1000) as (_, said),
+        buses.run(text, url, watchdog=buses.PATIENT_WATCHDOG) as (_, said),
         running(tmp_path, url, machine=text, pace="real"),
         takt.connect(url) as session,
     ):

@@ -16,7 +16,7 @@ from pathlib import Path
 import lcm
 import pytest
 import takt
-from buses import PERIOD_S, eventually
+from buses import PATIENT_WATCHDOG, PERIOD_S, eventually
 from machines import new_url, running
 from takt import drive, msgs
 from takt.cli import main
@@ -26,7 +26,7 @@ from takt.drives.ethercat_link import OPERATIONAL, Wire
 from takt.drives.phase import Phase
 from takt.errors import TaktError
 from takt.plcopen import MC_ReadAxisError
-from wires import BUS, DRIVES, MASTER, RING_WIRE, bus_of, emulated, machine, own_network, run, tell
+from wires import BUS, DRIVES, MASTER, PATIENT, RING_WIRE, bus_of, emulated, machine, own_network, run, tell
 
 pytest.importorskip("pysoem")
 
@@ -115,10 +115,10 @@ def test_cables_supply_and_lost_frames_in_motion(tmp_path: Path) -> None:
     """AX-87, in real time: drives before the broken cable go on, those behind it are in ErrorStop 3002; with the cable
     back, or the supply, or the whole wire, they are set up again and MC_Reset brings their axes back."""
     url = new_url()
-    text = machine(url, 3, bus_keys="missing_cycles: 100\n      heartbeat_s: 0.5")
+    text = machine(url, 3, bus_keys=PATIENT)
     with (
         emulated(text, tmp_path) as emulation,
-        run(text, url, watchdog=1000) as (served, said),
+        run(text, url, watchdog=PATIENT_WATCHDOG) as (served, said),
         running(tmp_path, url, machine=text, pace="real"),
         takt.connect(url) as session,
     ):
@@ -181,7 +181,7 @@ def test_what_a_drive_says_of_its_fault_reaches_everybody(tmp_path: Path) -> Non
     """AX-87: number and words in takt/axis/NAME, from the fault to MC_Reset; the session and MC_ReadAxisError have
     them, too."""
     url = new_url()
-    text = machine(url, 1, bus_keys="missing_cycles: 100\n      heartbeat_s: 0.5")
+    text = machine(url, 1, bus_keys=PATIENT)
     heard: list[tuple[int, str]] = []
 
     def listen(_channel: str, data: bytes) -> None:
@@ -190,7 +190,7 @@ def test_what_a_drive_says_of_its_fault_reaches_everybody(tmp_path: Path) -> Non
 
     with (
         emulated(text, tmp_path) as emulation,
-        run(text, url, watchdog=1000),
+        run(text, url, watchdog=PATIENT_WATCHDOG),
         running(tmp_path, url, machine=text, pace="real"),
         takt.connect(url) as session,
     ):
@@ -219,10 +219,10 @@ def test_the_cycle_follows_the_distributed_clocks(tmp_path: Path) -> None:
     """EN-26, AX-87, in real time: clocks that gain 0.1 % a cycle would pass the frames every second; the cycle of taktd
     follows them."""
     url = new_url()
-    text = machine(url, 2, bus_keys="dc: true\n      missing_cycles: 100\n      heartbeat_s: 0.5")
+    text = machine(url, 2, bus_keys=f"dc: true\n      {PATIENT}")
     with (
         emulated(text, tmp_path) as emulation,
-        run(text, url, watchdog=1000) as (served, _),
+        run(text, url, watchdog=PATIENT_WATCHDOG) as (served, _),
         running(tmp_path, url, machine=text, pace="real"),
         takt.connect(url) as session,
     ):

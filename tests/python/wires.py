@@ -19,6 +19,9 @@ from takt.drives.ethercat_bus import EthercatBus
 MASTER, DRIVES = "ec0", "ec1"  # the ends of the wire
 BUS = f"ethercat:{MASTER}"
 
+# Like that of buses.py, and drives go on where a cable is back once their axes have failed: their watchdog is 6 s.
+PATIENT = "missing_cycles: 500\n      heartbeat_s: 2"
+
 _NEW_NETWORK = 0x4000_0000
 
 _LOOPBACK = """

@@ -85,7 +85,7 @@ void describe(Description<Bus>& d) {
       "EtherCAT: interface of this host at the other end of the slaves, \"eth2\", so that one cable may break.");
   d.defaulted<&B::heartbeat_s>(unit::s, between(0.01, 10),
                                "Between two signs of life of this end and of each drive; three missing are a fault. "
-                               "EtherCAT: a third of the watchdog of the drives.");
+                               "EtherCAT: a third of the watchdog of the drives, 2.1845 s at the most.");
   d.defaulted<&B::missing_cycles>(unit::cycles, between(3, 100000),
                                   "So many answers of a drive missing in a row are a drive error (ErrorStop 3002).");
   d.required<&B::drives>("The drives. Their axes are external drives without being named under drives.");

@@ -19,6 +19,10 @@ namespace {
 constexpr std::string_view kCanopen = "canopen:";
 constexpr std::string_view kEthercat = "ethercat:";
 
+// The watchdog of process data (register 0x0420) counts steps of 100 us with 16 bits, as it is set at power-on
+// [ETG.1000.4].
+constexpr double kLongestEthercatHeartbeatS = 2.1845;
+
 // With a channel behind the colon.
 bool IsOf(std::string_view bus, std::string_view kind) {
   return bus.starts_with(kind) && bus.size() > kind.size();
@@ -96,6 +100,12 @@ class BusChecker {
     }
     if (ethercat && bus.bitrate != Bus().bitrate) Add(path + ".bitrate", "expected this key on CANopen only");
     if (ethercat && bus.node != Bus().node) Add(path + ".node", "expected this key on CANopen only");
+    if (ethercat && bus.heartbeat_s > kLongestEthercatHeartbeatS) {
+      Add(path + ".heartbeat_s", "expected at most " + FormatReal(kLongestEthercatHeartbeatS) +
+                                     " s on a bus ethercat:INTERFACE, for a watchdog of its drives (three times this) "
+                                     "is 6.5535 s at the most, found " +
+                                     FormatReal(bus.heartbeat_s));
+    }
     if (!bus.bus.empty() && bus.drives.empty()) Add(path + ".drives", "expected at least one drive");
     for (std::size_t i = 0; i < bus.drives.size(); ++i) {
       const BusDrive& drive = bus.drives[i];

@@ -11,6 +11,7 @@ import contextlib
 import struct
 import threading
 import time
+import warnings
 from collections import deque
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, Final
@@ -338,7 +339,6 @@ class EthercatBus(FieldBus):
                 self._synchronise()
         except pysoem.ConfigMapError as error:
             raise TaktError(f"{self.bus_name}: the process data cannot be mapped: {error}") from None
-        watchdog_ms = 1000 * SIGNS_MISSING * float(self.described["heartbeat_s"])
         for one in self._slaves:
             for name, has, layout in (("in", one.slave.input, one.inputs), ("out", one.slave.output, one.outputs)):
                 if len(has) != layout.size:
@@ -346,12 +346,21 @@ class EthercatBus(FieldBus):
                         f"{self.bus_name}: {one.named}: expected {counted(layout.size, 'byte')} of process data "
                         f"{name}, as mapped, found {len(has)}"
                     )
-            with contextlib.suppress(Exception):
-                one.slave.set_watchdog("processdata", watchdog_ms)
+            self._set_watchdog(one)
             for at, length in ((STATION_ADDRESS, 2), FMMUS, MAILBOX_MANAGERS, DATA_MANAGERS, (0x0400, 2), (0x0420, 2)):
                 one.registers[at] = self._asked(one, at, length)
         if master.state_check(SAFE_OPERATIONAL, round(1e6 * STATE_WITHIN_S)) != SAFE_OPERATIONAL:
             raise TaktError(self._not_in(SAFE_OPERATIONAL))
+
+    def _set_watchdog(self, one: _Slave) -> None:
+        """Of its process data, from the end of the frames to its fall into SAFEOP. Some slaves have none."""
+        watchdog_ms = 1000 * SIGNS_MISSING * float(self.described["heartbeat_s"])
+        for _ in range(5):
+            with contextlib.suppress(Exception), warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # it is rounded to steps of 100 us
+                one.slave.set_watchdog("processdata", watchdog_ms)
+                return
+        self._say(f"{one.named}: its watchdog cannot be set to {watchdog_ms / 1000:.4g} s")
 
     def _asked(self, one: _Slave, register: int, length: int) -> bytes:
         for _ in range(5):
