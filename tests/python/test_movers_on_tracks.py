@@ -447,6 +447,47 @@ def test_a_buffered_way_back_begins_at_rest() -> None:
     assert mover.track_position == 100
 
 
+@pytest.mark.parametrize(
+    ("radius", "first", "seconds", "second"),
+    [
+        (50, (2000, 10000, 50000), 0.35, (500, 40000)),
+        (100, (2000, 5000, 30000), 0.5, (1000, 50000)),
+        (140, (2000, 8000, 50000), 0.45, (1500, 20000)),
+        (200, (2000, 10000, 50000), 0.3, (500, 20000)),
+        (200, (1000, 10000, 30000), 0.35, (1000, 50000)),
+    ],
+)
+def test_a_new_jerk_before_a_curve_turns_no_mover_back(
+    radius: float, first: tuple[float, float, float], seconds: float, second: tuple[float, float]
+) -> None:
+    """PL-21, PL-82: it had to brake in the curve with less jerk than it had begun with (-67 to -210 mm/s)."""
+    velocity, acceleration, jerk = first
+    with Engine(f"""
+name: curve
+axes: []
+movers:
+  - name: one
+    initial: {{x: 500}}
+    xy: {{maximum: {{velocity: 2000, acceleration: 10000, jerk: 50000}}}}
+tracks:
+  - name: track
+    elements:
+      - {{from: {{x: 300, y: 0}}, to: {{x: 1200, y: 0}}}}
+      - {{from: {{x: {1200 + radius}, y: {radius}}}, to: {{x: {1200 + radius}, y: 700}}}}
+""") as engine:
+        one = engine.mover("one")
+        engine.track("track").enable().wait()
+        one.enable().wait()
+        one.join_track(track="track").wait()
+        record = engine.record("one")
+        one.move_on_track(position=1400, velocity=velocity, acceleration=acceleration, jerk=jerk)
+        engine.run(seconds)
+        one.move_on_track(position=1400, velocity=second[0], jerk=second[1]).wait()
+        recording = record.stop()
+    assert recording["one"]["track_velocity"].min() > -1e-6
+    assert expect.within_limits(recording, "one")
+
+
 def test_a_mover_says_why_and_since_when_it_waits() -> None:
     """PL-70: for another one; for a release."""
     engine, mover = alone_on_two_tracks()

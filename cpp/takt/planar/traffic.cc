@@ -220,6 +220,11 @@ class Traffic::Step_ {
     return {r.plan_from + r.direction * way.position, r.direction * way.velocity, r.direction * way.acceleration};
   }
 
+  // Braking so it does not only come to rest, but goes back then.
+  static bool TurnsBack(const KinematicState& from, const Braking& braking) {
+    return (from.velocity > 0 ? braking.highest - braking.rest : braking.rest - braking.lowest) > kTolerance;
+  }
+
   // With the largest share of its brakes that keeps the vectors within their maxima in the bends on its way to rest.
   bool TryToTake(std::uint32_t i, const KinematicState& next) {
     held_by_guard_ = false;
@@ -227,6 +232,7 @@ class Traffic::Step_ {
     for (std::size_t share = 0; share < kShares.size(); ++share) {
       const Brakes brakes = WithShare(r.brakes, r.pace, share);
       const Braking braking = Brake(next, brakes);
+      if (share > 0 && TurnsBack(next, braking)) return false;
       if (!KeepsToVectors(network_, r, next, braking, period())) continue;
       // A smaller share would only make it come to rest later.
       if (!KeepsToLimits(network_, r, next, braking, brakes.jerk) || !w_.MayTake(i, next, braking)) return false;
