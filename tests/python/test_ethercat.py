@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import lcm
 import pytest
@@ -21,7 +22,7 @@ from machines import new_url, running
 from takt import drive, msgs
 from takt.cli import main
 from takt.drives import ethercat_bus
-from takt.drives.ethercat_bus import drift_of
+from takt.drives.ethercat_bus import EthercatBus, drift_of
 from takt.drives.ethercat_link import OPERATIONAL, Wire
 from takt.drives.phase import Phase
 from takt.errors import TaktError
@@ -95,6 +96,59 @@ def test_an_engine_starts_while_frames_get_lost(tmp_path: Path) -> None:
             x1.move_absolute(position=1.0).wait()
             assert x1.error == 0
         mended.join()
+
+
+def test_a_drive_may_take_its_time_to_answer_at_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """AX-87: `ready_within_s` for each question, as when a busy host stands for seconds."""
+    set_up = EthercatBus._set_up
+
+    def late(bus: EthercatBus, one: Any) -> None:
+        emulation.process.send_signal(signal.SIGSTOP)
+        going_on = threading.Timer(3.0, emulation.process.send_signal, (signal.SIGCONT,))
+        going_on.start()
+        set_up(bus, one)
+        going_on.join()
+
+    monkeypatch.setattr(EthercatBus, "_set_up", late)
+    with emulated(machine(new_url(), 1), tmp_path) as emulation:
+        bus = bus_of(machine(new_url(), 1))
+        assert [one.operational for one in bus.members] == [True]
+        bus.close()
+        with pytest.raises(TaktError, match="x1: slave 1: 0x1000:0 cannot be read: no answer"):
+            bus_of(machine(new_url(), 1, drive_keys="ready_within_s: 0.1"))
+
+
+def test_frames_that_come_late_do_not_answer_later_ones(tmp_path: Path) -> None:
+    """AX-87, in real time: when the drives have stood for 0.07 and 0.3 s, and have answered all frames then, the
+    feedback is as fresh as before, not 16 cycles old for good."""
+    text = machine(new_url(), 1)
+    with emulated(text, tmp_path) as emulation:
+        bus = bus_of(text)
+        counts = 0.0
+
+        def behind(within_s: float, most: float) -> float:
+            """The least of 50 cycles in a row, as soon as it is at most that."""
+            nonlocal counts
+            end_s = time.monotonic() + within_s
+            lags: list[float] = []
+            while len(lags) < 50 or (min(lags[-50:]) > most and time.monotonic() < end_s):
+                point = drive.SetPoint(enable=True, period_s=PERIOD_S, position_counts=counts)
+                measured = bus.exchange({"x1": point}, real_time=True)["x1"]
+                if measured is not None and measured.drive_ready:
+                    counts += 1.0
+                    lags.append(counts - measured.counts)
+                time.sleep(PERIOD_S)
+            return min(lags[-50:])
+
+        assert behind(20, 4) <= 4
+        for stood_s in (0.07, 0.3):
+            emulation.process.send_signal(signal.SIGSTOP)
+            going_on = threading.Timer(stood_s, emulation.process.send_signal, (signal.SIGCONT,))
+            going_on.start()
+            behind(0, 0)
+            assert behind(5, 4) <= 4  # else 17
+            going_on.join()
+        bus.close()
 
 
 def test_an_emulated_slave_that_does_not_hear_whose_clock_counts_is_named(

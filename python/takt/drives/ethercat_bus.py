@@ -50,6 +50,7 @@ LOOK_AGAIN_S: Final = 0.05  # at slaves that are not in operation
 RING_CYCLES: Final = 20  # that a ring is broken, before it is said
 FIRST_SILENT: Final = 3  # cycles without a frame at the first end of a broken ring, before less time is given to it ...
 FIRST_SHARE: Final = 0.4  # ... for the package asks at the second one only then
+LATE_CYCLES: Final = 50  # after a lost frame: it may still come
 SILENT: Final = 20  # frames lost in a row: the wire itself
 RX_MAP, TX_MAP, RX_ASSIGNED, TX_ASSIGNED = 0x1600, 0x1A00, 0x1C12, 0x1C13
 AL_CONTROL, AL_STATUS = 0x0120, 0x0130
@@ -138,6 +139,7 @@ class EthercatBus(FieldBus):
         self._by_axis = {one.axis: one for one in self._slaves}
         self.lost_frames = 0
         self._lost_in_a_row = 0
+        self._late_frames = 0  # cycles for which lost ones may still come
         self._counter = 0  # of the last frame
         self._others_count = 0  # what slaves that are no axis' may add to it
         self._phase = Phase(self.period_s)
@@ -176,6 +178,8 @@ class EthercatBus(FieldBus):
                 if not tries_left:
                     raise
         self._operate()
+        for one in self._slaves:  # from now on the others' cycles wait for no question
+            one.sdo = self._wire.sdo(one.slave, one.position)
 
     def _find(self) -> None:
         """Every drive is at its place within its time, else none moves."""
@@ -204,7 +208,7 @@ class EthercatBus(FieldBus):
                 missing.append(f"{place} (axis {one.axis})")
                 continue
             one.position, one.slave = wanted, found[wanted - 1]
-            one.sdo = self._wire.sdo(one.slave, wanted)
+            one.sdo = self._wire.sdo(one.slave, wanted).patience(float(one.described["ready_within_s"]))
         used = {one.position for one in self._slaves}
         self._others = [slave for position, slave in enumerate(found, start=1) if position not in used]
         if not missing:
@@ -424,6 +428,9 @@ class EthercatBus(FieldBus):
         """Sends the outputs and takes in the inputs; the working counter, 0 where the frame was lost."""
         master = self._wire.master
         end_s = time.monotonic() + within_s
+        if self._late_frames > 0:
+            self._late_frames -= 1
+            self._wire.discard_late_frames()
         master.send_processdata()
         if not self._wire.lock.locked():  # else the other thread may take this frame in, too
             self._wire.await_frame(within_s)
@@ -432,6 +439,7 @@ class EthercatBus(FieldBus):
         if counter < 0:
             self.lost_frames += 1
             self._lost_in_a_row += 1
+            self._late_frames = LATE_CYCLES
             if self._lost_in_a_row == SILENT:
                 self._look.set()
         else:

@@ -31,6 +31,9 @@ OWN_INDEX: Final = 0x7F  # of a frame; the package has 16 of them and takes no n
 GET_FLAGS: Final = 0x8913  # of an interface, by ioctl
 GET_LINK, LINKED_WITH = 18, 5  # of rtnetlink
 ALIAS_WORD: Final = 4  # of the EEPROM
+MAILBOX_MANAGER: Final = 0x0808  # register: the sync manager of what a slave sends
+MAILBOX_FULL: Final = 0x08
+MAILBOX_QUIET_S, MAILBOX_WITHIN_S = 0.02, 1.0  # until no late answer is expected any more; the longest wait for that
 
 INIT, PRE_OPERATIONAL, SAFE_OPERATIONAL, OPERATIONAL = 1, 2, 4, 8
 ERROR_BIT: Final = 0x10
@@ -168,6 +171,7 @@ class Wire:
         except Exception as error:
             raise TaktError(f"{bus}: the interface cannot be opened: {_line(error)}") from None
         self._sockets = _packet_sockets() - before
+        self._received = [socket.socket(fileno=os.dup(number)) for number in self._sockets]
         self.ring_end = None if ring is None else ethernet_socket(ring)
 
     def hurry(self) -> None:
@@ -180,6 +184,14 @@ class Wire:
         """Until a frame has come, or for so long."""
         if self._sockets:
             select.select(self._sockets, [], [], max(0.0, within_s))
+
+    def discard_late_frames(self) -> None:
+        """Takes out what has come back too late: frames have numbers up to 15 only, and the package would take one of
+        them for the answer to its sixteenth next, and so on for good."""
+        for received in self._received:
+            with contextlib.suppress(OSError):  # no more
+                while received.recv(2048, socket.MSG_DONTWAIT):
+                    pass
 
     def find(self) -> list[Any]:
         """Brings the slaves that there are to PREOP; in the order of their positions."""
@@ -227,6 +239,8 @@ class Wire:
 
     def close(self) -> None:
         self._sockets = set()
+        while self._received:
+            self._received.pop().close()
         if self.ring_end is not None:
             self.ring_end.close()
             self.ring_end = None
@@ -267,13 +281,38 @@ class Sdo(Objects):
         while asked < QUESTIONS or time.monotonic() < end_s:
             asked += 1
             try:
-                return question()
+                answer = question()
             except pysoem.SdoError as error:
+                self._discard_late_answers(asked)
                 code = error.abort_code & 0xFFFF_FFFF
                 raise SdoError(f"{what}: {abort_text(code)}", code) from None
             except (pysoem.MailboxError, pysoem.PacketError, pysoem.WkcError):
-                pass  # a frame may get lost
+                self._wire.discard_late_frames()
+                continue  # a frame may get lost
+            self._discard_late_answers(asked)
+            return answer
+        self._discard_late_answers(asked)
         raise SdoError(f"{what}: no answer")
+
+    def _discard_late_answers(self, asked: int) -> None:
+        """Where a question was put again its answer may come twice; the package would take the second one for that to
+        the next question about the same index."""
+        end_s = time.monotonic() + MAILBOX_WITHIN_S
+        empty_since_s: float | None = None
+        while asked > 1 and time.monotonic() < end_s:
+            try:
+                manager = bytes(self._slave._fprd(MAILBOX_MANAGER, 8, FRAME_US))
+                begin, length = struct.unpack_from("<HH", manager)
+                if not manager[5] & MAILBOX_FULL:
+                    empty_since_s = empty_since_s or time.monotonic()
+                    if time.monotonic() - empty_since_s >= MAILBOX_QUIET_S:
+                        return
+                else:
+                    empty_since_s = None
+                    self._slave._fprd(begin, length, FRAME_US)
+            except self._wire.pysoem.WkcError:
+                empty_since_s = None
+            time.sleep(0.001)
 
 
 def _line(error: Exception) -> str:
