@@ -612,3 +612,103 @@ def test_a_run_with_plans_is_reproduced(tmp_path: Path, pace: str) -> None:
     result = takt.replay(file)
     assert result.same
     assert result.states > 0
+
+
+STADIUM = [
+    (500, 500, 15),
+    (1000, 800, 5),
+]  # mm/s of the axes, of the path, and the radius in mm
+
+
+def stadium(axes: float, path: float, radius: float) -> str:
+    """A line of 60 mm, half a circle and a line back: the curvature steps where they meet."""
+    of = Limits(axes, 10 * axes, 1e5 if axes < 1000 else 5e5)
+    along = Limits(path, 10 * path, 1e5 if axes < 1000 else 4e5)
+    text = machine([(60, 0, 0)], of).replace(f"path: {values(of)}", f"path: {values(along)}")
+    return (
+        f"{text}      - {{shape: arc, via_x: {60 + radius}, via_y: {radius}, via_z: 0, "
+        f"to: {{x: 60, y: {2 * radius}, z: 0}}}}\n      - {{shape: line, to: {{x: 0, y: {2 * radius}, z: 0}}}}\n"
+    )
+
+
+def off_stadium(recording: takt.Recording, radius: float) -> float:
+    """The largest distance from it in mm."""
+    x, y = (recording[name]["set_position"] for name in "xy")
+    on_arc = np.abs(np.hypot(x - 60, y - radius) - radius)
+    on_lines = np.minimum(np.abs(y), np.abs(y - 2 * radius))
+    return float(np.where(x > 60, on_arc, on_lines).max())
+
+
+@pytest.mark.parametrize("case", STADIUM)
+@pytest.mark.parametrize(
+    "disturb",
+    [
+        lambda _, group: group.set_override(velocity_factor=0.5),
+        lambda _, group: group.set_override(velocity_factor=0),
+        lambda _, group: group.halt(),
+        lambda _, group: group.halt(deceleration=1000),
+        lambda _, group: group.interrupt(deceleration=1000),
+        lambda _, group: group.stop(jerk=1e4),
+    ],
+    ids=["half", "zero", "halt", "soft-halt", "soft-interrupt", "soft-stop"],
+)
+def test_no_instant_leads_off_the_path_where_curvature_steps(
+    case: tuple[float, float, float], disturb: Disturb
+) -> None:
+    """GR-40: brakings and overrides passed the steps as fast as they came (0.2 to 12 mm beside the path)."""
+    worst = 0.0
+    for instant in range(20, 700, 12 if LONG else 52):
+        with takt.Engine(stadium(*case)) as session:
+            group = session.group("g")
+            group.power().wait()
+            group.enable().wait()
+            recorder = session.record("x", "y")
+            group.move_path(path="p")
+            session.step(instant)
+            disturb(session, group)
+            session.run(0.5)
+            group.set_override()
+            session.run(1.0)
+            worst = max(worst, off_stadium(recorder.stop(), case[2]))
+    assert worst <= 1e-3
+
+
+@pytest.mark.parametrize(
+    ("radius", "override"), [(3, 1), (5, 1), (5, 0.8), (5, 0.5), (10, 0.8), (15, 1), (15, 0.9), (40, 1), (100, 1)]
+)
+def test_smooth_joints_are_no_slower_than_stops(radius: float, override: float) -> None:
+    """GR-23, GR-41: steps of curvature are passed at the speed that they allow (it crept at 2 mm/s before them)."""
+    taken = []
+    for stops in (False, True):
+        with takt.Engine(stadium(500, 500, radius)) as session:
+            group = session.group("g")
+            group.power().wait()
+            group.enable().wait()
+            group.set_override(velocity_factor=override)
+            session.step()
+            began = session.now
+            if stops:
+                group.move_linear_absolute(x=60, y=0, z=0)
+                border = {"aux_x": 60 + radius, "aux_y": radius, "aux_z": 0, "x": 60, "y": 2 * radius, "z": 0}
+                group.move_circular_absolute(circ_mode="border", buffer_mode="buffered", **border)
+                group.move_linear_absolute(x=0, y=2 * radius, z=0, buffer_mode="buffered").wait()
+            else:
+                group.move_path(path="p").wait()
+            taken.append(session.now - began)
+    assert taken[0] < taken[1]
+
+
+@pytest.mark.parametrize("planned_ahead", ["true", "false"])
+@pytest.mark.parametrize("width", [1e-4, 1.3e-3, 0.01, 0.03, 0.3])
+def test_narrow_arches_end(width: float, planned_ahead: str) -> None:
+    """GR-40, GR-41: up and over to a place beside (they stood at the crest for good, or took 10 s and more)."""
+    limits = Limits(1000, 10000, 5e5)
+    text = machine([(1, 0, 0)], limits, f", planned_ahead: {planned_ahead}")
+    with takt.Engine(text) as session:
+        group = session.group("g")
+        group.power().wait()
+        group.enable().wait()
+        began = session.now
+        group.move_arch(x=width, z=0, height=20).wait()
+        assert session.now - began < 0.5
+        assert group.x == pytest.approx(width, abs=1e-9)

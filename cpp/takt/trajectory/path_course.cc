@@ -14,10 +14,12 @@ constexpr std::size_t kMostNodes = 1024;
 constexpr double kFast = 0.7;        // share of the largest speed around it above which a node is not slow
 constexpr double kOfBuildUp = 0.25;  // length of an interval over the time in which accelerations build up
 constexpr double kShortest_s = 5e-4, kLongest_s = 0.025;  // of an interval
+constexpr double kBesideJoint_s = 0.002;                  // of an interval that ends there
 constexpr double kTurn = 0.15;                            // share of the jerk limit that steps at a node: it is a knot
 constexpr double kLeastParts = 16;                        // intervals between two slow nodes, about
 constexpr int kAttempts = 6, kEasings = 4;
-constexpr double kEased = 0.97;  // share of a limit that the reference is to use at most at slow nodes
+constexpr double kEased = 0.97;   // share of a limit that the reference is to use at most at slow nodes
+constexpr double kHelps = 0.995;  // of the use before, at most, once a slow node is slower: else it stays as it was
 constexpr double kHarder[] = {1,   1.01, 1.02, 1.04,
                               1.1, 1.25, 1.5,  2};  // shares of its limits, tried for the reference from a motion
 constexpr double kNoSlower = 0.9;                   // of the slower end: the least speed on the way of such a reference
@@ -209,6 +211,11 @@ void PathCourse::Add(const KinematicState& from, const KinematicState& to, doubl
   steps_.push_back(step);
 }
 
+bool PathCourse::IsJoint(std::size_t i) const noexcept {
+  const double s = nodes_[i].at.s;
+  return (i > 0 && nodes_[i - 1].at.s == s) || (i + 1 < nodes_.size() && nodes_[i + 1].at.s == s);
+}
+
 // Intervals of one motion of the reference: with knots where its jerk steps, and where the way coordinates bend does.
 // False: there is no room for them.
 bool PathCourse::Cut(const Slow& from, const Slow& to, const Profile& profile, double longest_s) noexcept {
@@ -221,8 +228,11 @@ bool PathCourse::Cut(const Slow& from, const Slow& to, const Profile& profile, d
     if (std::isnan(at_s)) break;
     knots_.push_back({at_s, turns_[i]});
   }
-  std::ranges::sort(knots_, {}, &Knot::at_s);
+  // Intervals that end at a joint are no faster anywhere than that allows.
   const double end_s = profile.duration();
+  if (IsJoint(from.node)) knots_.push_back({kBesideJoint_s, kTurn});
+  if (IsJoint(to.node)) knots_.push_back({end_s - kBesideJoint_s, kTurn});
+  std::ranges::sort(knots_, {}, &Knot::at_s);
   double begin_s = 0;
   KinematicState begin = profile.start();
   for (std::size_t i = 0; i < knots_.size(); ++i) {
@@ -480,8 +490,16 @@ bool PathCourse::Ease() noexcept {
         }
       }
     }
-    if (most <= kEased) continue;
-    slow_[i].speed *= std::max(0.6, std::sqrt(0.97 * kEased / most));
+    Slow& slow = slow_[i];
+    if (most <= kEased || slow.stays) continue;
+    if (slow.use > 0 && most > kHelps * slow.use) {
+      slow.speed = slow.uneased;  // the use is elsewhere
+      slow.stays = true;
+    } else {
+      if (slow.use == 0) slow.uneased = slow.speed;
+      slow.use = most;
+      slow.speed *= std::max(0.6, std::sqrt(0.97 * kEased / most));
+    }
     eased = true;
   }
   return eased;
@@ -509,20 +527,22 @@ void PathCourse::SetLimits(std::size_t end) noexcept {
     lengths_.push_back(step.length);
     const KinematicState before = step.At(0), after = step.At(step.length);
     AlongPath along = nodes_[step.node].at.limits;
-    double square = std::numeric_limits<double>::infinity();  // what joints allow, and a path without a speed limit
+    double joints = std::numeric_limits<double>::infinity();  // squares: what joints allow ...
+    double own = joints;                                      // ... and a path without a speed limit
     for (std::size_t i = step.node;; ++i) {
       along = Least(along, nodes_[i].at.limits);
-      const bool joint =
-          (i < end && nodes_[i + 1].at.s == nodes_[i].at.s) || (i > 0 && nodes_[i].at.s == nodes_[i - 1].at.s);
-      if (joint || (factor_ < 1 && along.velocity >= kNoLimitFrom)) square = std::min(square, square_[i]);
+      const bool within = nodes_[i].at.s >= before.position - kHere && nodes_[i].at.s <= after.position + kHere;
+      if (within && IsJoint(i)) joints = std::min(joints, square_[i]);
+      if (factor_ < 1 && along.velocity >= kNoLimitFrom) own = std::min(own, square_[i]);
       if (i == end || nodes_[i].at.s >= after.position - kHere) break;
     }
     double velocity = along.velocity >= kNoLimitFrom ? along.velocity : factor_ * along.velocity;
-    velocity = std::min(velocity, std::sqrt(square));
+    velocity = std::min(velocity, std::sqrt(own));
     if (brakes) {
       const double braked = 1.001 * std::max(before.velocity, after.velocity);
       velocity = std::max(velocity, std::min(braked, std::max(along.velocity, before.velocity)));
     }
+    velocity = std::min(velocity, std::sqrt(joints));
     first_limits_.push_back({InfiniteIfNone(velocity), InfiniteIfNone(along.acceleration),
                              InfiniteIfNone(along.deceleration), InfiniteIfNone(along.jerk)});
   }

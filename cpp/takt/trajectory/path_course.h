@@ -57,6 +57,7 @@ class PathCourse {
   PathPlanRequest Request() const noexcept;
   // Returns the state along the path where the reference time passes so.
   KinematicState At(const ReferenceState& reference) const noexcept;
+  double duration() const noexcept { return steps_.back().begin_s + steps_.back().length; }  // of the reference [s]
   double end_place() const noexcept { return end_place_; }  // arc length at which it rests [mm]
 
  private:
@@ -73,6 +74,9 @@ class PathCourse {
     std::size_t node = 0;
     double place = 0;
     double speed = 0;
+    double uneased = 0;  // speed before it was made slower, for ...
+    double use = 0;      // ... this share of a limit; 0: it was not
+    bool stays = false;  // it is not made slower any more
   };
   struct Followed {
     double length_s = 0;  // of the interval before it
@@ -92,6 +96,7 @@ class PathCourse {
   Laid Lay(double of_build_up, Planner& planner) noexcept;
   bool Cut(const Slow& from, const Slow& to, const Profile& profile, double longest_s) noexcept;
   void Add(const KinematicState& from, const KinematicState& to, double length_s) noexcept;
+  bool IsJoint(std::size_t node) const noexcept;  // the second slopes step there
   void Grade() noexcept;
   bool Ease() noexcept;
   void SetLimits(std::size_t end) noexcept;

@@ -25,6 +25,8 @@ inline constexpr double kBend = 0.02;
 inline constexpr double kHidden = 0.002;
 // The same for the rate of this change, as a share of the limit of jerk.
 inline constexpr double kHiddenRate = 0.02;
+// A step is not halved below this: differences of slopes over less are rounding.
+inline constexpr double kShortest = 1e-8;  // mm
 inline constexpr int kHalvings = 12;
 inline constexpr int kHalvingsForHidden = 5;
 }  // namespace sampling
@@ -121,6 +123,7 @@ bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limi
     const double there = square_at(next);
     bool linear = step <= 2 * std::sqrt(there) * time;
     const double square = std::min(here, there);
+    const bool is_least = 0.5 * step < c::kShortest;
     for (std::size_t k = 0; k < limits.count && linear; ++k) {
       const double line = 0.5 * (before.slopes.second[k] + next.slopes.second[k]);
       linear = std::abs(middle.slopes.second[k] - line) * square <= c::kBend * limits.of[k].acceleration;
@@ -139,7 +142,7 @@ bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limi
         most = std::min(most, c::kHiddenRate / 16 * limits.of[k].jerk * passing_s);
       linear = std::max(std::abs(whole), std::abs(half)) * square <= most;
     }
-    if (linear || i == c::kHalvings) {
+    if (linear || is_least || i == c::kHalvings) {
       next.middle = middle.slopes.second;
       next.has_middle = true;
       return true;

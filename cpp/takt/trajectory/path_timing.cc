@@ -28,6 +28,8 @@ constexpr double kUrgent_s = 0.15;    // before the law in force ends: a slower 
 constexpr double kWithin = 1 + 1e-7;  // of a limit
 constexpr int kSamples = 12;          // of a piece of a profile that is verified, besides the nodes it passes
 constexpr double kShares[] = {1, 0.8, 0.6, 0.45, 0.3, 0.2, 0.1};  // of limits, tried for bridges
+constexpr double kMuchFaster = 4;  // times the slowest speed of a bridge: it ends where more is allowed
+constexpr double kCrawls = 4;      // times the duration of the reference: bridges, with stops between them, are faster
 constexpr double kBrakeShares[] = {1,   0.8,  0.6,   0.45,   0.3,  0.2,
                                    0.1, 0.05, 0.025, 0.0125, 0.006};  // of limits, tried for braking
 constexpr double kBrakesWithin[] = {kWithin, 1.008, 1.018};  // of the limits of the window, 0.98 of the members'
@@ -164,6 +166,9 @@ bool PathTiming::Holds(const PathWindow& window, std::uint64_t node, const Profi
         const double acceleration = std::lerp(before.acceleration, at.acceleration, share);
         const KinematicState there{s, std::sqrt(square), acceleration};
         if (UseOf(window, node, there, jerk) > within) return false;
+        const PathSlopes &slopes = window[node].at.slopes, &behind = window[node + 1].at.slopes;
+        const bool joint = window[node].at.s == s;
+        if (joint && square > within * within * JointSquare(slopes, behind, window.limits(), period_s_)) return false;
         ++node;
         if (UseOf(window, node, there, jerk) > within) return false;
       }
@@ -181,7 +186,7 @@ bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, co
   const std::uint64_t end = StopBehind(window, pace.node);
   if (!(window[end].at.s > pace.now.position + kSamePosition)) return false;
   // To the end, or to where bends begin.
-  std::uint64_t bend = end;
+  std::uint64_t bend = end, furthest = end;
   const auto steady = [&](std::uint64_t i) {
     const PathSlopes& slopes = window[i].at.slopes;
     const double most = factor * window[i].at.limits.velocity;
@@ -192,12 +197,26 @@ bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, co
     bend = i - 1;
     break;
   }
-  // Where it bends at once a plan from rest is there soon; without one it goes as fast as the slowest place.
+  // Where it bends at once a plan from rest is there soon; without one it goes as fast as the slowest place, to where
+  // much more or much less is allowed.
+  if (slowly) {
+    double slowest = std::numeric_limits<double>::infinity(), fastest = 0;
+    std::uint64_t alike = pace.node;
+    while (alike < end) {
+      const double own = window[alike + 1].own;
+      slowest = std::min(slowest, own);
+      fastest = std::max(fastest, own);
+      if (fastest > kMuchFaster * kMuchFaster * slowest && window[alike].at.s > pace.now.position + kSamePosition)
+        break;
+      ++alike;
+    }
+    furthest = alike;
+  }
   if (bend <= pace.node || !(window[bend].at.s > pace.now.position + kSamePosition)) {
     if (!slowly) return false;
-    bend = end;
+    bend = furthest;
   }
-  for (const std::uint64_t to : {slowly ? end : bend, bend}) {
+  for (const std::uint64_t to : {slowly ? furthest : bend, bend}) {
     AlongPath least = window[pace.node].at.limits;
     double velocity = std::numeric_limits<double>::infinity();
     for (std::uint64_t i = pace.node; i <= to; ++i) {
@@ -418,6 +437,8 @@ std::optional<std::uint64_t> PathTiming::MakePlan() noexcept {
     if (!next_.course.Make(maker_->profiles, reference.share, reference.follow)) continue;
     maker_->status = maker_->planner.Plan(next_.course.Request(), next_.plan);
     const bool found = maker_->status == PathPlanStatus::kPlanned;
+    const bool crawls = next_.plan.duration() > kCrawls * next_.course.duration();
+    if (maker_->status == PathPlanStatus::kScaled && crawls) maker_->status = PathPlanStatus::kNoPlan;
     if (found && next_.course.IsSlower(next_.plan, reference.slowest)) maker_->status = PathPlanStatus::kNoPlan;
   }
   // With the plan as the reference once more: where its speed changes by orders of magnitude it is far from the
