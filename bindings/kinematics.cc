@@ -31,6 +31,8 @@ using kinematics::MovingFrame;
 using kinematics::Pose;
 using kinematics::Reason;
 
+constexpr std::size_t kMaxMechanismBytes = 64'000'000;  // a URDF may be inside
+
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -91,7 +93,8 @@ class Mechanism {
   Mechanism(const std::string& text, const std::string& folder) {
     kinematics::KinematicsParams params;
     Problem problem;
-    if (!ReadArguments(params, text, &problem)) ThrowConfigError({Sentence(problem.path, problem.message)});
+    if (!ReadArguments(params, text, &problem, kMaxMechanismBytes))
+      ThrowConfigError({Sentence(problem.path, problem.message)});
     kinematics::MakeResult made = kinematics::Make(params, folder);
     if (!made.kinematics) ThrowConfigError({Sentence(made.path, made.problem)});
     kinematics_ = *made.kinematics;
