@@ -31,6 +31,8 @@ using kinematics::MovingFrame;
 using kinematics::Pose;
 using kinematics::Reason;
 
+constexpr std::size_t kMaxMechanismBytes = 64'000'000;  // a URDF may be inside
+
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -91,7 +93,8 @@ class Mechanism {
   Mechanism(const std::string& text, const std::string& folder) {
     kinematics::KinematicsParams params;
     Problem problem;
-    if (!ReadArguments(params, text, &problem)) ThrowConfigError({Sentence(problem.path, problem.message)});
+    if (!ReadArguments(params, text, &problem, kMaxMechanismBytes))
+      ThrowConfigError({Sentence(problem.path, problem.message)});
     kinematics::MakeResult made = kinematics::Make(params, folder);
     if (!made.kinematics) ThrowConfigError({Sentence(made.path, made.problem)});
     kinematics_ = *made.kinematics;
@@ -379,6 +382,18 @@ std::vector<std::string> UrdfSolids(const std::string& urdf, const std::string& 
   return solids;
 }
 
+// Returns the names of the joints of a chain, and of its tip.
+std::pair<std::vector<std::string>, std::string> UrdfChainNames(const std::string& urdf, const std::string& base,
+                                                                const std::string& tip) {
+  kinematics::UrdfNames names = kinematics::ReadUrdfNames(urdf, base, tip);
+  return {std::move(names.joints), std::move(names.tip)};
+}
+
+// Returns the file of a mesh of a URDF in `folder`.
+std::string UrdfMeshFile(const std::string& mesh, const std::string& folder) {
+  return workspace::FileOfMesh(mesh, "", folder);
+}
+
 using Surface = std::pair<Numbers, py::array_t<std::uint32_t>>;
 
 // Vertices (n, 3) in mm and triangles (m, 3) of an STL file; nothing where it cannot be read.
@@ -405,6 +420,8 @@ void BindKinematics(py::module_& m) {
   m.def("matrices_to_poses", &ToPoses, py::arg("matrices"));
   m.def("urdf_solids", &UrdfSolids, py::arg("urdf"), py::arg("base"), py::arg("tip"), py::arg("folder"),
         py::arg("visual"));
+  m.def("urdf_chain_names", &UrdfChainNames, py::arg("urdf"), py::arg("base"), py::arg("tip"));
+  m.def("urdf_mesh_file", &UrdfMeshFile, py::arg("mesh"), py::arg("folder"));
   m.def("surface_of_stl", &SurfaceOf, py::arg("path"), py::arg("scale"));
   m.def("poses_between", &Between, py::arg("ends"), py::arg("shares"));
 

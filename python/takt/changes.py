@@ -12,7 +12,7 @@ import yaml
 
 from takt import _core
 from takt.errors import ConfigError
-from takt.yaml_text import legible, to_json
+from takt.yaml_text import compose, to_json
 
 NAMES = ("name", "axis")  # what elements of lists go by
 MARK = "__takt_change_{}__"
@@ -53,7 +53,7 @@ def _parts(text: str, file_name: str, paths: tuple[str, ...]) -> tuple[str | int
 
 
 def _edited(text: str, file_name: str, path: str, value: str) -> str:
-    node = yaml.compose(legible(text), Loader=yaml.SafeLoader)
+    node = compose(text)
     keys = path.split(".")
     depth = 0
     while depth < len(keys):

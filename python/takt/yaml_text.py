@@ -1,5 +1,4 @@
-"""YAML and JSON between Python and the engine: PyYAML refuses or splits some texts that the engine reads, and the
-engine refuses surrogate pairs, which are JSON's usual form of characters beyond U+FFFF."""
+"""YAML and JSON between Python and the engine: PyYAML refuses or splits some texts that the engine reads."""
 
 from __future__ import annotations
 
@@ -13,6 +12,8 @@ import yaml
 _LEGIBLE = str.maketrans(dict.fromkeys("\t\u2028\u2029\ufffe\uffff", " "))
 _INDENT = re.compile(r"^ +", re.MULTILINE)
 DEEPEST = 100  # levels of a text
+_ESCAPED_PAIR = re.compile(r"\\u[Dd][89ABab][0-9A-Fa-f]{2}\\u[Dd][C-Fc-f][0-9A-Fa-f]{2}")
+_PAIR = re.compile("[\ud800-\udbff][\udc00-\udfff]")
 _ESCAPED = re.compile("[\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]")
 
 
@@ -20,7 +21,29 @@ class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[mi
     """YAML as the engine reads it: 1e-05 is a number."""
 
 
-_Loader.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"[-+]?\d+[eE][-+]?\d+$"), list("-+0123456789"))
+class _Joining:
+    """Makes one character of each escaped pair of surrogates, which libyaml refuses and PyYAML leaves apart."""
+
+    def scan_flow_scalar(self, style: str) -> Any:
+        token = super().scan_flow_scalar(style)  # type: ignore[misc]
+        token.value = _PAIR.sub(lambda pair: pair[0].encode("utf-16", "surrogatepass").decode("utf-16"), token.value)
+        return token
+
+
+class _JoiningLoader(_Joining, yaml.SafeLoader):
+    """As _Loader, with pairs of surrogates, in more time."""
+
+
+class _TextLoader(_Joining, yaml.BaseLoader):
+    """All values as texts."""
+
+
+for _one in (_Loader, _JoiningLoader):
+    _one.add_implicit_resolver("tag:yaml.org,2002:float", re.compile(r"[-+]?\d+[eE][-+]?\d+$"), list("-+0123456789"))
+
+
+def _loader_of(text: str) -> type[Any]:
+    return _JoiningLoader if _ESCAPED_PAIR.search(text) else _Loader
 
 
 def _may_nest_deeper(text: str) -> bool:
@@ -30,7 +53,7 @@ def _may_nest_deeper(text: str) -> bool:
         return False
     level = 0
     try:
-        for event in yaml.parse(legible(text), Loader=_Loader):
+        for event in yaml.parse(legible(text), Loader=_loader_of(text)):
             level += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
             if level > DEEPEST:
                 return True
@@ -49,17 +72,22 @@ def load(text: str) -> Any:
     if _may_nest_deeper(text):  # libyaml's composer recurses without a limit
         raise ValueError(f"expected YAML that nests {DEEPEST} levels at most")
     try:
-        return yaml.load(text, Loader=_Loader)
+        return yaml.load(text, Loader=_loader_of(text))
     except yaml.YAMLError:
         if legible(text) == text:
             raise
-        return yaml.load(legible(text), Loader=_Loader)
+        return yaml.load(legible(text), Loader=_loader_of(text))
+
+
+def compose(text: str) -> yaml.Node | None:
+    """The nodes of a text that the engine accepts, with their places in it. Raises yaml.YAMLError."""
+    return yaml.compose(legible(text), Loader=_JoiningLoader)
 
 
 def texts_of(arguments: str) -> dict[str, str]:
     """The arguments of a command that are single values, as texts, for sentences. Empty if they cannot be read."""
     try:
-        read = yaml.load(legible(arguments), Loader=yaml.BaseLoader)
+        read = yaml.load(legible(arguments), Loader=_TextLoader)
     except (yaml.YAMLError, ValueError, RecursionError):
         return {}
     pairs = read.items() if isinstance(read, dict) else ()

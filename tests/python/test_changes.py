@@ -13,6 +13,7 @@ import yaml
 from takt.changes import Value, changed, text_of, value_of
 from takt.cli import main
 from takt.scenario import load_scenario, settings_of, with_settings
+from takt.yaml_text import load
 
 MACHINE = """\
 # Two axes, in both styles.
@@ -119,6 +120,19 @@ def test_texts_that_the_engine_reads_can_be_changed(text: str) -> None:
     with takt.Engine(text, changes=changes) as session:
         assert [axis.parameters["limits"]["velocity"] for axis in session.axes.values()] == [300, 200]
         assert session.period == 0.002
+
+
+def test_characters_beyond_ffff_as_json_writes_them() -> None:
+    """EN-10: a pair of surrogates is one character, in machine files and their changes; a single one is refused."""
+    machine = yaml.safe_load(MACHINE.replace("name: m", "name: press \N{ELECTRIC PLUG}"))
+    escaped = json.dumps(machine, indent=1)
+    assert "press \\ud83d\\udd0c" in escaped
+    with takt.Engine(escaped, changes={"axes.x.limits.velocity": 300}) as session:
+        assert session.name == machine["name"]
+        assert session.axis("x").parameters["limits"]["velocity"] == 300
+    assert load(escaped) == machine
+    with pytest.raises(takt.ConfigError, match=r"machine:2:.*invalid unicode: 55357"):
+        takt.Engine(escaped.replace("\\udd0c", ""))
 
 
 def test_a_text_in_which_no_values_are_found(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -234,6 +234,30 @@ def test_wrong_parameters_are_explained(params, sentence):
     assert sentence in str(caught.value)
 
 
+def test_urdf_files_are_utf_8(tmp_path):
+    """EN-37: others are refused with place and byte, in machine files and Kinematics; a byte order mark is skipped."""
+    text = (URDF / "puma.urdf").read_text().replace("</robot>", "<!-- f\u00fcr -->\n</robot>")
+    axes = [f"a{i}" for i in range(6)]
+    limits = "unit: deg, limits: {velocity: 1, acceleration: 1, jerk: 1}"
+    machine = "name: m\naxes:\n" + "".join(f"  - {{name: {axis}, {limits}}}\n" for axis in axes)
+    machine += (
+        f"groups:\n  - name: robot\n    axes: [{', '.join(axes)}]\n    kinematics: {{serial: {{urdf: arm.urdf}}}}\n"
+    )
+    machine += "    path: {velocity: 1, acceleration: 1, jerk: 1}\n"
+    (tmp_path / "m.yaml").write_text(machine)
+    for encoding, problem in (("latin-1", "expected text in UTF-8, found the byte 0xfc"), ("utf-8-sig", "")):
+        (tmp_path / "arm.urdf").write_bytes(text.encode(encoding))
+        if not problem:
+            assert kin.Kinematics(serial={"urdf": "arm.urdf"}, folder=tmp_path).axes == 6
+            takt.Engine(tmp_path / "m.yaml").close()
+            continue
+        place = rf"arm\.urdf:{1 + text[: text.index('<!-- f')].count(chr(10))}:7: "
+        with pytest.raises(takt.ConfigError, match=place + problem):
+            kin.Kinematics(serial={"urdf": "arm.urdf"}, folder=tmp_path)
+        with pytest.raises(takt.ConfigError, match=place + r"groups\[0\]\.kinematics\.serial\.urdf: " + problem):
+            takt.Engine(tmp_path / "m.yaml")
+
+
 def test_an_unknown_branch_is_explained():
     with pytest.raises(takt.ConfigError, match="expected one of keep, front, back, found 'left'"):
         kin.Kinematics(six_axis=PUMA).inverse([500, 0, 500, 0, 90, 0], shoulder="left")  # type: ignore[arg-type]

@@ -321,6 +321,17 @@ def test_urdf_has_its_meshes_seen_from_a_relative_folder(tmp_path: Path, monkeyp
     assert "mesh" in kinds(described(text, Path()))
 
 
+def test_arms_of_long_urdfs_are_drawn() -> None:
+    """PY-27: of a URDF longer than the arguments of a command may be, too."""
+    short = one_group(KINDS["serial"])
+    long = URDF.replace("</robot>", "<!-- " + "x" * 20_000 + " --></robot>")
+    machine = described(short.replace(json.dumps(URDF), json.dumps(long)))
+    assert list(machine.mechanisms) == ["robot"]
+    assert [node["name"] for node in machine.scene["nodes"]] == [
+        node["name"] for node in described(short).scene["nodes"]
+    ]
+
+
 def test_urdf_has_what_is_to_be_seen(tmp_path: Path) -> None:
     """PY-27: visuals before shapes for collisions, those before simple solids; of each link for itself."""
     (tmp_path / "cover.stl").write_text(STL)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import struct
 import subprocess
 import sys
 import threading
@@ -148,6 +149,54 @@ def test_models_that_are_given(tmp_path: Path) -> None:
     urdf = "{serial: {urdf: arm.urdf}}"
     (tmp_path / "arm.yaml").write_text(machine("a1 a2", urdf, motors("a1 a2", "coulomb_friction: 0.1")))
     recording, twin = moved(tmp_path / "arm.yaml")
+    assert judge(twin, recording).passed
+
+
+def urdf_with_mesh(mesh: str) -> str:
+    shape = f'<collision><geometry><mesh filename="{mesh}"/></geometry></collision>'
+    return URDF.replace('<link name="lower">', f'<link name="lower">{shape}')
+
+
+@pytest.mark.parametrize("mesh", ["../meshes/tip.stl", "package://arm/meshes/tip.stl", "file://FOLDER/meshes/tip.stl"])
+def test_meshes_of_a_urdf_are_found_from_its_folder(mesh: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """GR-13: by the same rule as for workspaces, and from any working directory; in models that are given, too."""
+    package, elsewhere = tmp_path / "arm", tmp_path / "elsewhere"
+    for folder in (package / "urdf", package / "meshes", elsewhere):
+        folder.mkdir(parents=True)
+    corners = [(0, 0, 0), (0.1, 0, 0), (0, 0.1, 0), (0, 0, 0.1)]
+    faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    facets = [struct.pack("<12fH", 0, 0, 0, *(x for i in face for x in corners[i]), 0) for face in faces]
+    (package / "meshes" / "tip.stl").write_bytes(bytes(80) + struct.pack("<I", len(faces)) + b"".join(facets))
+    (package / "urdf" / "arm.urdf").write_text(urdf_with_mesh(mesh.replace("FOLDER", str(package))))
+    monkeypatch.chdir(elsewhere)
+    text = machine("a1 a2", "{serial: {urdf: urdf/arm.urdf}}", motors("a1 a2", ""))
+    (package / "made.yaml").write_text(text)
+    model = takt_model(package / "made.yaml")
+    assert [model.mesh(i).name for i in range(model.nmesh)] == ["robot.tip"]
+    joints = "".join(
+        f"    - {{axis: {a}, max_torque: 900, joint: {j}}}\n" for a, j in (("a1", "shoulder"), ("a2", "elbow"))
+    )
+    (package / "given.yaml").write_text(
+        machine("a1 a2", "", "").replace("  axes:\n", "  model: urdf/arm.urdf\n  axes:\n") + joints
+    )
+    assert takt_model(package / "given.yaml").nmesh == 1
+
+
+def takt_model(file: Path) -> mujoco.MjModel:
+    with takt.Engine(file, plant="mujoco") as engine:
+        assert isinstance(engine.plant, Twin)
+        return engine.plant.built.model
+
+
+def test_urdfs_that_are_long_or_have_unbound_prefixes(tmp_path: Path) -> None:
+    """EN-37: what the machine file's check accepts, its twin takes: a URDF longer than a command's arguments may be,
+    with a prefix of an XML namespace that is not declared, and with joints beside the chain."""
+    more = '<gazebo><sensor:camera name="c"/></gazebo>' + "<!-- " + "x" * 20_000 + " -->"
+    side = '<link name="side"/><joint name="first" type="fixed"><parent link="base"/><child link="side"/></joint>'
+    (tmp_path / "arm.urdf").write_text(URDF.replace("</robot>", f"{more}{side}</robot>"))
+    (tmp_path / "arm.yaml").write_text(machine("a1 a2", "{serial: {urdf: arm.urdf, tip: hand}}", motors("a1 a2", "")))
+    recording, twin = moved(tmp_path / "arm.yaml")
+    assert [joint.name for joint in twin.built.joints] == ["robot.shoulder", "robot.elbow"]
     assert judge(twin, recording).passed
 
 

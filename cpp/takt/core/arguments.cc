@@ -5,25 +5,12 @@
 #include <string>
 
 #include "takt/core/binder.h"
+#include "takt/core/surrogates.h"
 
 namespace takt {
 namespace {
 
 constexpr std::string_view kBlank = " \t\r\n";
-
-void AppendUtf8(std::string& text, std::uint32_t c) {
-  const auto put = [&](std::uint32_t byte) { text += static_cast<char>(byte); };
-  if (c < 0x80) {
-    put(c);
-  } else if (c < 0x800) {
-    put(0xC0 | c >> 6);
-    put(0x80 | (c & 0x3F));
-  } else {
-    put(0xE0 | c >> 12);
-    put(0x80 | (c >> 6 & 0x3F));
-    put(0x80 | (c & 0x3F));
-  }
-}
 
 // Recursive descent over the text; stops at the first problem.
 class FlowReader {
@@ -166,6 +153,11 @@ class FlowReader {
   // At a backslash. False: unknown, nothing taken.
   bool Escape(std::string& value) {
     if (at_ + 1 >= text_.size()) return false;
+    if (const std::optional<char32_t> pair = ReadSurrogatePair(text_.substr(at_))) {
+      AppendUtf8(value, *pair);
+      at_ += kSurrogatePairBytes;
+      return true;
+    }
     const char kind = text_[at_ + 1];
     if (kind == 'x' || kind == 'u') {
       const std::size_t digits = kind == 'x' ? 2 : 4;
@@ -195,13 +187,12 @@ class FlowReader {
 
 }  // namespace
 
-bool ReadArguments(const Type& type, void* object, std::string_view text, Problem* problem) {
+bool ReadArguments(const Type& type, void* object, std::string_view text, Problem* problem, std::size_t most_bytes) {
   ProblemList problems("arguments", 1);
   if (text.find_first_not_of(kBlank) == std::string_view::npos) text = "{}";
-  if (text.size() > kMaxArgumentBytes) {
-    problems.Add(
-        {}, {},
-        "expected at most " + std::to_string(kMaxArgumentBytes) + " bytes, found " + std::to_string(text.size()));
+  if (text.size() > most_bytes) {
+    problems.Add({}, {},
+                 "expected at most " + std::to_string(most_bytes) + " bytes, found " + std::to_string(text.size()));
   } else if (CheckBytes(text, problems)) {
     Binder binder(type, object, problems);
     FlowReader(text, binder, problems).Read();

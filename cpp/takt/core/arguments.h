@@ -14,11 +14,13 @@ inline constexpr std::size_t kMaxArgumentBytes = 16'384;
 // Reads YAML's flow form (JSON is one case of it) over `object`, which holds the defaults; same rules and messages as
 // the YAML reader. Empty text: no arguments. False: `problem` gets the first problem, with "arguments" for the file,
 // and the object is of no use. Allocates nothing on success, but for what strings and lists of the object need.
-bool ReadArguments(const Type& type, void* object, std::string_view text, Problem* problem);
+// `most_bytes`: bound of the text.
+bool ReadArguments(const Type& type, void* object, std::string_view text, Problem* problem,
+                   std::size_t most_bytes = kMaxArgumentBytes);
 
 template <typename T>
-bool ReadArguments(T& object, std::string_view text, Problem* problem) {
-  return ReadArguments(TypeOf<T>(), static_cast<void*>(&object), text, problem);
+bool ReadArguments(T& object, std::string_view text, Problem* problem, std::size_t most_bytes = kMaxArgumentBytes) {
+  return ReadArguments(TypeOf<T>(), static_cast<void*>(&object), text, problem, most_bytes);
 }
 
 }  // namespace takt

@@ -10,8 +10,10 @@
 #include <fstream>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "takt/core/binder.h"
+#include "takt/core/surrogates.h"
 
 namespace takt {
 namespace {
@@ -83,7 +85,7 @@ class Handler : public YAML::EventHandler {
     if (anchor) return RefuseAnchor(mark);
     if (IsTag(mark, tag)) return RefuseTag(mark);
     if (tag == "!") last_quoted_ = mark;
-    binder_.Scalar(lines_.At(mark), value, tag == "!");
+    binder_.Scalar(lines_.At(mark), UnmaskSurrogatePairs(value, lines_.Byte(mark) == '"'), tag == "!");
     Check();
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -173,7 +175,9 @@ void Parse(const Type& type, void* object, std::string_view text, ProblemList& p
   Handler handler(binder, lines, problems);
   SecondDocument second(lines, problems);
   try {
-    std::istringstream stream{std::string(text)};
+    std::string masked(text);
+    MaskSurrogatePairs(masked);
+    std::istringstream stream{std::move(masked)};
     YAML::Parser parser(stream);
     if (!parser.HandleNextDocument(handler)) {
       problems.Add({}, {}, "expected " + Expectation(type, nullptr) + ", found an empty file");
@@ -185,7 +189,8 @@ void Parse(const Type& type, void* object, std::string_view text, ProblemList& p
     parser.HandleNextDocument(second);
   } catch (const Stop&) {
   } catch (const YAML::Exception& e) {
-    problems.Add(lines.At(e.mark), binder.Path(), "expected YAML, found an error in its form: " + e.msg);
+    problems.Add(lines.At(e.mark), binder.Path(),
+                 "expected YAML, found an error in its form: " + UnmaskSurrogatePairs(e.msg, false));
   }
 }
 

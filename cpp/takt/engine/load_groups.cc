@@ -69,6 +69,10 @@ class Loader {
       file = Beside(params.serial->urdf);
       std::optional<std::string> text = Read(path + ".kinematics.serial.urdf", file);
       if (!text) return;
+      if (std::optional<Problem> problem = kinematics::CheckUrdfFile(*text, file)) {
+        problem->path = path + ".kinematics.serial.urdf";
+        return loading_.problems.push_back(std::move(*problem));
+      }
       params.serial->urdf = std::move(*text);
     }
     const kinematics::MakeResult made = kinematics::Make(params);

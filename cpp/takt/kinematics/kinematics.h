@@ -13,6 +13,7 @@
 #include <string_view>
 #include <variant>
 
+#include "takt/core/problem.h"
 #include "takt/kinematics/delta.h"
 #include "takt/kinematics/joints.h"
 #include "takt/kinematics/linear.h"
@@ -54,6 +55,10 @@ struct MakeResult {
 
 // A URDF may be given as the text itself, which begins with <, instead of its file.
 bool IsUrdfText(std::string_view urdf) noexcept;
+
+// Checks the text of a URDF file, which must be UTF-8, and removes its byte order mark. Returns the first byte that is
+// refused; nothing: none.
+std::optional<Problem> CheckUrdfFile(std::string& text, std::string_view file);
 
 // `folder`: where paths of files begin. Reads files and allocates.
 MakeResult Make(const KinematicsParams& params, std::string_view folder = ".");

@@ -84,6 +84,14 @@ bool IsUrdfText(std::string_view urdf) noexcept {
   return first != std::string_view::npos && urdf[first] == '<';
 }
 
+std::optional<Problem> CheckUrdfFile(std::string& text, std::string_view file) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+  ProblemList problems(file, 1);
+  if (CheckBytes(text, problems)) return std::nullopt;
+  return problems.problems().front();
+}
+
 MakeResult Make(const KinematicsParams& params, std::string_view folder) {
   const int mechanisms = params.gantry.has_value() + params.core_xy.has_value() + params.scara.has_value() +
                          params.delta.has_value() + params.six_axis.has_value() + params.serial.has_value();
@@ -107,8 +115,11 @@ MakeResult Make(const KinematicsParams& params, std::string_view folder) {
     const std::string& given = params.serial->urdf;
     const bool inside = IsUrdfText(given);
     const std::filesystem::path path = std::filesystem::path(folder) / (inside ? "" : given);
-    const std::optional<std::string> text = inside ? given : TextOf(path);
+    std::optional<std::string> text = inside ? given : TextOf(path);
     if (!text) return Refused("serial.urdf", "cannot read " + path.string());
+    if (!inside) {
+      if (const auto problem = CheckUrdfFile(*text, path.string())) return Refused("serial.urdf", problem->Text());
+    }
     std::string why;
     urdf = ReadUrdf(*text, params.serial->base, params.serial->tip, why);
     if (!urdf) return Refused("serial", (inside ? "" : path.string() + ": ") + why);

@@ -61,6 +61,15 @@ struct UrdfChain {
 std::optional<UrdfChain> ReadUrdf(const std::string& xml, const std::string& base, const std::string& tip,
                                   std::string& why);
 
+// What URDF calls the parts of a chain.
+struct UrdfNames {
+  std::vector<std::string> joints;  // those of the axes, from the base to the tip
+  std::string tip;                  // link
+};
+
+// The arguments are those of ReadUrdf, which must have read them.
+UrdfNames ReadUrdfNames(const std::string& xml, const std::string& base, const std::string& tip);
+
 // What a shape in a URDF is for.
 enum class UrdfPurpose : std::uint8_t { kCollision, kVisual };
 

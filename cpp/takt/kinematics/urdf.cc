@@ -150,7 +150,25 @@ bool TakeGeometry(const urdf::Geometry& geometry, UrdfShape& shape) {
   return true;
 }
 
+// Returns the joints that move from `base` (empty: the root) to `tip`.
+std::vector<urdf::JointConstSharedPtr> AxesOf(const urdf::ModelInterface& model, const std::string& base,
+                                              const std::string& tip) {
+  std::string why;
+  std::vector<urdf::JointConstSharedPtr> axes = Way(model, base.empty() ? model.getRoot()->name : base, tip, why);
+  std::erase_if(axes, [](const urdf::JointConstSharedPtr& joint) { return joint->type == urdf::Joint::FIXED; });
+  return axes;
+}
+
 }  // namespace
+
+UrdfNames ReadUrdfNames(const std::string& xml, const std::string& base, const std::string& tip) {
+  const urdf::ModelInterfaceSharedPtr model = Parsed(xml);
+  if (!model) return {};
+  std::string why;
+  UrdfNames names{.joints = {}, .tip = tip.empty() ? OnlyEnd(*model, why) : tip};
+  for (const urdf::JointConstSharedPtr& joint : AxesOf(*model, base, names.tip)) names.joints.push_back(joint->name);
+  return names;
+}
 
 std::vector<UrdfShape> ReadUrdfShapes(const std::string& xml, const std::string& base, const std::string& tip,
                                       UrdfPurpose purpose) {
@@ -158,8 +176,7 @@ std::vector<UrdfShape> ReadUrdfShapes(const std::string& xml, const std::string&
   if (!model) return {};
   std::string why;
   const std::string begin = base.empty() ? model->getRoot()->name : base;
-  std::vector<urdf::JointConstSharedPtr> axes = Way(*model, begin, tip.empty() ? OnlyEnd(*model, why) : tip, why);
-  std::erase_if(axes, [](const urdf::JointConstSharedPtr& joint) { return joint->type == urdf::Joint::FIXED; });
+  const std::vector<urdf::JointConstSharedPtr> axes = AxesOf(*model, begin, tip.empty() ? OnlyEnd(*model, why) : tip);
   const UrdfAngles angles = ReadUrdfAngles(xml);
   const std::map<std::string, Frame> above = FixedAbove(*model, angles, begin);
   std::vector<UrdfShape> shapes;

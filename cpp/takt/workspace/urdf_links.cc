@@ -15,11 +15,24 @@ using kinematics::UrdfShape;
 constexpr std::string_view kPackage = "package://";
 constexpr std::string_view kFile = "file://";
 
-std::string FileOf(const std::string& mesh, const std::string& machine_folder, const std::string& urdf_folder) {
+// What is wrong with a mesh for us; empty: nothing.
+std::string WhyNot(const UrdfShape& shape) {
+  std::string extension = std::filesystem::path(shape.mesh).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string of = "link " + Quoted(shape.link) + " of the URDF has the mesh " + Quoted(shape.mesh);
+  if (extension != ".stl") return of + ", expected an STL file: give the shapes of its links here";
+  const bool even = shape.size[0] == shape.size[1] && shape.size[1] == shape.size[2];
+  return even ? "" : of + " with one scale along each axis, expected one for all: give the shapes of its links here";
+}
+
+}  // namespace
+
+std::string FileOfMesh(const std::string& mesh, const std::string& machine_folder, const std::string& urdf_folder) {
   namespace fs = std::filesystem;
   if (mesh.starts_with(kFile)) return mesh.substr(kFile.size());
   if (!mesh.starts_with(kPackage)) return (fs::path(urdf_folder) / mesh).string();
   const fs::path inside = mesh.substr(kPackage.size());
+  if (inside.empty()) return urdf_folder;
   // A file found by the relative path keeps one, so that the machine can be moved.
   const fs::path folder = urdf_folder;
   std::error_code unknown;  // no working directory: only the relative path is searched
@@ -33,18 +46,6 @@ std::string FileOf(const std::string& mesh, const std::string& machine_folder, c
   }
   return (folder / inside.lexically_relative(*inside.begin())).string();
 }
-
-// What is wrong with a mesh for us; empty: nothing.
-std::string WhyNot(const UrdfShape& shape) {
-  std::string extension = std::filesystem::path(shape.mesh).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  const std::string of = "link " + Quoted(shape.link) + " of the URDF has the mesh " + Quoted(shape.mesh);
-  if (extension != ".stl") return of + ", expected an STL file: give the shapes of its links here";
-  const bool even = shape.size[0] == shape.size[1] && shape.size[1] == shape.size[2];
-  return even ? "" : of + " with one scale along each axis, expected one for all: give the shapes of its links here";
-}
-
-}  // namespace
 
 UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const kinematics::Kinematics& kinematics,
                       const std::string& folder, const std::string& urdf_folder, kinematics::UrdfPurpose purpose) {
@@ -69,7 +70,7 @@ UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const kinematics::
         solid.sphere = {shape.size[0]};
         break;
       case UrdfShape::Kind::kMesh:
-        solid.mesh = {FileOf(shape.mesh, folder, urdf_folder), shape.size[0]};
+        solid.mesh = {FileOfMesh(shape.mesh, folder, urdf_folder), shape.size[0]};
         if (out.problem.empty()) out.problem = WhyNot(shape);
         break;
     }

@@ -16,9 +16,13 @@ struct UrdfLinks {
   std::string problem;  // empty: none
 };
 
+// Returns the file of a mesh that a URDF names: seen from `urdf_folder`; package://NAME/ in that folder or one above
+// it, up to the root of the file system, that is called NAME and has the file, else in `urdf_folder`; file:// as it is.
+// `machine_folder`: from which a relative `urdf_folder` is seen; from there, the file returned is seen, too.
+std::string FileOfMesh(const std::string& mesh, const std::string& machine_folder, const std::string& urdf_folder);
+
 // `serial`: with the text of the URDF; `kinematics`: made from it. `folder`: of the machine file. `urdf_folder`: of the
-// URDF's file, seen from `folder`; meshes count from there, and package://NAME/ as well, if that folder or one above,
-// up to the root of the file system, is called NAME and has the file.
+// URDF's file, seen from `folder`; meshes are found as by FileOfMesh.
 UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const kinematics::Kinematics& kinematics,
                       const std::string& folder, const std::string& urdf_folder,
                       kinematics::UrdfPurpose purpose = kinematics::UrdfPurpose::kCollision);

@@ -28,14 +28,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 
 from takt import _core
 from takt.kinematics import Kinematics, KinematicsError
 from takt.recording import Array
 from takt.scene.mechanisms import solids_of_links
 from takt.scene.solids import Solid, ball, box, cylinder, from_file, pose_matrix, rounded, shift
-from takt.yaml_text import load, to_json
+from takt.urdf_files import urdf_folders
+from takt.yaml_text import to_json
 
 Node = dict[str, Any]
 Mechanisms = Mapping[str, tuple[Kinematics, list[str], Array]]  # of groups: kinematics, axes, base
@@ -60,7 +60,7 @@ def make_scene(
     """The scene of a machine as the loader has it.
 
     text: of its file, which says where its URDF lies. folder: where files are; without, none is opened."""
-    made = _Maker(machine, mechanisms, _urdf_folders(text, folder), folder)
+    made = _Maker(machine, mechanisms, {} if folder is None else urdf_folders(text, folder), folder)
     made.stators()
     made.parts()
     made.movers()
@@ -78,7 +78,7 @@ class _Maker:
         self,
         machine: Mapping[str, Any],
         mechanisms: Mechanisms,
-        urdf_folders: Mapping[str, Path | None],
+        urdf_folders: Mapping[str, Path],
         folder: Path | None,
     ) -> None:
         self.machine, self.mechanisms, self.urdf_folders, self.folder = machine, mechanisms, urdf_folders, folder
@@ -351,22 +351,3 @@ def _reach(mechanism: Kinematics, ranges: Array, base: Array) -> list[list[float
     places = np.array(_reach3(mechanism, ranges)) @ base[:3, :3].T + base[:3, 3]
     low, high = places.min(axis=0), places.max(axis=0)
     return [[low[0], low[1]], [high[0], high[1]]]
-
-
-def _urdf_folders(text: str, folder: Path | None) -> dict[str, Path | None]:
-    """Of each group whose kinematics are in a URDF, the folder of that file."""
-    if folder is None or "urdf" not in text:
-        return {}
-    try:
-        said = load(text)
-        return {
-            group["name"]: (folder / _folder_of(serial["urdf"]))
-            for group in said["groups"]
-            if (serial := (group.get("kinematics") or {}).get("serial"))
-        }
-    except (yaml.YAMLError, KeyError, TypeError, AttributeError):
-        return {}
-
-
-def _folder_of(urdf: str) -> Path:
-    return Path() if urdf.lstrip().startswith("<") else Path(urdf).parent

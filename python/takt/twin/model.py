@@ -7,15 +7,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 import numpy.typing as npt
 
+from takt import _core
 from takt.errors import ConfigError
 from takt.kinematics import Kinematics, KinematicsError
 from takt.twin import made
 from takt.twin.places import Problems, mujoco_missing, near
+from takt.urdf_files import urdf_folders
 
 Array = npt.NDArray[np.float64]
 
@@ -95,10 +96,11 @@ def build(text: bytes, file_name: str, machine: Mapping[str, Any], step_s: float
     except ImportError:
         raise mujoco_missing() from None
     twin = machine.get("twin")
-    problems = Problems(text, file_name)
     if twin is None:
-        raise problems.fail("twin", "expected a section that says which axes the twin moves (docs: A twin), found none")
-    builder = _Builder(mujoco, problems, file_name, machine, step_s)
+        raise Problems(text, file_name).fail(
+            "twin", "expected a section that says which axes the twin moves (docs: A twin), found none"
+        )
+    builder = _Builder(mujoco, text, file_name, machine, step_s)
     warned = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(silent)
     try:
@@ -113,10 +115,11 @@ def silent(_: str) -> None:
 
 
 class _Builder:
-    def __init__(self, mujoco: Any, problems: Problems, file_name: str, machine: Mapping[str, Any], step_s: float):
-        self.mujoco, self.problems = mujoco, problems
+    def __init__(self, mujoco: Any, text: bytes, file_name: str, machine: Mapping[str, Any], step_s: float):
+        self.mujoco, self.problems = mujoco, Problems(text, file_name)
         self.machine, self.twin, self.step_s = machine, machine["twin"], step_s
         self.folder = Path(file_name).resolve().parent
+        self.urdf_folders = urdf_folders(text.decode(), self.folder)
         self.axes = {axis["name"]: axis for axis in machine["axes"]}
         self.moved = [axis["axis"] for axis in self.twin["axes"]]
         self.groups = [
@@ -362,10 +365,8 @@ class _Builder:
         kinematics = group["kinematics"]["serial"]
         path = f"groups[{self.machine['groups'].index(group)}].kinematics.serial.urdf"
         text = kinematics["urdf"]
-        if not text.lstrip().startswith("<"):
-            text = (self.folder / text).read_text(encoding="utf-8")
-        child = self.read_urdf(text, path, None)
-        names, tip = _chain_of(text, kinematics["base"], kinematics["tip"])
+        child = self.read_urdf(text, path, self.urdf_folders.get(group["name"], self.folder))
+        names, tip = _core.urdf_chain_names(text, kinematics["base"], kinematics["tip"])
         for body in child.bodies:
             for geom in body.geoms:
                 own = 1 << (number % made.GROUPS)
@@ -388,14 +389,16 @@ class _Builder:
             parts.joints[axis] = prefix + name
         parts.tools[group["name"]] = prefix + "flange"
 
-    def read_urdf(self, text: str, path: str, folder: Path | None) -> Any:
+    def read_urdf(self, text: str, path: str, folder: Path) -> Any:
+        """The model of a URDF in `folder`; its meshes are found as those of a workspace."""
         try:
             spec = self.mujoco.MjSpec.from_string(text)
         except Exception as error:
             raise self.problems.fail(path, f"MuJoCo cannot read it: {_line(error)}") from None
         spec.compiler.fusestatic = False
-        if folder is not None:
-            spec.compiler.meshdir = str(folder)
+        folder = folder / spec.compiler.meshdir  # of MuJoCo's own element in the URDF
+        for mesh in spec.meshes:
+            mesh.file = _core.urdf_mesh_file(mesh.file, str(folder))
         return spec
 
     # --- given ---
@@ -441,25 +444,6 @@ def mechanism(group: Mapping[str, Any]) -> dict[str, Any]:
     if group["kinematics"]["joints"]:
         found["joints"] = group["kinematics"]["joints"]
     return found
-
-
-def _chain_of(urdf: str, base: str, tip: str) -> tuple[list[str], str]:
-    """Joints that move from base to tip of a URDF, in order, and the tip."""
-    root = ElementTree.fromstring(urdf)
-    into = {}
-    for joint in root.findall("joint"):
-        parent, child = joint.find("parent"), joint.find("child")
-        if parent is not None and child is not None:
-            into[child.get("link", "")] = (joint, parent.get("link", ""))
-    links = [link.get("name", "") for link in root.findall("link")]
-    parents = {parent for _, parent in into.values()}
-    tip = tip or next((link for link in links if link not in parents), "")
-    names, at = [], tip
-    while at in into and at != base:
-        joint, at = into[at]
-        if joint.get("type") != "fixed":
-            names.append(joint.get("name", ""))
-    return names[::-1], tip
 
 
 def _line(error: Exception) -> str:

@@ -8,13 +8,13 @@ from collections.abc import Sequence
 import yaml
 
 from takt.errors import ConfigError, TaktError
-from takt.yaml_text import legible
+from takt.yaml_text import compose
 
 
 def problem(text: bytes, file_name: str, path: str, sentence: str) -> str:
     """ "machine.yaml:12:5: twin.axes[0].joint: expected ..."; the place of the innermost key that is written."""
     try:
-        node = yaml.compose(legible(text.decode()), Loader=yaml.SafeLoader)
+        node = compose(text.decode())
     except (UnicodeDecodeError, yaml.YAMLError):
         return f"{file_name}: {path}: {sentence}"
     mark = None

@@ -212,10 +212,7 @@ class Machine:
             given = {name: value for name, value in (group.get("kinematics") or {}).items() if value}
             if not given:
                 continue
-            try:
-                mechanism = Kinematics(folder=self.folder, **given)
-            except (ConfigError, TaktError, TypeError):
-                continue  # its files are not to be found from here
+            mechanism = Kinematics(folder=self.folder, **given)
             found[group["name"]] = (mechanism, list(group["axes"]), np.asarray(pose_to_matrix(_pose(group["base"]))))
         return found
 

@@ -118,8 +118,14 @@ TEST(Arguments, QuotedTextKnowsItsEscapes) {
             "a\"b\\c\n\xC3\xA4"
             "A");
   EXPECT_EQ(machine.tags, (std::vector<std::string>{"it's", "'", ""}));
+  ASSERT_TRUE(ReadArguments(machine, R"({axes: [], title: "a\uD83D\ude00\uFFFDb"})", &problem)) << problem.Text();
+  EXPECT_EQ(machine.title,
+            "a\xF0\x9F\x98\x80\xEF\xBF\xBD"
+            "b");
   EXPECT_THAT(ProblemOf<Machine>(R"({axes: [], title: "\q"})"), HasSubstr("expected a known escape"));
-  EXPECT_THAT(ProblemOf<Machine>(R"({axes: [], title: "\ud800"})"), HasSubstr("expected a known escape"));
+  for (const char* const text : {R"({axes: [], title: "\ud83d"})", R"({axes: [], title: "\ud83dx\ude00"})",
+                                 R"({axes: [], title: "\ude00\ud83d"})"})
+    EXPECT_THAT(ProblemOf<Machine>(text), HasSubstr("expected a known escape")) << text;
   EXPECT_THAT(ProblemOf<Machine>(R"({axes: [], title: "\)"), HasSubstr("expected a known escape"));
 }
 

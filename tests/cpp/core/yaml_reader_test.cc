@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <random>
 
 #include "example.h"
@@ -399,6 +400,26 @@ TEST(YamlReader, TenThousandMutationsOfAGoodFile) {
   }
   EXPECT_GT(accepted, 500);
   EXPECT_LT(accepted, 9'500);
+}
+
+TEST(YamlReader, ReadsPairsOfSurrogates) {  // EN-10: as JSON escapes characters above U+FFFF
+  const std::map<std::string, std::string> titles = {
+      {R"("\uD83D\uDE00")", "\xF0\x9F\x98\x80"},
+      {R"("\ud800\udc00\udbff\udfff")", "\xF0\x90\x80\x80\xF4\x8F\xBF\xBF"},
+      {R"("a\\\ud83d\ude00\u00e4")", "a\\\xF0\x9F\x98\x80\xC3\xA4"},
+      {R"("\\ud83d\\ude00")", R"(\ud83d\ude00)"},
+      {R"('\ud83d\ude00')", R"(\ud83d\ude00)"},
+      {R"(\ud83d\ude00)", R"(\ud83d\ude00)"},
+  };
+  for (const auto& [written, title] : titles) {
+    const auto result = ReadYaml<Machine>("axes: []\ntitle: " + written + " # \\ud83d\\ude00\n", "m.yaml");
+    ASSERT_TRUE(result.ok()) << result.problems.front().Text();
+    EXPECT_EQ(result.value->title, title) << written;
+  }
+  for (const char* const single : {R"("\ud83d")", R"("\ude00\ud83d")", R"("\ud83d \ude00")"})
+    EXPECT_THAT(Only(Problems("axes: []\ntitle: " + std::string(single))), HasSubstr("m.yaml:2:")) << single;
+  EXPECT_THAT(Only(Problems(R"({"axes": [], "title": "\ud83d\ude00", "colour": 1})")), HasSubstr("m.yaml:1:39: "));
+  EXPECT_THAT(Only(Problems(R"({"axes": [], "\ud83d\ude00": 1})")), HasSubstr("found '\xF0\x9F\x98\x80'"));
 }
 
 TEST(YamlReader, ALargeMachineIsReadQuickly) {
