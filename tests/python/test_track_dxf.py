@@ -220,6 +220,17 @@ def test_clipped_blocks_are_refused(tmp_path: Path) -> None:
     assert "of the block 'B0' is clipped, and blocks are read whole" in wrong(tmp_path, draw)
 
 
+@pytest.mark.parametrize(
+    ("unit", "length"),
+    [(0, 1), (1, 25.4), (2, 304.8), (8, 25.4e-6), (9, 0.0254), (10, 914.4)]
+    + [(21, 12e5 / 3937), (22, 1e5 / 3937), (23, 36e5 / 3937), (24, 6336e6 / 3937)],
+)
+def test_units(tmp_path: Path, unit: int, length: float) -> None:
+    """PY-22: all that $INSUNITS names, those of US surveyors as well."""
+    (track,), _ = read(tmp_path, lambda m, d: setattr(d, "units", unit) or m.add_line((0, 0), (10, 0)))
+    assert place(track["elements"][0]["to"]) == pytest.approx(10 * length, rel=1e-12, abs=1e-11)
+
+
 def test_curves_keep_the_tolerance(tmp_path: Path) -> None:
     """An ellipse by its own formula; chords are shortened at their corners."""
     (track,), _ = read(tmp_path, lambda m, _: m.add_ellipse((10, 0), (40, 0), 0.5))
