@@ -11,6 +11,7 @@ import math
 import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from os import PathLike
 from typing import Any, NamedTuple
 
@@ -99,7 +100,7 @@ class _Reader:
                 raise
             except Exception as error:  # damaged entities
                 raise _EntityError(f"{_label(entity)} cannot be read: {error}") from None
-            kept = [piece for piece in found if piece.length > SAME]
+            kept = [replace(piece, source=_label(entity)) for piece in found if piece.length > SAME]
             if found and not kept:
                 self._left_out[f"{entity.dxftype()} without length"] += 1
             if kept:
