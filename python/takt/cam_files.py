@@ -11,14 +11,18 @@
 
 from __future__ import annotations
 
+import csv
+import itertools
 import math
 import os
 import re
+from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from takt.cam import Interpolation, Table
+from takt.csv_rows import DECIMAL_COMMA, surplus
 from takt.errors import ConfigError
 
 ERRORS = 20  # of one file, at most
@@ -41,9 +45,17 @@ LAWS = {
     **dict.fromkeys(("beschltrapez", "13"), "modified_trapezoid"),
 }
 _STRUCT = re.compile(r"\(([^()]*:=[^()]*)\)")
-_ARRAY = re.compile(r"ARRAY\s*\[[^\],]*,\s*0\s*\.\.\s*1\s*\]\s*OF\s*L?REAL\s*:=\s*\[([^\]]*)\]", re.IGNORECASE)
+_POSITION = re.compile(r"[(,]\s*(dX|dY|MasterPos|SlavePos)\s*:=", re.IGNORECASE)
+_ARRAY = re.compile(r"ARRAY\s*\[([^\],]*),\s*0\s*\.\.\s*1\s*\]\s*OF\s*L?REAL\s*:=\s*\[([^\]]*)\]", re.IGNORECASE)
+_STRUCTS = re.compile(r"ARRAY\s*\[([^\],]*)\]\s*OF\s*\w+\s*:=([^;]*)", re.IGNORECASE)
+_BOUNDS = re.compile(r"\s*([-+]?\d{1,9})\s*\.\.\s*([-+]?\d{1,9})\s*")
+# Not part of structured text, at the place where it begins: comments in (* *), which nest, and /* */, pragmas, texts.
+_SKIPPED = re.compile(r"\(\*|/\*|//[^\r\n]*|\{[^{}]*\}|'(?:\$.|[^'$\r\n])*'?", re.DOTALL)
+_COMMENTS = {"(*": "*)", "/*": "*/"}
+_NESTED = re.compile(r"\(\*|\*\)")
 _CNC = re.compile(r"^\s*tabletype\s*=", re.IGNORECASE | re.MULTILINE)
 _FINDING = re.compile(r"(?:points|segments)\[(\d+)\][.\w]*: (.*)")
+_THOUSANDS = re.compile(r"[-+]?[1-9][0-9]{0,2}(,[0-9]{3})+")
 _NUMBERS = re.compile(r"[-+0-9.,eE]+(\s+[-+0-9.,eE]+)+")
 
 
@@ -60,14 +72,13 @@ def read(
     """See Table.from_file."""
     path = Path(file)
     text = _decoded(path.read_bytes())
+    code = _code(text)
     content = _Content(str(path))
     if _CNC.search(text):
         cyclic, law = content.read_cnc(text)
         interpolation = interpolation or law
-    elif _STRUCT.search(text):
-        content.read_structs(text)
-    elif _ARRAY.search(text):
-        content.read_array(text)
+    elif any(kind.search(code) for kind in (_STRUCT, _POSITION, _ARRAY)):
+        content.read_code(code)
     else:
         content.read_columns(text, columns)
     content.tell()
@@ -134,12 +145,17 @@ class _Content:
     # --- tables of numbers ---
 
     def read_columns(self, text: str, columns: Mapping[str, str | int] | None) -> None:
-        lines = [(i, line.split("//")[0].strip()) for i, line in enumerate(text.splitlines(), 1)]
-        lines = [(i, line) for i, line in lines if line and not line.startswith("#")]
+        lines = [(i, line.split("//")[0].rstrip()) for i, line in enumerate(text.splitlines(), 1)]
+        lines = [(i, line) for i, line in lines if line and not line.lstrip().startswith("#")]
         if not lines:
             return self._add(None, "expected a table of numbers, found an empty file")
-        separator = _separator(lines[0][1])
-        cells = [(i, _split(line, separator)) for i, line in lines]
+        separator = _separator(lines[0][1].strip())
+        if separator != "\t" or lines[0][1][0].isspace():  # else the first field of a line may be empty
+            lines = [(i, line.strip()) for i, line in lines]
+        try:
+            cells = [(i, _split(line, separator)) for i, line in lines]
+        except csv.Error as error:  # a field of megabytes
+            return self._add(None, f"expected a table of numbers: {error}")
         header = None if all(_is_number(cell) for cell in cells[0][1]) else cells.pop(0)[1]
         has_units = header and cells and not any(cell and _is_number(cell) for cell in cells[0][1])
         units = cells.pop(0)[1] if has_units else []
@@ -147,15 +163,25 @@ class _Content:
         if places is None:
             return None
         self.units = {key: units[k].strip("[]() ") for key, k in places.items() if k < len(units) and units[k]}
+        width, where = (len(header), "the head") if header else (len(cells[0][1]), "the first line")
+        decimal_comma = separator != "," or any(
+            DECIMAL_COMMA.fullmatch(row[k]) and not _THOUSANDS.fullmatch(row[k])
+            for _, row in cells
+            for k in places.values()
+            if k < len(row)
+        )
         for line, row in cells:
-            self._take(line, row, places, separator != ",")
+            if sentence := surplus(row, width, where):
+                self._add(line, sentence)
+            else:
+                self._take(line, row, places, decimal_comma)
         return None
 
     def _places(
         self, header: list[str] | None, cells: Sequence[tuple[int, list[str]]], columns: Mapping[str, str | int] | None
     ) -> dict[str, int] | None:
         """Which column has what, from 0."""
-        width = len(header) if header else max((len(row) for _, row in cells), default=0)
+        width = len(header or cells[0][1])
         if columns is not None:
             return self._chosen(header, width, columns)
         if header is None:
@@ -204,9 +230,20 @@ class _Content:
 
     # --- structured text ---
 
-    def read_structs(self, text: str) -> None:
-        for match in _STRUCT.finditer(text):
-            line = text.count("\n", 0, match.start()) + 1
+    def read_code(self, code: str) -> None:
+        for begin in _COMMENTS:
+            if begin in code:
+                self._add(_line(code, code.index(begin)), f"the comment has no end: expected {_COMMENTS[begin]}")
+        if _STRUCT.search(code) or _POSITION.search(code):
+            self.read_structs(code)
+        else:
+            self.read_array(code)
+
+    def read_structs(self, code: str) -> None:
+        begins = list[int]()  # of points
+        line, at = 1, 0
+        for match in _STRUCT.finditer(code):
+            line, at = line + code.count("\n", at, match.start()), match.start()
             pairs = dict(part.split(":=", 1) for part in match[1].split(",") if ":=" in part)
             fields = {re.sub(r"[^a-z']", "", key.lower()): value.strip() for key, value in pairs.items()}
             places = {key: next((n for n in names if n in fields), "") for key, names in ALIASES.items()}
@@ -218,18 +255,39 @@ class _Content:
                     value = fields[field]
                     row[key] = value if key == "law" else self._number(value, field, line, False)
             self.rows.append(row)
+            begins.append(at)
+        points = "(dX := ..., dY := ...) or (MasterPos := ..., SlavePos := ...)"
+        read = set(begins)
+        rest = _STRUCT.sub(lambda match: _blank(match[0]) if match.start() in read else match[0], code)
+        for match in itertools.islice(_POSITION.finditer(rest), ERRORS):
+            found = " ".join(rest[match.start(1) : match.start(1) + 40].split())
+            self._add(_line(rest, match.start(1)), f"expected {points}, found '{found}'")
+        for array in _STRUCTS.finditer(code):
+            count = bisect_left(begins, array.end(2)) - bisect_left(begins, array.start(2))
+            if count:
+                self._check_count(array[1], count, _line(code, array.start()))
         if not self.rows:
-            self._add(None, "expected (dX := ..., dY := ...) or (MasterPos := ..., SlavePos := ...), found neither")
+            self._add(None, f"expected {points}, found neither")
 
-    def read_array(self, text: str) -> None:
-        match = _ARRAY.search(text)
-        assert match
-        line = text.count("\n", 0, match.start()) + 1
-        values = [self._number(part.strip(), "a position", line, False) for part in match[1].split(",")]
+    def read_array(self, code: str) -> None:
+        match, *more = _ARRAY.finditer(code)
+        line = _line(code, match.start())
+        if more:
+            self._add(
+                _line(code, more[0].start()), f"expected one table of positions, found another one in line {line}"
+            )
+        values = [self._number(part.strip(), "a position", line, False) for part in match[2].split(",")]
         if len(values) % 2:
             return self._add(line, f"expected pairs of master and slave positions, found {len(values)} numbers")
         self.rows = [{"line": line, "x": x, "y": y} for x, y in zip(values[::2], values[1::2], strict=True)]
+        self._check_count(match[1], len(self.rows), line)
         return None
+
+    def _check_count(self, bounds: str, count: int, line: int) -> None:
+        """Of an array, whose bounds may be names of constants."""
+        declared = _BOUNDS.fullmatch(bounds)
+        if declared and (expected := int(declared[2]) - int(declared[1]) + 1) != count:
+            self._add(line, f"ARRAY[{bounds.strip()}]: expected {expected} points, found {count}")
 
     # --- TwinCAT CNC ---
 
@@ -298,8 +356,44 @@ class _Content:
         return law or "quintic"
 
 
+def _code(text: str) -> str:
+    """The text with blanks in place of comments, pragmas and quoted texts, up to a comment without an end; lines keep
+    their numbers."""
+    kept, at, nested = list[str](), 0, True
+    while match := _SKIPPED.search(text, at):
+        end = match.end()
+        if match[0] in _COMMENTS:
+            closed = _end_of_nested(text, match.end()) if nested and match[0] == "(*" else None
+            nested = nested and (match[0] != "(*" or closed is not None)  # else comments do not nest in this text
+            end = closed or text.find(_COMMENTS[match[0]], match.end()) + 2
+            if end < match.end():
+                break
+        kept += [text[at : match.start()], _blank(text[match.start() : end])]
+        at = end
+    return "".join([*kept, text[at:]])
+
+
+def _end_of_nested(text: str, at: int) -> int | None:
+    """Where the comment ends of which `at` is within, if comments nest; None: nowhere."""
+    depth = 1
+    for mark in _NESTED.finditer(text, at):
+        depth += 1 if mark[0] == "(*" else -1
+        if depth == 0:
+            return mark.end()
+    return None
+
+
+def _blank(text: str) -> str:
+    return re.sub(r"[^\r\n]", " ", text)
+
+
+def _line(text: str, at: int) -> int:
+    return text.count("\n", 0, at) + 1
+
+
 def _separator(line: str) -> str:
     """Of the columns; blank: any number of blanks."""
+    line = re.sub(r'"[^"]*"', '""', line)
     for candidate in ("\t", ";", "|"):
         if candidate in line:
             return candidate
@@ -309,7 +403,8 @@ def _separator(line: str) -> str:
 
 
 def _split(line: str, separator: str) -> list[str]:
-    return line.split() if separator == " " else [cell.strip().strip('"') for cell in line.split(separator)]
+    line = " ".join(line.split()) if separator == " " else line
+    return [cell.strip() for row in csv.reader([line], delimiter=separator, skipinitialspace=True) for cell in row]
 
 
 def _is_number(text: str) -> bool:

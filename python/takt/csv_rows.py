@@ -23,7 +23,7 @@ class Rows(NamedTuple):
     rows: list[tuple[int, Fields]]
 
 
-_DECIMAL_COMMA = re.compile(r"\s*[-+]?[0-9]*,[0-9]+([eE][-+]?[0-9]+)?\s*")
+DECIMAL_COMMA = re.compile(r"\s*[-+]?[0-9]*,[0-9]+([eE][-+]?[0-9]+)?\s*")
 
 
 def _delimiter(head: str) -> str:
@@ -34,9 +34,14 @@ def _delimiter(head: str) -> str:
 def _with_points(row: Fields) -> Fields:
     """The same with decimal points."""
     return {
-        name: text.replace(",", ".") if isinstance(text, str) and _DECIMAL_COMMA.fullmatch(text) else text
+        name: text.replace(",", ".") if isinstance(text, str) and DECIMAL_COMMA.fullmatch(text) else text
         for name, text in row.items()
     }
+
+
+def surplus(fields: Sequence[str], expected: int, where: str = "the head") -> str:
+    """Returns the sentence for a row that has more fields than the head; "" if it has not, or if those are empty."""
+    return f"expected {expected} fields as in {where}, found {len(fields)}" if any(fields[expected:]) else ""
 
 
 def read_rows(file: str | os.PathLike[str], error: type[TaktError]) -> Rows:
@@ -52,11 +57,8 @@ def read_rows(file: str | os.PathLike[str], error: type[TaktError]) -> Rows:
             head, rows = table.fieldnames or (), []
             for row in table:
                 more: Any = row.get("")  # text where the head ends in a comma
-                if isinstance(more, list) and any(more):
-                    raise error(
-                        f"{os.fspath(file)}:{table.line_num}: expected {len(head)} fields as in the head, found "
-                        f"{len(head) + len(more)}"
-                    )
+                if isinstance(more, list) and (sentence := surplus([*head, *more], len(head))):
+                    raise error(f"{os.fspath(file)}:{table.line_num}: {sentence}")
                 rows.append((table.line_num, row if delimiter == "," else _with_points(row)))
             return Rows(head, rows)
         except UnicodeDecodeError as wrong:

@@ -50,9 +50,11 @@ def read_svg(
     *,
     lift: float = LIFT,
     velocity: float | None = None,
+    sources: list[str] | None = None,
 ) -> Toolpath:
     """Reads a file. `start`: where the tool is when it begins, in mm. `lift`: how high the pen goes between lines.
-    `velocity`: of drawing, in mm/s; unset: that of the command. Raises ToolpathError."""
+    `velocity`: of drawing, in mm/s; unset: that of the command. `sources`: receives the name of the shape that each
+    element was drawn from, or that the pen is lifted for. Raises ToolpathError."""
     try:
         import svgelements  # type: ignore[import-untyped]
     except ImportError:
@@ -80,6 +82,8 @@ def read_svg(
     if not pen.elements:
         besides = f"; left out: {', '.join(said)}" if said else ""
         raise ToolpathError(f"{path}: no outlines are drawn in it{besides}")
+    if sources is not None:
+        sources[:] = pen.sources
     return Toolpath(start, tuple(pen.elements), said)._checked(str(path))
 
 
@@ -87,6 +91,7 @@ def _draw(svgelements: Any, shape: Shape, pen: _Pen) -> None:
     outline = _Outline(svgelements, shape)
     for clip in shape.clips:
         _hold_against(svgelements, clip, outline)
+    pen.source = shape.label
     for segment in outline.segments:
         pen.draw(segment, type(segment).__name__, shape.matrix)
 
@@ -180,6 +185,7 @@ def _stretch(matrix: tuple[float, ...]) -> tuple[float, bool]:
 class _Pen:
     def __init__(self, start: Point, height: float, tolerance: float, lift: float, velocity: float | None) -> None:
         self.elements: list[Element] = []
+        self.source, self.sources = "", list[str]()  # the shape now, that of each element
         self._here = start
         self._height, self._tolerance, self._lift, self._velocity = height, tolerance, lift, velocity
         self._matrix: tuple[float, ...] = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
@@ -257,6 +263,7 @@ class _Pen:
     def _append(self, element: Element) -> None:
         self._room(1)
         self.elements.append(element)
+        self.sources.append(self.source)
         self._here = element.end
 
     def _at(self, segment: Any, share: float) -> Point:

@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table as Grid
 
 from takt.counted import counted
+from takt.errors import ConfigError
 from takt.track_drawing import CORNER, DRAWINGS, read_drawing
 from takt.track_layout import TrackLayout
 
@@ -27,20 +28,24 @@ class Options:
 def run(file: Path, options: Options, out: Console) -> int:
     """Reads, checks, says, draws, writes."""
     _refuse_nonsense(file, options)
-    drawing = file.suffix.lower() in DRAWINGS
-    text, left_out = read_drawing(file, options.corner or CORNER) if drawing else ("", ())
-    layout = TrackLayout(text or file, str(file))
+    drawing = read_drawing(file, options.corner or CORNER) if file.suffix.lower() in DRAWINGS else None
+    try:
+        layout = TrackLayout(drawing.tracks if drawing else file, str(file))
+    except ConfigError as error:
+        if drawing is None:
+            raise
+        raise ConfigError([drawing.placed(file, problem) for problem in error.problems]) from None
     if not layout.tracks:
         raise click.UsageError(f"{file}: expected a section tracks, found a machine without")
     _say(file, layout, out)
-    for what in left_out:
+    for what in drawing.left_out if drawing else ():
         print(f"left out: {what}")
     if options.target is not None:
         from takt.track_picture import picture
 
         print(f"picture: {picture(layout, options.target, file.name)}")
-    if options.yaml_file is not None:
-        options.yaml_file.write_text(text, encoding="utf-8")
+    if drawing is not None and options.yaml_file is not None:
+        options.yaml_file.write_text(drawing.tracks, encoding="utf-8")
         print(f"tracks: {options.yaml_file}")
     return 0
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import cmath
 import math
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -27,6 +28,7 @@ JOIN = 0.01  # mm: ends that are apart by less are one
 SMOOTH = 1e-6  # rad
 SHARE = 0.45  # a corner takes no more of a line
 DRAWINGS = (".svg", ".dxf")
+_FINDING = re.compile(r"tracks\[(\d+)\](?:\.elements\[(\d+)\][^:]*)?[.:] ?(.*)", re.DOTALL)
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,7 @@ class Piece:
     end: complex
     centre: complex | None = None
     sweep: float = 0.0  # rad, of an arc; above 0 counterclockwise
+    source: str = ""  # what it was drawn as: an entity with its handle, a shape
 
     @property
     def length(self) -> float:
@@ -83,6 +86,19 @@ class Piece:
 class Drawing(NamedTuple):
     tracks: str  # the section of a machine file
     left_out: tuple[str, ...]  # what the drawing has besides, a sentence each
+    elements: tuple[tuple[str, ...], ...]  # of each track: what they were drawn as
+
+    def placed(self, file: Path, problem: str) -> str:
+        """What is wrong with a track, with the element of the drawing instead of a line of `tracks`."""
+        sentence = re.sub(r"^:\d+:\d+: ", "", problem.removeprefix(str(file)))
+        match = _FINDING.fullmatch(sentence)
+        if not match:
+            return f"{file}: {sentence}"
+        track = int(match[1])
+        where = f"track{track + 1}"
+        if match[2]:
+            where += f", element {int(match[2]) + 1} ({self.elements[track][int(match[2])]})"
+        return f"{file}: {where}: {match[3]}"
 
 
 def read(file: Path, corner: float = CORNER) -> str:
@@ -104,11 +120,14 @@ def read_drawing(file: Path, corner: float = CORNER) -> Drawing:
         besides = f"; left out: {', '.join(said)}" if said else ""
         raise TaktError(f"{file}: no lines, polylines, arcs or circles are drawn in it{besides}")
     lines = [f"# left out: {what}" for what in said] + ["tracks:"]
+    elements = []
     for number, pieces in enumerate(map(_merged, strokes), 1):
         closed = abs(pieces[-1].end - pieces[0].begin) < SAME
         lines += [f"  - name: track{number}", f"    closed_loop: {str(closed).lower()}", "    elements:"]
-        lines += [f"      - {_text(piece)}" for piece in _rounded(pieces, closed, corner)]
-    return Drawing("\n".join(lines) + "\n", said)
+        rounded = _rounded(pieces, closed, corner)
+        lines += [f"      - {_text(piece)}" for piece in rounded]
+        elements.append(tuple(map(_label, rounded)))
+    return Drawing("\n".join(lines) + "\n", said, tuple(elements))
 
 
 def _merged(pieces: list[Piece]) -> list[Piece]:
@@ -146,6 +165,11 @@ def _text(piece: Piece) -> str:
     return f"{{shape: circle, {ends}, center: {_place(piece.centre)}, clockwise: {clockwise}}}"
 
 
+def _label(piece: Piece) -> str:
+    begin, end = (f"({place.real:.6g}, {place.imag:.6g})" for place in (piece.begin, piece.end))
+    return f"{'line' if piece.centre is None else 'arc'} from {begin} to {end} mm of {piece.source}"
+
+
 def _place(place: complex) -> str:
     return f"{{x: {_number(place.real)}, y: {_number(place.imag)}}}"
 
@@ -158,15 +182,17 @@ def _number(value: float) -> str:
 def _of_svg(file: Path, left_out: Counter[str]) -> Iterator[list[Piece]]:
     from takt.svg import LIFT, read_svg
 
-    path = read_svg(file, (0.0, 0.0, LIFT), TOLERANCE)
+    sources: list[str] = []
+    path = read_svg(file, (0.0, 0.0, LIFT), TOLERANCE, sources=sources)
     left_out.update(path.left_out)
     stroke: list[Piece] = []
     here = path.start
-    for element in path.elements:
+    for element, source in zip(path.elements, sources, strict=True):
         drawn = here[2] == 0 and element.end[2] == 0
         if drawn:
             begin, end = complex(*here[:2]), complex(*element.end[:2])
-            stroke.append(_arc_through(begin, complex(*element.via[:2]), end) if element.via else Piece(begin, end))
+            piece = _arc_through(begin, complex(*element.via[:2]), end) if element.via else Piece(begin, end)
+            stroke.append(replace(piece, source=source))
         elif stroke:
             yield stroke
             stroke = []

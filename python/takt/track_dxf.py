@@ -11,6 +11,7 @@ import math
 import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from os import PathLike
 from typing import Any, NamedTuple
 
@@ -21,6 +22,12 @@ from takt.track_drawing import SAME, TOLERANCE, Piece
 MOST = 100_000  # entities, with those of blocks, and lines of curves
 DEPTH = 50  # of blocks in one another
 FLAT = 1e-6  # mm by which an entity may leave its plane; also of the direction of its extrusion
+_SURVEY_FOOT = 1200e3 / 3937  # mm
+# mm of the units ($INSUNITS) that ezdxf does not know, or not exactly: those of inches.
+_UNITS = {
+    **{0: 1.0, 1: 25.4, 2: 304.8, 3: 1609344.0, 8: 25.4e-6, 9: 0.0254, 10: 914.4},
+    **{21: _SURVEY_FOOT, 22: _SURVEY_FOOT / 12, 23: 3 * _SURVEY_FOOT, 24: 5280 * _SURVEY_FOOT},
+}
 _SAY_NOTHING = {"VIEWPORT", "SEQEND", "ATTDEF", "ATTRIB"}
 _SURFACES = {
     "3DFACE", "3DSOLID", "BODY", "EXTRUDEDSURFACE", "LOFTEDSURFACE", "MESH", "PLANESURFACE", "REGION",
@@ -55,8 +62,8 @@ def read_dxf(file: str | PathLike[str], left_out: Counter[str]) -> list[Run]:
     except Exception as error:  # ezdxf raises whatever the data make it raise
         raise TaktError(f"{file}: is no DXF: {shortened(str(error))}") from None
     try:
-        scale = conversion_factor(InsertUnits(drawing.units), InsertUnits.Millimeters) if drawing.units else 1.0
-    except (ValueError, KeyError):
+        scale = _UNITS.get(drawing.units) or conversion_factor(InsertUnits(drawing.units), InsertUnits.Millimeters)
+    except (ValueError, KeyError, TypeError):
         raise TaktError(f"{file}: its unit ($INSUNITS) is {drawing.units}, which is not known") from None
     try:
         with warnings.catch_warnings():
@@ -93,7 +100,7 @@ class _Reader:
                 raise
             except Exception as error:  # damaged entities
                 raise _EntityError(f"{_label(entity)} cannot be read: {error}") from None
-            kept = [piece for piece in found if piece.length > SAME]
+            kept = [replace(piece, source=_label(entity)) for piece in found if piece.length > SAME]
             if found and not kept:
                 self._left_out[f"{entity.dxftype()} without length"] += 1
             if kept:

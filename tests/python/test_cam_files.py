@@ -59,6 +59,44 @@ def test_units_and_velocities_are_taken(tmp_path):  # CAM-92
     assert np.array_equal(table.points.a, [math.nan, 0.125, 0], equal_nan=True)
 
 
+@pytest.mark.parametrize(
+    ("text", "x", "y"),
+    [
+        ('"Master","Slave"\n"0,0","0,0"\n"90,5","10,25"\n"180,0","0,0"\n', [0, 90.5, 180], [0, 10.25, 0]),
+        ('"Master (deg; cam)";"Slave (mm; cam)";note\n0;0;"a;b"\n90;10;\n180;0;;;\n', [0, 90, 180], [0, 10, 0]),
+        ("Nr\tMaster\tSlave\n\t0\t0\n2\t90\t10\n\t180\t0\n", [0, 90, 180], [0, 10, 0]),
+    ],
+)
+def test_quoted_and_empty_fields(tmp_path, text, x, y):
+    """CAM-92: separators within quotation marks separate nothing, empty fields count."""
+    file = tmp_path / "t.csv"
+    file.write_text(text)
+    points = Table.from_file(file).points
+    assert (list(points.x), list(points.y)) == (x, y)
+
+
+ROWS = "(dX := 0, dY := 0, dV := 0, dA := 0),{}(dX := 180, dY := 0, dV := 0, dA := 0)"
+ARRAY = "{}c : ARRAY[0..2, 0..1] OF LREAL := [0, 0,\n 90, 10, {}\n 180, 0];"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ROWS.format("(dX := 90 (* top *), dY := 10, dV := 0, dA := 0),"),
+        ROWS.format("(dX := 90, {attribute 'x'} dY := 10, dV := 0, dA := 0), // (dX := 95, dY := 99)\n"),
+        ROWS.format("\n(* (dX := 80, dY := 99), (* old *)\n(dX := 85, dY := 99), *)(dX := 90, dY := 10),"),
+        ROWS.format("/* (dX := 80, dY := 99), */(dX := 90, dY := 10), (* a (* b *)"),
+        ARRAY.format("// old: ARRAY[0..2, 0..1] OF LREAL := [0, 0, 90, 77, 180, 0];\n", "(* top, 10 *)"),
+    ],
+)
+def test_comments_of_structured_text(tmp_path, text):
+    """CAM-92: neither comments nor pragmas hide points or add any."""
+    file = tmp_path / "t.exp"
+    file.write_text(text)
+    points = Table.from_file(file).points
+    assert (list(points.x), list(points.y)) == ([0, 90, 180], [0, 10, 0])
+
+
 CODESYS_DEFAULT = """
 (* made by the cam editor *)
   (dX := 0.0, dY := 0, dV := 0, dA := 0),
@@ -145,6 +183,22 @@ def test_twincat_cnc_tables_close_over_a_turn(tmp_path):  # CAM-92
          "expected one of the functions"),
         ("Tabletype = 3\n0 0\n120\n240 5\n", None, ":3: expected as many positions as in the first line, 2, found 1"),
         ("Tabletype = 3\nLines = 3\n1\n2\n", None, "Lines: expected 3 lines of values, found 2"),
+        ("x,y\n0,5,1,25\n1,5,2,5\n", None, ":2: expected 2 fields as in the head, found 4"),
+        ("x;y\n0;0\n90;10;7\n180;0\n", None, ":3: expected 2 fields as in the head, found 3"),
+        ("0;0\n90;10;7\n180;0\n", None, ":2: expected 2 fields as in the first line, found 3"),
+        ('x,y\n"0","0"\n"1,000","2"\n', None, ":3: expected a finite number for x, found '1,000'"),
+        ("Nr\tx\ty\tv\n\t0\t1\n1\t1\t1\t0\t5\n", None, ":3: expected 4 fields as in the head, found 5"),
+        ("(dX := 0, dY := 0),\n(dX := (90), dY := 1)", None,
+         ":2: expected (dX := ..., dY := ...) or (MasterPos := ..., SlavePos := ...), found 'dX := (90), dY := 1)'"),
+        ("(dX := 0, dY := 0),\n(dX := 90, dV := 1)", None,
+         ":2: expected (dX := ..., dY := ...) or (MasterPos := ..., SlavePos := ...), found 'dX := 90, dV := 1)'"),
+        ("c : ARRAY[0..3, 0..1] OF LREAL := [0, 0,\n90, 10,\n180, 0];", None,
+         ":1: ARRAY[0..3]: expected 4 points, found 3"),
+        ("c : ARRAY[1..3] OF SMC_CAMXYVA := [(dX := 0, dY := 0),\n(dX := 9, dY := 1)];", None,
+         ":1: ARRAY[1..3]: expected 3 points, found 2"),
+        ("(dX := 0, dY := 0),\n(* (dX := 9, dY := 1)", None, ":2: the comment has no end: expected *)"),
+        ("a: ARRAY[0..0, 0..1] OF REAL := [0, 0];\nb: ARRAY[0..0, 0..1] OF REAL := [1, 1];", None,
+         ":2: expected one table of positions, found another one in line 1"),
         ("f(a := 1)", None, "expected (dX := ..., dY := ...) or (MasterPos := ..., SlavePos := ...), found neither"),
     ],
 )  # fmt: skip

@@ -125,13 +125,79 @@ def test_an_esi(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         read_device_file(file, 0x12)
 
 
+ARRAY = """[607D]
+ParameterName=Range
+ObjectType=0x8
+DataType=0x4
+AccessType=rw
+CompactSubObj=2
+PDOMapping=0
+"""
+ESI_ARRAY = (
+    "<Dictionary><DataTypes><DataType><Name>A</Name><BaseType>DINT</BaseType><BitSize>64</BitSize>"
+    "<ArrayInfo><LBound>1</LBound><Elements>2</Elements></ArrayInfo></DataType><DataType><Name>R</Name>"
+    "<BitSize>80</BitSize><SubItem><SubIdx>0</SubIdx><Name>N</Name><Type>USINT</Type><BitSize>8</BitSize>"
+    "<Flags><Access>ro</Access></Flags></SubItem><SubItem><Name>Elements</Name><Type>A</Type><BitSize>64</BitSize>"
+    "<Flags><Access>rw</Access></Flags></SubItem></DataType></DataTypes>"
+    "<Objects><Object><Index>#x607d</Index><Name>Range</Name><Type>R</Type><BitSize>80</BitSize></Object>"
+)
+
+
+@pytest.mark.parametrize("name", ["d.eds", "d.xml"])
+def test_elements_of_arrays(tmp_path: Path, name: str) -> None:
+    """AX-87: arrays described as one have an object for each element."""
+    text = eds() + ARRAY if name == "d.eds" else esi().replace("<Dictionary><Objects>", ESI_ARRAY)
+    (tmp_path / name).write_text(text)
+    objects = read_device_file(tmp_path / name).objects
+    assert [(sub, objects[0x607D, sub].bits) for index, sub in objects if index == 0x607D] == [(0, 8), (1, 32), (2, 32)]
+    assert objects[0x607D, 2].writable
+    assert "start_up: 0x607D:3: it has no such object" in wrong(
+        tmp_path, f'device_file: {name}, start_up: [{{object: "0x607D:1", value: 1}}, {{object: "0x607D:3", value: 1}}]'
+    )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "vendor"),
+    [
+        ("VendorNumber=0x2E1", "VendorNumber=", 0),
+        ("[DeviceInfo]", "[Comments]\nLines=5\nline1=x\n[DummyUsage]\nDummy0001=x\n[DEVICEINFO]", 0x2E1),
+        ("PDOMapping", "PdoMapping", 0x2E1),
+        ("ObjectType=0x7", "objecttype=", 0x2E1),
+        ("[DeviceInfo]", f"{ARRAY}[607Dsub1]\nDataType=4\nAccessType=rw\n[DeviceInfo]", 0x2E1),
+    ],
+)
+def test_spellings_of_eds_files(tmp_path: Path, old: str, new: str, vendor: int) -> None:
+    """AX-87: neither the case of letters nor what says nothing of objects matters; empty values are as none."""
+    file = tmp_path / "d.eds"
+    file.write_text(eds().replace(old, new))
+    found = read_device_file(file)
+    assert (found.name, found.vendor, found.objects[0x6040, 0].bits) == ("Servo 7", vendor, 16)
+    assert found.objects[0x6040, 0].mappable
+
+
 @pytest.mark.parametrize(
     ("name", "text", "sentence"),
     [
         ("d.eds", None, "d.eds: cannot be read: No such file or directory"),
         ("d.txt", "", "d.txt: expected a file .eds (CANopen) or .xml (EtherCAT: ESI)"),
         ("d.eds", "no section", "d.eds: no EDS file that can be read: MissingSectionHeaderError"),
-        ("d.eds", "[6040]\nParameterName=C\nObjectType=0x7\nDataType=x\n", "d.eds: no EDS file that can be read: in"),
+        (
+            "d.eds",
+            "[6040]\nParameterName=C\nObjectType=0x7\nDataType=x\n",
+            "d.eds: no EDS file that can be read: [6040] DataType: expected a number such as 0x7, found 'x'",
+        ),
+        ("d.eds", "[6040]\nParameterName=C\nDataType=6\n", "d.eds: no EDS file that can be read: [6040] AccessType: e"),
+        (
+            "d.eds",
+            "[6040]\nAccessType=ro\n",
+            "d.eds: no EDS file that can be read: [6040] DataType: expected a number such as 0x7, it is missing",
+        ),
+        (
+            "d.eds",
+            eds().replace("=0x2E1", "=none"),
+            "d.eds: no EDS file that can be read: [DeviceInfo] VendorNumber: "
+            "expected a number such as 0x7, found 'none'",
+        ),
         ("d.xml", "<a>", "d.xml: no XML that can be read: no element found"),
         ("d.xml", "<a/>", "d.xml: expected an ESI file with EtherCATInfo, found a"),
         (

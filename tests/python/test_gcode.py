@@ -380,6 +380,34 @@ def test_marlin() -> None:
     assert along_x("START_PRINT X=60\nM104 S200\nG1 X1", leave_out=["start_print"]) == [1]
 
 
+def test_marlin_has_letters_without_numbers() -> None:
+    """PY-22: they are left out with an M code, and name the axes of G28; elsewhere they are refused."""
+    head, moves = "M104 S200\n", "G1 X10 Y10 E1 F1200\nG1 X20 E2\n"
+    path = parse_gcode(f"{head}G28 W\nG28 X Y\nG29 A\n{moves}M84 X Y E ;Disable\nM1002 gcode_claim_action : 14\n")
+    assert [one.end for one in path.elements] == [(10, 10, 0), (20, 10, 0)]
+    said = "M104 (1 time), G28 (2 times), G29 (1 time), E (2 times), M84 (1 time), M1002 (1 time)"
+    assert ", ".join(path.left_out) == said
+    assert "p.nc:3: G28 needs the machine's zero" in wrong(f"{moves}G28 X\nG1 X5", dialect="marlin")
+    home = {"offsets": {"G54": (-1, -2, -3)}, "dialect": "marlin"}
+    assert ends("G1 X1 Y1 Z1 F60\nG28 X0 Y\nG1 Z2", **home) == [(1, 1, 1), (1, 2, 1), (1, 2, 2)]
+    assert "p.nc:1: expected a letter and a number, found 'XF60'" in wrong("G1 X F60", dialect="marlin")
+    assert "p.nc:1: expected a letter and a number, found 'XG1" in wrong("M84 X G1 Y1", dialect="marlin")
+    assert "p.nc:1: M106 beside a motion: Marlin takes one command a line" in wrong("G1 X1 M106", dialect="marlin")
+    assert "--leave-out G380 leaves it out" in wrong("G380 S2 Z", dialect="marlin")
+    assert along_x("G1 X1 F60\nG380 S2 Z F9 [a]\nG28 O\nX2", dialect="marlin", leave_out="G380 G28") == [1, 2]
+    assert "p.nc:1: expected a letter and a number" in wrong("M84 X Y", dialect="rs274")
+
+
+def test_lines_of_grbl_that_begin_with_a_dollar() -> None:
+    """PY-22: settings are left out; homing and jogging are, before the first move and behind the last one."""
+    path = parse_gcode("$H\n$X\n$32=1\n$$\nG21\nG1 X10 F100\n$H\n")
+    assert [one.end[0] for one in path.elements] == [10]
+    assert path.left_out == ("$H (2 times)", "$X (1 time)", "$ (2 times)")
+    between = "G1 X10 F100\n$J=G91 X5 F9\nX20"
+    assert "p.nc:2: $J is not read before a move: where the tool is then is" in wrong(between, dialect="grbl")
+    assert along_x(between, dialect="grbl", leave_out="$J") == [10, 20]
+
+
 @pytest.mark.parametrize(
     "line",
     [
@@ -693,7 +721,7 @@ def test_no_word_of_a_move_is_dropped_unsaid(code: str) -> None:
 
     def outcome(word: str, dialect: str) -> object:
         text = f"G21 G90 G17 G94 F600\nG0 X0 Y0 Z5\n{code} X2 {word}\nG1 X9 Y7 Z1"
-        path = path_or_sentence(text, Options(dialect=dialect, offsets={"G54": (0, 0, 0)}))
+        path = path_or_sentence(text, Options(dialect=dialect, offsets={"G54": (3, 3, 3)}))
         return path if isinstance(path, str) else (path.elements, path.left_out)
 
     for dialect in DIALECTS:

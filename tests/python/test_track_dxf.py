@@ -220,6 +220,19 @@ def test_clipped_blocks_are_refused(tmp_path: Path) -> None:
     assert "of the block 'B0' is clipped, and blocks are read whole" in wrong(tmp_path, draw)
 
 
+@pytest.mark.parametrize(
+    ("unit", "length"),
+    [
+        *((0, 1), (1, 25.4), (2, 304.8), (8, 25.4e-6), (9, 0.0254), (10, 914.4)),
+        *((21, 12e5 / 3937), (22, 1e5 / 3937), (23, 36e5 / 3937), (24, 6336e6 / 3937)),
+    ],
+)
+def test_units(tmp_path: Path, unit: int, length: float) -> None:
+    """PY-22: all that $INSUNITS names, those of US surveyors as well."""
+    (track,), _ = read(tmp_path, lambda m, d: setattr(d, "units", unit) or m.add_line((0, 0), (10, 0)))
+    assert place(track["elements"][0]["to"]) == pytest.approx(10 * length, rel=1e-12, abs=1e-11)
+
+
 def test_curves_keep_the_tolerance(tmp_path: Path) -> None:
     """An ellipse by its own formula; chords are shortened at their corners."""
     (track,), _ = read(tmp_path, lambda m, _: m.add_ellipse((10, 0), (40, 0), 0.5))
@@ -345,6 +358,30 @@ def test_what_is_refused_is_named(tmp_path: Path, draw: Draw, said: str) -> None
     assert sentence.startswith("a.dxf: ")
     assert said in sentence
     assert time.process_time() - begin < 40
+
+
+def test_tracks_that_cannot_be_made_are_named_as_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """PY-22: by the entity and its handle, or the shape, with the ends of the element; not by a line of the file."""
+    document = ezdxf.new()
+    document.units = 4
+    model = document.modelspace()
+    handle = model.add_line((3, 0), (0, 0)).dxf.handle
+    model.add_line((3, 0), (3, 3))
+    model.add_lwpolyline([(10 * i, 100 + i % 2) for i in range(70)])
+    document.saveas(tmp_path / "a.dxf")
+    assert main(["track", str(tmp_path / "a.dxf"), "--corner", "0.2"]) == 2
+    assert capsys.readouterr().err.replace(f"{tmp_path}/", "").splitlines() == [
+        "a.dxf: track1: elements: a track has at most 64 elements, starts from at most 8 tracks and ends at as many; "
+        "at most 64 start, or end, at one point",
+        f"a.dxf: track2, element 2 (line from (2.8, 0) to (0, 0) mm of LINE #{handle}): the gap is too small: "
+        "the transition would have a radius of less than 1 mm",
+    ]
+    shape = '<path id="frame" d="M1 1h1v1h-1z" stroke="black" fill="none"/>'
+    size = 'xmlns="http://www.w3.org/2000/svg" width="10mm" height="10mm" viewBox="0 0 10 10"'
+    (tmp_path / "s.svg").write_text(f"<svg {size}>{shape}</svg>")
+    assert main(["track", str(tmp_path / "s.svg")]) == 2
+    said = capsys.readouterr().err.replace(f"{tmp_path}/", "")
+    assert said.startswith("s.svg: track1, element 2 (line from (2, 8.55) to (2, 8.45) mm of <path> 'frame'): the gap")
 
 
 def triangle(mesh: Any) -> None:

@@ -3,23 +3,31 @@ checked against it before any bus is opened (AX-87)."""
 
 from __future__ import annotations
 
-import io
+import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from configparser import Error as ConfigParserError
+from configparser import RawConfigParser
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 from xml.etree import ElementTree
 
 from takt.drives import objects as od
 from takt.drives.axis import AXIS_MODES
-from takt.drives.can_link import packages
 from takt.drives.cia402 import Mode
 from takt.drives.probe import latches
 from takt.errors import TaktError
 
 LARGEST_BYTES: Final = 64 << 20
 MOST_SHOWN: Final = 160  # characters of what others say of a file
-MISSING: Final = "EDS files need the package canopen: pip install 'takt-motion[canopen]'"
+DOMAIN, VAR, ARRAY, RECORD = 2, 7, 8, 9  # kinds of objects (CiA 301)
+# Of the numbers among the data types (CiA 301), signed and unsigned integers of 8 to 64 bits and reals.
+EDS_BITS: Final = {
+    **{0x02: 8, 0x03: 16, 0x04: 32, 0x10: 24, 0x12: 40, 0x13: 48, 0x14: 56, 0x15: 64},
+    **{0x05: 8, 0x06: 16, 0x07: 32, 0x16: 24, 0x18: 40, 0x19: 48, 0x1A: 56, 0x1B: 64},
+    **{0x08: 32, 0x11: 64},
+}
+_OBJECT = re.compile(r"([0-9a-f]{4})(?:sub([0-9a-f]{1,2}))?")
 
 
 @dataclass(frozen=True)
@@ -65,23 +73,71 @@ def read_device_file(path: Path, product: int | None = None) -> DeviceFile:
 
 
 def _eds(path: Path, data: bytes) -> DeviceFile:
-    _, canopen = packages(MISSING)
-    text = io.StringIO(data.decode("utf-8-sig", "replace"))
-    text.name = str(path)
+    ini = RawConfigParser(inline_comment_prefixes=(";",))  # keys in lower case: their case says nothing
     try:
-        read = canopen.import_od(text, node_id=1)
-    except Exception as error:  # whatever its reader raises at a bad file
+        ini.read_string(data.decode("utf-8-sig", "replace"), str(path))
+        sections = {name.lower(): _Section(name, ini[name]) for name in ini.sections()}
+        about = sections.get("deviceinfo", _Section("DeviceInfo", {}))
+        name = about.text("ProductName") or "no name"
+        found = DeviceFile(path, name, about.number("VendorNumber"), about.number("ProductNumber"))
+        for title, section in sections.items():
+            match = _OBJECT.fullmatch(title)
+            if match:
+                subindex = int(match[2], 16) if match[2] else None
+                _add_eds(found, int(match[1], 16), subindex, section, sections)
+    except (ConfigParserError, ValueError) as error:
         raise TaktError(f"{path}: no EDS file that can be read: {_line(error)}") from None
-    if not len(read):
+    if not found.objects:
         raise TaktError(f"{path}: no EDS file of a drive: it describes no object")
-    about = read.device_information
-    found = DeviceFile(path, about.product_name or "no name", about.vendor_number or 0, about.product_number or 0)
-    for index, entry in read.items():
-        members = entry.values() if hasattr(entry, "values") else [entry]
-        for one in members:
-            bits = len(one) if one.data_type in canopen.objectdictionary.datatypes.NUMBER_TYPES else 0
-            found.objects[index, one.subindex] = Described(one.name, bits, one.writable, bool(one.pdo_mappable))
     return found
+
+
+class _Section:
+    """Of an EDS file. Empty values are as none."""
+
+    def __init__(self, name: str, values: Mapping[str, str]) -> None:
+        self.name, self._values = name, values
+
+    def text(self, key: str) -> str:
+        return self._values.get(key.lower(), "").strip()
+
+    def number(self, key: str, default: int | None = 0) -> int:
+        """Raises ValueError; also without a value, where the default is None."""
+        text = self.text(key)
+        try:
+            if not text and default is not None:
+                return default
+            return int(text, 0)
+        except ValueError:
+            found = f"found {text[:MOST_SHOWN]!r}" if text else "it is missing"
+            raise ValueError(f"[{self.name}] {key}: expected a number such as 0x7, {found}") from None
+
+
+def _add_eds(
+    found: DeviceFile, index: int, subindex: int | None, section: _Section, sections: Mapping[str, _Section]
+) -> None:
+    """An object, or all elements of an array that are described as one (CompactSubObj)."""
+    kind = section.number("ObjectType", VAR)
+    count = min(section.number("CompactSubObj"), 254) if kind in (ARRAY, RECORD) and subindex is None else 0
+    if kind not in (VAR, DOMAIN) and not count:
+        return  # its members have sections of their own
+    name, data_type, access = (
+        section.text("ParameterName"),
+        section.number("DataType", None),
+        section.text("AccessType"),
+    )
+    if not access and kind != DOMAIN:
+        raise ValueError(f"[{section.name}] AccessType: expected ro, wo, rw, rwr, rww or const, it is missing")
+    own = sections.get(f"{data_type:x}sub1")  # types that editors define: their base is there
+    bits = EDS_BITS.get(own.number("DefaultValue") if own and data_type > max(EDS_BITS) else data_type, 0)
+    one = Described(name, bits, not access or "w" in access.lower(), section.number("PDOMapping") != 0)
+    if count:
+        found.objects.setdefault((index, 0), Described(f"{name} number of entries", 8, True, False))
+        names = sections.get(f"{index:04x}name", _Section("", {}))
+        for i in range(1, count + 1):
+            found.objects.setdefault((index, i), replace(one, name=names.text(str(i)) or f"{name} {i}"))
+    else:
+        found.objects[index, subindex or 0] = one
 
 
 # --- ESI ---
@@ -150,10 +206,22 @@ def _add(found: DeviceFile, entry: ElementTree.Element, types: Mapping[str | Non
     index = _number_at(entry, "Index")
     name = (entry.findtext("Name") or "").strip()
     kind = types.get(entry.findtext("Type"))
-    members = [] if kind is None else [one for one in kind.iterfind("SubItem") if one.findtext("SubIdx")]
-    for one in members:
-        found.objects[index, _number_at(one, "SubIdx")] = _flags(one, f"{name} {one.findtext('Name') or ''}")
-    if not members:
+    count = len(found.objects)
+    for one in [] if kind is None else kind.iterfind("SubItem"):
+        title = f"{name} {one.findtext('Name') or ''}"
+        if one.findtext("SubIdx"):
+            found.objects[index, _number_at(one, "SubIdx")] = _flags(one, title)
+            continue
+        elements = types.get(one.findtext("Type"))
+        array = None if elements is None else elements.find("ArrayInfo")
+        if array is None:
+            continue
+        first, many = _number_at(array, "LBound"), _number_at(array, "Elements")
+        whole = _flags(one, title)
+        for i in range(first, min(first + many, 256)):
+            size = _number(one.findtext("BitSize") or "0") // many
+            found.objects[index, i] = replace(whole, name=f"{title} {i}", bits=size if size <= 64 else 0)
+    if len(found.objects) == count:
         found.objects[index, 0] = _flags(entry, name)
 
 

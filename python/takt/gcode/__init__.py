@@ -29,7 +29,7 @@ from takt.gcode.source import MOST_BYTES, Text, decode
 from takt.toolpath import TOLERANCE, Point, Toolpath, ToolpathError
 
 DIALECTS = dialects.NAMES
-_NAME = re.compile(r"[A-Z]|[GM][0-9]+(?:\.[0-9]+)?|[A-Z_][A-Z0-9_]+")
+_NAME = re.compile(r"[A-Z]|[GM][0-9]+(?:\.[0-9]+)?|[A-Z_][A-Z0-9_]+|\$[A-Z]+")
 _FILE_NAME = re.compile(r"[a-z0-9_-]+")
 
 

@@ -142,6 +142,8 @@ class Machine:
         for code in rest:
             if code[0] == "M":
                 flow = self._m_code(code, numbers, bool(motions)) or flow
+            elif code[0] == "$":
+                self._system(code)
             elif code == "G53":
                 in_machine = True
             elif code not in state:
@@ -191,6 +193,8 @@ class Machine:
         if code in ("M98", "M99") and self._dialect in ("grbl", "marlin"):
             raise LineError(words.refused(code))
         if self._dialect == "marlin":
+            if has_motion:
+                raise LineError(f"{code} beside a motion: Marlin takes one command a line")
             numbers.clear()
             self.left_out[code] += 1
             return None
@@ -335,16 +339,30 @@ class Machine:
             home = self._homes[code] if code in self._homes else self._machine_zero(code)
         except LineError as error:
             self._be_away(code, error)
-            for letter in "ABCEUVWPRSHILO" + "XYZ":
+            own = numbers.keys() if self._dialect == "marlin" else "ABCEUVWPRSHILO" + "XYZ"
+            for letter in [*own]:
                 numbers.pop(letter, None)
             return
-        if named:
+        if self._dialect == "marlin":
+            self.left_out.update(f"{letter} of {code}" for letter in numbers if letter not in _PLAIN)
+            numbers.clear()  # they name axes, not a point
+        elif named:
             self.path.line(self._target(numbers), None)
         target = list(self.path.here)
         for axis in named or range(3):
             target[axis] = home[axis]
         self._go((target[0], target[1], target[2]), None)
         self._take_axes(numbers)
+
+    def _system(self, code: str) -> None:
+        """A line of grbl's that begins with $: homing and jogging lead to where the program cannot say."""
+        if code in ("$H", "$J"):
+            where = "where the tool is then is known to the machine only"
+            self._be_away(
+                code, LineError(f"{code} is not read before a move: {where} ({words.hint(code)})", self._place())
+            )
+        else:
+            self.left_out[code] += 1
 
     def _be_away(self, code: str, error: LineError) -> None:
         self.left_out[code] += 1

@@ -25,6 +25,9 @@ _MARLIN_TEXT = re.compile(
     r"\s*(?:N[0-9]+\s*)?(M(?:0|1|16|23|28|30|32|33|36|38|115|117|118|486|550|551|587|862\.[0-9]|928))(?![0-9])"
 )
 _MARLIN_MACRO = re.compile(r"\s*([A-Z_]{2,}[A-Z0-9_]*)(?:\s|$)")
+_MARLIN_COMMAND = re.compile(r"\s*(?:N[0-9]+\s*)?([GM])([0-9]+(?:\.[0-9]+)?)(?![0-9.])")
+_MARLIN_WORD = re.compile(r"([A-Z])([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))?")
+_GRBL_SYSTEM = re.compile(r"\s*(\$[A-Z]*)")
 _SLASH = re.compile(r"^/[1-9]?")
 _CHECKSUM = re.compile(r"\*[0-9]+\s*$")
 _O_WORD = re.compile(r"(?:N[0-9.]+)?[O:](?=[0-9<#\[])")
@@ -133,6 +136,8 @@ class Text:
     def _compile(self, line: str) -> Line:
         dialect = self._dialect
         upper = line.upper()
+        if dialect == "grbl" and (system := _GRBL_SYSTEM.match(upper)):
+            return Block((system[1],), {})
         if dialect == "marlin":
             special = self._marlin(upper)
             if special is not None:
@@ -162,6 +167,8 @@ class Text:
         if len("".join(map("".join, found))) == len(code):  # words with numbers and nothing else
             codes, numbers = sorted_words([(letter, float(number)) for letter, number in found])
             return Block(codes, numbers)
+        if dialect == "marlin" and (flagged := _with_flags(upper, code)):
+            return flagged
         return _with_expressions(code, self._leave_out)
 
     def _exponents(self, upper: str) -> str:
@@ -178,7 +185,7 @@ class Text:
         return _EXPONENT.sub(r"e\1", upper) if signed else upper
 
     def _marlin(self, upper: str) -> Line | None:
-        """Codes with text behind them; macros."""
+        """Codes with text behind them; codes left out, which have a line of their own; macros."""
         text = _MARLIN_TEXT.match(upper)
         if text and text[1] != "M30":
             return Block((text[1],), {})
@@ -188,7 +195,9 @@ class Text:
             if name not in self._leave_out:
                 raise LineError(words.refused(name))
             return Block((name,), {})
-        return None
+        command = _MARLIN_COMMAND.match(upper) if self._leave_out else None
+        code = words.code_name(command[1], float(command[2])) if command else ""
+        return Block((code,), {}) if code in self._leave_out and code not in words.GROUP_OF else None
 
     # --- The order of lines ---
 
@@ -322,6 +331,23 @@ def _o_word(code: str) -> OWord:
     if len(arguments) > most or (not optional and len(arguments) < most):
         raise LineError(f"{keyword[0].lower()}: expected {most} values in brackets, found {len(arguments)}")
     return OWord(name, keyword[0], arguments)
+
+
+def _with_flags(line: str, code: str) -> Block | None:
+    """A line of Marlin's with letters without a number: of an M code, whose words say nothing of a path, or of a G code
+    that has such; None: of none of them."""
+    command = _MARLIN_COMMAND.match(line)
+    if not command:
+        return None
+    name = words.code_name(command[1], float(command[2]))
+    if name[0] == "M":
+        alone = name not in words.ENDS and not re.search(r"\bG[0-9]", line[command.end() :])
+        return Block((name,), {}) if alone else None
+    found = _MARLIN_WORD.findall(code)
+    if name in words.WITHOUT_FLAGS or len("".join(map("".join, found))) != len(code):
+        return None
+    codes, numbers = sorted_words([(letter, float(number or 0)) for letter, number in found])
+    return Block(codes, numbers)
 
 
 def _with_expressions(code: str, leave_out: frozenset[str]) -> Block:

@@ -26,6 +26,9 @@ NOTHING = {"G40": "D", "G49": "", "G61": "", "G61.1": "", "G64": "PQR", "G97": "
 WITHOUT_AXES = ("G15", "G50", "G69")
 LEFT_OUT = {"G43": "", "G96": "", "G4": "P"}
 AXES = "XYZ"
+ENDS = ("M2", "M30", "M98", "M99")
+# Of Marlin's G codes those whose words all have a number.
+WITHOUT_FLAGS = {*GROUP_OF, *NOTHING, *LEFT_OUT, "G52", "G53", "G92"}
 # The other words of a line that are a code's own, where it is left out by name.
 WORDS_OF = {
     "G10": "LPQRXYZABCIJ",
