@@ -53,6 +53,7 @@ _BOUNDS = re.compile(r"\s*([-+]?\d{1,9})\s*\.\.\s*([-+]?\d{1,9})\s*")
 _SKIPPED = re.compile(r"\(\*|/\*|//[^\r\n]*|\{[^{}]*\}|'(?:\$.|[^'$\r\n])*'?", re.DOTALL)
 _COMMENTS = {"(*": "*)", "/*": "*/"}
 _NESTED = re.compile(r"\(\*|\*\)")
+_QUOTED = re.compile(r'(?:^|(?<=[\t;|,]))\s*"[^"]*"(?=\s*(?:[\t;|,]|$))')  # whole fields: ["] is a unit
 _CNC = re.compile(r"^\s*tabletype\s*=", re.IGNORECASE | re.MULTILINE)
 _FINDING = re.compile(r"(?:points|segments)\[(\d+)\][.\w]*: (.*)")
 _THOUSANDS = re.compile(r"[-+]?[1-9][0-9]{0,2}(,[0-9]{3})+")
@@ -163,7 +164,7 @@ class _Content:
         if places is None:
             return None
         self.units = {key: units[k].strip("[]() ") for key, k in places.items() if k < len(units) and units[k]}
-        width, where = (len(header), "the head") if header else (len(cells[0][1]), "the first line")
+        width = len(header) if header else max(len(row) for _, row in cells)
         decimal_comma = separator != "," or any(
             DECIMAL_COMMA.fullmatch(row[k]) and not _THOUSANDS.fullmatch(row[k])
             for _, row in cells
@@ -171,7 +172,7 @@ class _Content:
             if k < len(row)
         )
         for line, row in cells:
-            if sentence := surplus(row, width, where):
+            if sentence := surplus(row, width):
                 self._add(line, sentence)
             else:
                 self._take(line, row, places, decimal_comma)
@@ -181,7 +182,7 @@ class _Content:
         self, header: list[str] | None, cells: Sequence[tuple[int, list[str]]], columns: Mapping[str, str | int] | None
     ) -> dict[str, int] | None:
         """Which column has what, from 0."""
-        width = len(header or cells[0][1])
+        width = len(header) if header else max(len(row) for _, row in cells)
         if columns is not None:
             return self._chosen(header, width, columns)
         if header is None:
@@ -393,7 +394,7 @@ def _line(text: str, at: int) -> int:
 
 def _separator(line: str) -> str:
     """Of the columns; blank: any number of blanks."""
-    line = re.sub(r'"[^"]*"', '""', line)
+    line = _QUOTED.sub('""', line)
     for candidate in ("\t", ";", "|"):
         if candidate in line:
             return candidate

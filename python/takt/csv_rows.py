@@ -39,9 +39,9 @@ def _with_points(row: Fields) -> Fields:
     }
 
 
-def surplus(fields: Sequence[str], expected: int, where: str = "the head") -> str:
+def surplus(fields: Sequence[str], expected: int) -> str:
     """Returns the sentence for a row that has more fields than the head; "" if it has not, or if those are empty."""
-    return f"expected {expected} fields as in {where}, found {len(fields)}" if any(fields[expected:]) else ""
+    return f"expected {expected} fields as in the head, found {len(fields)}" if any(fields[expected:]) else ""
 
 
 def read_rows(file: str | os.PathLike[str], error: type[TaktError]) -> Rows:

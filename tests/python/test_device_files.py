@@ -147,6 +147,9 @@ ESI_ARRAY = (
 def test_elements_of_arrays(tmp_path: Path, name: str) -> None:
     """AX-87: arrays described as one have an object for each element."""
     text = eds() + ARRAY if name == "d.eds" else esi().replace("<Dictionary><Objects>", ESI_ARRAY)
+    profile = text[text.find("<Profile>") : text.find("</Device>")]
+    if name == "d.xml":
+        text = text.replace(profile, 2 * profile)  # one for each of two modules
     (tmp_path / name).write_text(text)
     objects = read_device_file(tmp_path / name).objects
     assert [(sub, objects[0x607D, sub].bits) for index, sub in objects if index == 0x607D] == [(0, 8), (1, 32), (2, 32)]
@@ -163,6 +166,7 @@ def test_elements_of_arrays(tmp_path: Path, name: str) -> None:
         ("[DeviceInfo]", "[Comments]\nLines=5\nline1=x\n[DummyUsage]\nDummy0001=x\n[DEVICEINFO]", 0x2E1),
         ("PDOMapping", "PdoMapping", 0x2E1),
         ("ObjectType=0x7", "objecttype=", 0x2E1),
+        ("[DeviceInfo]", "[6075]\nParameterName=P\nDataType=7\nAccessType=\n[DeviceInfo]", 0x2E1),
         ("[DeviceInfo]", f"{ARRAY}[607Dsub1]\nDataType=4\nAccessType=rw\n[DeviceInfo]", 0x2E1),
     ],
 )

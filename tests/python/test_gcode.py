@@ -393,6 +393,9 @@ def test_marlin_has_letters_without_numbers() -> None:
     assert "p.nc:1: expected a letter and a number, found 'XF60'" in wrong("G1 X F60", dialect="marlin")
     assert "p.nc:1: expected a letter and a number, found 'XG1" in wrong("M84 X G1 Y1", dialect="marlin")
     assert "p.nc:1: M106 beside a motion: Marlin takes one command a line" in wrong("G1 X1 M106", dialect="marlin")
+    beside = "G1 X10 F600\nM106 S255 G1 X20\nG1 X30"
+    assert along_x(beside, dialect="marlin", leave_out="M106") == [10, 20, 30]
+    assert "p.nc:2: M3 beside a motion" in wrong("G1 X1 F600\nX5 M3", dialect="marlin")
     assert "--leave-out G380 leaves it out" in wrong("G380 S2 Z", dialect="marlin")
     assert along_x("G1 X1 F60\nG380 S2 Z F9 [a]\nG28 O\nX2", dialect="marlin", leave_out="G380 G28") == [1, 2]
     assert "p.nc:1: expected a letter and a number" in wrong("M84 X Y", dialect="rs274")

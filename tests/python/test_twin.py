@@ -152,13 +152,27 @@ def test_models_that_are_given(tmp_path: Path) -> None:
     assert judge(twin, recording).passed
 
 
-def urdf_with_mesh(mesh: str) -> str:
+def urdf_with_mesh(mesh: str, own: str = "") -> str:
+    """own: attributes of MuJoCo's element."""
     shape = f'<collision><geometry><mesh filename="{mesh}"/></geometry></collision>'
-    return URDF.replace('<link name="lower">', f'<link name="lower">{shape}')
+    urdf = URDF.replace('<link name="lower">', f'<link name="lower">{shape}')
+    return urdf.replace("<link", f"<mujoco><compiler {own}/></mujoco><link", 1) if own else urdf
 
 
-@pytest.mark.parametrize("mesh", ["../meshes/tip.stl", "package://arm/meshes/tip.stl", "file://FOLDER/meshes/tip.stl"])
-def test_meshes_of_a_urdf_are_found_from_its_folder(mesh: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("mesh", "own"),
+    [
+        ("../meshes/tip.stl", ""),
+        ("package://arm/meshes/tip.stl", ""),
+        ("file://FOLDER/meshes/tip.stl", ""),
+        ("package://gone/away/tip.stl", 'strippath="true" meshdir="../meshes"'),
+        ("../meshes/tip.stl", 'meshdir="../meshes"'),
+        ("tip.stl", 'meshdir="../meshes"'),
+    ],
+)
+def test_meshes_of_a_urdf_are_found_from_its_folder(
+    mesh: str, own: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """GR-13: by the same rule as for workspaces, and from any working directory; in models that are given, too."""
     package, elsewhere = tmp_path / "arm", tmp_path / "elsewhere"
     for folder in (package / "urdf", package / "meshes", elsewhere):
@@ -167,7 +181,7 @@ def test_meshes_of_a_urdf_are_found_from_its_folder(mesh: str, tmp_path: Path, m
     faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
     facets = [struct.pack("<12fH", 0, 0, 0, *(x for i in face for x in corners[i]), 0) for face in faces]
     (package / "meshes" / "tip.stl").write_bytes(bytes(80) + struct.pack("<I", len(faces)) + b"".join(facets))
-    (package / "urdf" / "arm.urdf").write_text(urdf_with_mesh(mesh.replace("FOLDER", str(package))))
+    (package / "urdf" / "arm.urdf").write_text(urdf_with_mesh(mesh.replace("FOLDER", str(package)), own))
     monkeypatch.chdir(elsewhere)
     text = machine("a1 a2", "{serial: {urdf: urdf/arm.urdf}}", motors("a1 a2", ""))
     (package / "made.yaml").write_text(text)

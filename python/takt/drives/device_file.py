@@ -98,6 +98,9 @@ class _Section:
     def __init__(self, name: str, values: Mapping[str, str]) -> None:
         self.name, self._values = name, values
 
+    def has(self, key: str) -> bool:
+        return key.lower() in self._values
+
     def text(self, key: str) -> str:
         return self._values.get(key.lower(), "").strip()
 
@@ -126,11 +129,12 @@ def _add_eds(
         section.number("DataType", None),
         section.text("AccessType"),
     )
-    if not access and kind != DOMAIN:
+    if not section.has("AccessType") and kind != DOMAIN:
         raise ValueError(f"[{section.name}] AccessType: expected ro, wo, rw, rwr, rww or const, it is missing")
     own = sections.get(f"{data_type:x}sub1")  # types that editors define: their base is there
     bits = EDS_BITS.get(own.number("DefaultValue") if own and data_type > max(EDS_BITS) else data_type, 0)
-    one = Described(name, bits, not access or "w" in access.lower(), section.number("PDOMapping") != 0)
+    writable = "w" in access.lower() or not section.has("AccessType")
+    one = Described(name, bits, writable, section.number("PDOMapping") != 0)
     if count:
         found.objects.setdefault((index, 0), Described(f"{name} number of entries", 8, True, False))
         names = sections.get(f"{index:04x}name", _Section("", {}))
@@ -206,11 +210,12 @@ def _add(found: DeviceFile, entry: ElementTree.Element, types: Mapping[str | Non
     index = _number_at(entry, "Index")
     name = (entry.findtext("Name") or "").strip()
     kind = types.get(entry.findtext("Type"))
-    count = len(found.objects)
+    has_members = False
     for one in [] if kind is None else kind.iterfind("SubItem"):
         title = f"{name} {one.findtext('Name') or ''}"
         if one.findtext("SubIdx"):
             found.objects[index, _number_at(one, "SubIdx")] = _flags(one, title)
+            has_members = True
             continue
         elements = types.get(one.findtext("Type"))
         array = None if elements is None else elements.find("ArrayInfo")
@@ -218,10 +223,11 @@ def _add(found: DeviceFile, entry: ElementTree.Element, types: Mapping[str | Non
             continue
         first, many = _number_at(array, "LBound"), _number_at(array, "Elements")
         whole = _flags(one, title)
+        has_members |= many > 0
         for i in range(first, min(first + many, 256)):
             size = _number(one.findtext("BitSize") or "0") // many
             found.objects[index, i] = replace(whole, name=f"{title} {i}", bits=size if size <= 64 else 0)
-    if len(found.objects) == count:
+    if not has_members:
         found.objects[index, 0] = _flags(entry, name)
 
 

@@ -26,6 +26,8 @@ _MARLIN_TEXT = re.compile(
 )
 _MARLIN_MACRO = re.compile(r"\s*([A-Z_]{2,}[A-Z0-9_]*)(?:\s|$)")
 _MARLIN_COMMAND = re.compile(r"\s*(?:N[0-9]+\s*)?([GM])([0-9]+(?:\.[0-9]+)?)(?![0-9.])")
+_MARLIN_CODE = re.compile(r"[GM]\s*[0-9]")
+_MARLIN_MODAL = re.compile(r"\s*(?:N[0-9]+\s*)?[XYZE]\s*[-+.0-9][^;(]*?M\s*([0-9]+)")
 _MARLIN_WORD = re.compile(r"([A-Z])([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))?")
 _GRBL_SYSTEM = re.compile(r"\s*(\$[A-Z]*)")
 _SLASH = re.compile(r"^/[1-9]?")
@@ -186,6 +188,9 @@ class Text:
 
     def _marlin(self, upper: str) -> Line | None:
         """Codes with text behind them; codes left out, which have a line of their own; macros."""
+        modal = _MARLIN_MODAL.match(upper)
+        if modal:
+            raise LineError(f"M{modal[1]} beside a motion: Marlin takes one command a line")
         text = _MARLIN_TEXT.match(upper)
         if text and text[1] != "M30":
             return Block((text[1],), {})
@@ -197,7 +202,10 @@ class Text:
             return Block((name,), {})
         command = _MARLIN_COMMAND.match(upper) if self._leave_out else None
         code = words.code_name(command[1], float(command[2])) if command else ""
-        return Block((code,), {}) if code in self._leave_out and code not in words.GROUP_OF else None
+        if command is None or code not in self._leave_out or code in words.GROUP_OF:
+            return None
+        others = _MARLIN_CODE.search(_COMMENT.sub("", upper[command.end() :]))
+        return None if others else Block((code,), {})
 
     # --- The order of lines ---
 

@@ -396,9 +396,12 @@ class _Builder:
         except Exception as error:
             raise self.problems.fail(path, f"MuJoCo cannot read it: {_line(error)}") from None
         spec.compiler.fusestatic = False
-        folder = folder / spec.compiler.meshdir  # of MuJoCo's own element in the URDF
+        # MuJoCo's own element in the URDF counts for what is not found so.
+        own = folder / spec.compiler.meshdir
+        spec.strippath = False
         for mesh in spec.meshes:
-            mesh.file = _core.urdf_mesh_file(mesh.file, str(folder))
+            file = _core.urdf_mesh_file(mesh.file, str(folder))
+            mesh.file = file if Path(file).is_file() else _core.urdf_mesh_file(mesh.file, str(own))
         return spec
 
     # --- given ---
