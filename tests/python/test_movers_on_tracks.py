@@ -488,6 +488,42 @@ tracks:
     assert expect.within_limits(recording, "one")
 
 
+@pytest.mark.parametrize(
+    ("radius", "maximum", "move", "position"),
+    [
+        (50, (2000, 8000, 20000), (1553, 5662, 18786), 915),
+        (200, (2000, 10000, 50000), (1135, 5478, 34842), 934),
+    ],
+)
+def test_a_move_to_a_place_in_a_curve_passes_it_hardly(
+    radius: float, maximum: tuple[float, float, float], move: tuple[float, float, float], position: float
+) -> None:
+    """PL-21, PL-82: its plan ends at rest there, though braking as the curve asks would be later (1.9 mm)."""
+    with Engine(f"""
+name: curve
+axes: []
+movers:
+  - name: one
+    initial: {{x: 500}}
+    xy: {{maximum: {{velocity: {maximum[0]}, acceleration: {maximum[1]}, jerk: {maximum[2]}}}}}
+tracks:
+  - name: track
+    elements:
+      - {{from: {{x: 300, y: 0}}, to: {{x: 1200, y: 0}}}}
+      - {{from: {{x: {1200 + radius}, y: {radius}}}, to: {{x: {1200 + radius}, y: 700}}}}
+""") as engine:
+        one = engine.mover("one")
+        engine.track("track").enable().wait()
+        one.enable().wait()
+        one.join_track(track="track").wait()
+        record = engine.record("one")
+        one.move_on_track(
+            position=position, velocity=move[0], acceleration=move[1], deceleration=move[1], jerk=move[2]
+        ).wait()
+        recording = record.stop()
+    assert recording["one"]["track_position"].max() <= position + 0.2
+
+
 def test_a_mover_says_why_and_since_when_it_waits() -> None:
     """PL-70: for another one; for a release."""
     engine, mover = alone_on_two_tracks()

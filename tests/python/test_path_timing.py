@@ -614,29 +614,63 @@ def test_a_run_with_plans_is_reproduced(tmp_path: Path, pace: str) -> None:
     assert result.states > 0
 
 
+class Stadium(NamedTuple):
+    """A line of 60 mm, half a circle and a line back, turned about z: the curvature steps where they meet."""
+
+    axes: float  # mm/s
+    path: float  # mm/s
+    radius: float  # mm
+    turned: float = 0.0  # degrees
+    jerk_of_y: float = 1.0  # of that of the other axes
+
+    def machine(self) -> str:
+        jerks = (1e5, 1e5) if self.axes < 1000 else (5e5, 4e5)
+        of, along = Limits(self.axes, 10 * self.axes, jerks[0]), Limits(self.path, 10 * self.path, jerks[1])
+        cosine, sine, r = np.cos(np.radians(self.turned)), np.sin(np.radians(self.turned)), self.radius
+
+        def place(x: float, y: float, prefix: str = "") -> str:
+            return f"{prefix}x: {x * cosine - y * sine:.9f}, {prefix}y: {x * sine + y * cosine:.9f}, {prefix}z: 0"
+
+        y = f"name: y, unit: mm, limits: {values(of)}"
+        text = machine([], of).replace(f"path: {values(of)}", f"path: {values(along)}")
+        text = text.replace(y, y.replace(repr(of.jerk), repr(self.jerk_of_y * of.jerk)))
+        return (
+            f"{text}      - {{shape: line, to: {{{place(60, 0)}}}}}\n"
+            f"      - {{shape: arc, {place(60 + r, r, 'via_')}, to: {{{place(60, 2 * r)}}}}}\n"
+            f"      - {{shape: line, to: {{{place(0, 2 * r)}}}}}\n"
+        )
+
+    def off(self, recording: takt.Recording) -> float:
+        """The largest distance from it in mm."""
+        at = recording["x"]["set_position"] + 1j * recording["y"]["set_position"]
+        at *= np.exp(-1j * np.radians(self.turned))
+        on_arc = np.abs(np.abs(at - 60 - 1j * self.radius) - self.radius)
+        on_lines = np.minimum(np.abs(at.imag), np.abs(at.imag - 2 * self.radius))
+        return float(np.where(at.real > 60, on_arc, on_lines).max())
+
+
 STADIUM = [
-    (500, 500, 15),
-    (1000, 800, 5),
-]  # mm/s of the axes, of the path, and the radius in mm
+    Stadium(500, 500, 15),
+    Stadium(1000, 800, 5),
+    Stadium(500, 500, 5, 75),
+    Stadium(500, 500, 15, 30),
+    Stadium(500, 500, 2, 45, 0.5),
+]
 
 
-def stadium(axes: float, path: float, radius: float) -> str:
-    """A line of 60 mm, half a circle and a line back: the curvature steps where they meet."""
-    of = Limits(axes, 10 * axes, 1e5 if axes < 1000 else 5e5)
-    along = Limits(path, 10 * path, 1e5 if axes < 1000 else 4e5)
-    text = machine([(60, 0, 0)], of).replace(f"path: {values(of)}", f"path: {values(along)}")
-    return (
-        f"{text}      - {{shape: arc, via_x: {60 + radius}, via_y: {radius}, via_z: 0, "
-        f"to: {{x: 60, y: {2 * radius}, z: 0}}}}\n      - {{shape: line, to: {{x: 0, y: {2 * radius}, z: 0}}}}\n"
-    )
-
-
-def off_stadium(recording: takt.Recording, radius: float) -> float:
-    """The largest distance from it in mm."""
-    x, y = (recording[name]["set_position"] for name in "xy")
-    on_arc = np.abs(np.hypot(x - 60, y - radius) - radius)
-    on_lines = np.minimum(np.abs(y), np.abs(y - 2 * radius))
-    return float(np.where(x > 60, on_arc, on_lines).max())
+@pytest.mark.parametrize("turned", range(0, 180, 15))
+@pytest.mark.parametrize(("radius", "jerk_of_y"), [(2, 1.0), (5, 1.0), (15, 1.0), (2, 0.5), (5, 0.3)])
+def test_steps_of_curvature_are_passed_on_the_path(radius: float, jerk_of_y: float, turned: float) -> None:
+    """GR-40: whatever the axes share of them."""
+    case = Stadium(500, 500, radius, turned, jerk_of_y)
+    with takt.Engine(case.machine()) as session:
+        group = session.group("g")
+        group.power().wait()
+        group.enable().wait()
+        recorder = session.record("x", "y")
+        group.move_path(path="p").wait()
+        session.run(0.5)
+        assert case.off(recorder.stop()) <= 1e-3
 
 
 @pytest.mark.parametrize("case", STADIUM)
@@ -652,13 +686,11 @@ def off_stadium(recording: takt.Recording, radius: float) -> float:
     ],
     ids=["half", "zero", "halt", "soft-halt", "soft-interrupt", "soft-stop"],
 )
-def test_no_instant_leads_off_the_path_where_curvature_steps(
-    case: tuple[float, float, float], disturb: Disturb
-) -> None:
+def test_no_instant_leads_off_the_path_where_curvature_steps(case: Stadium, disturb: Disturb) -> None:
     """GR-40: brakings and overrides passed the steps as fast as they came (0.2 to 12 mm beside the path)."""
     worst = 0.0
     for instant in range(20, 700, 12 if LONG else 52):
-        with takt.Engine(stadium(*case)) as session:
+        with takt.Engine(case.machine()) as session:
             group = session.group("g")
             group.power().wait()
             group.enable().wait()
@@ -669,7 +701,7 @@ def test_no_instant_leads_off_the_path_where_curvature_steps(
             session.run(0.5)
             group.set_override()
             session.run(1.0)
-            worst = max(worst, off_stadium(recorder.stop(), case[2]))
+            worst = max(worst, case.off(recorder.stop()))
     assert worst <= 1e-3
 
 
@@ -680,7 +712,7 @@ def test_smooth_joints_are_no_slower_than_stops(radius: float, override: float) 
     """GR-23, GR-41: steps of curvature are passed at the speed that they allow (it crept at 2 mm/s before them)."""
     taken = []
     for stops in (False, True):
-        with takt.Engine(stadium(500, 500, radius)) as session:
+        with takt.Engine(Stadium(500, 500, radius).machine()) as session:
             group = session.group("g")
             group.power().wait()
             group.enable().wait()

@@ -229,10 +229,11 @@ class Traffic::Step_ {
   bool TryToTake(std::uint32_t i, const KinematicState& next) {
     held_by_guard_ = false;
     const Rider& r = riders_[i];
+    const bool on_plan = r.aim == Aim::kTarget && r.planned && r.plan_ends;  // it rests without that
     for (std::size_t share = 0; share < kShares.size(); ++share) {
       const Brakes brakes = WithShare(r.brakes, r.pace, share);
       const Braking braking = Brake(next, brakes);
-      if (share > 0 && TurnsBack(next, braking)) return false;
+      if (share > 0 && !on_plan && TurnsBack(next, braking)) return false;
       if (!KeepsToVectors(network_, r, next, braking, period())) continue;
       // A smaller share would only make it come to rest later.
       if (!KeepsToLimits(network_, r, next, braking, brakes.jerk) || !w_.MayTake(i, next, braking)) return false;

@@ -14,7 +14,8 @@ constexpr std::size_t kMostNodes = 1024;
 constexpr double kFast = 0.7;        // share of the largest speed around it above which a node is not slow
 constexpr double kOfBuildUp = 0.25;  // length of an interval over the time in which accelerations build up
 constexpr double kShortest_s = 5e-4, kLongest_s = 0.025;  // of an interval
-constexpr double kBesideJoint_s = 0.002;                  // of an interval that ends there
+constexpr double kBesideJoint_s = 0.002;                  // of an interval that ends at a joint, at the least ...
+constexpr double kBesideJointCycles = 4;                  // ... and
 constexpr double kTurn = 0.15;                            // share of the jerk limit that steps at a node: it is a knot
 constexpr double kLeastParts = 16;                        // intervals between two slow nodes, about
 constexpr int kAttempts = 6, kEasings = 4;
@@ -86,6 +87,19 @@ AlongPath LimitsAt(const PathPoint& point, const CoordinateLimits& limits, doubl
   return least;
 }
 
+double JerkUse(const PathWindow& window, std::uint64_t node, const KinematicState& along, double jerk) noexcept {
+  const PathNode &before = window[node], &after = Next(window, node);
+  const CoordinateLimits& limits = window.limits();
+  const double v = along.velocity;
+  double use = 0;
+  for (std::size_t k = 0; k < limits.count; ++k) {
+    const Slopes q = SlopesAt(before, after, along.position, k);
+    const double rate = q.first * jerk + 3 * q.second * v * along.acceleration + q.third * v * v * v;
+    use = std::max(use, std::abs(rate) / limits.of[k].jerk);
+  }
+  return use;
+}
+
 double UseOf(const PathWindow& window, std::uint64_t node, const KinematicState& along, double jerk) noexcept {
   const PathNode &before = window[node], &after = Next(window, node);
   const CoordinateLimits& limits = window.limits();
@@ -112,6 +126,7 @@ PathCourse::PathCourse(std::size_t intervals, double period_s) : period_s_(perio
   rates_.reserve(kPathCoordinates + 1);
   slow_.reserve(kMostSlow + 2);
   square_.reserve(kMostNodes);
+  joints_.reserve(kMostNodes);
   nodes_.reserve(kMostNodes);
   turns_.reserve(kMostNodes);
   knots_.reserve(kMostNodes + Profile::kCapacity);
@@ -140,6 +155,7 @@ Limits PathCourse::Between(const Slow& from, const Slow& to) const noexcept {
 // The largest speed at each node, the steps of jerk there, and the slow nodes from `begin` to rest at `end`.
 void PathCourse::FindSlow(const KinematicState& begin, std::size_t end) noexcept {
   square_.clear();
+  joints_.clear();
   turns_.clear();
   const auto at = [&](std::size_t i) { return nodes_[i].at.s; };
   for (std::size_t i = 0; i <= end; ++i) {
@@ -148,11 +164,14 @@ void PathCourse::FindSlow(const KinematicState& begin, std::size_t end) noexcept
     double square = std::min(node.own, most < kNoLimitFrom ? most * most : factor_ * factor_ * node.own);
     const bool joins_before = i > 0 && !(at(i) > at(i - 1)), joins_behind = i < end && !(at(i + 1) > at(i));
     const auto joint = [&](std::size_t k) {
-      return JointSquare(nodes_[k].at.slopes, nodes_[k + 1].at.slopes, coordinates_, period_s_);
+      return kStepAtJoint * JointSquare(nodes_[k].at.slopes, nodes_[k + 1].at.slopes, coordinates_, period_s_);
     };
-    if (joins_before) square = std::min(square, joint(i - 1));
-    if (joins_behind) square = std::min(square, joint(i));
+    double step = std::numeric_limits<double>::infinity();
+    if (joins_before) step = std::min(step, joint(i - 1));
+    if (joins_behind) step = std::min(step, joint(i));
+    square = std::min(square, step);
     square_.push_back(square);
+    joints_.push_back(step);
     double turn = joins_before || joins_behind ? std::numeric_limits<double>::infinity() : 0;
     if (turn == 0 && i > 0 && i < end) {
       for (std::size_t k = 0; k < coordinates_.count; ++k) {
@@ -211,11 +230,6 @@ void PathCourse::Add(const KinematicState& from, const KinematicState& to, doubl
   steps_.push_back(step);
 }
 
-bool PathCourse::IsJoint(std::size_t i) const noexcept {
-  const double s = nodes_[i].at.s;
-  return (i > 0 && nodes_[i - 1].at.s == s) || (i + 1 < nodes_.size() && nodes_[i + 1].at.s == s);
-}
-
 // Intervals of one motion of the reference: with knots where its jerk steps, and where the way coordinates bend does.
 // False: there is no room for them.
 bool PathCourse::Cut(const Slow& from, const Slow& to, const Profile& profile, double longest_s) noexcept {
@@ -230,8 +244,9 @@ bool PathCourse::Cut(const Slow& from, const Slow& to, const Profile& profile, d
   }
   // Intervals that end at a joint are no faster anywhere than that allows.
   const double end_s = profile.duration();
-  if (IsJoint(from.node)) knots_.push_back({kBesideJoint_s, kTurn});
-  if (IsJoint(to.node)) knots_.push_back({end_s - kBesideJoint_s, kTurn});
+  const double beside_s = std::max(kBesideJoint_s, kBesideJointCycles * period_s_);
+  if (joints_[from.node] <= square_[from.node]) knots_.push_back({beside_s, kTurn});
+  if (joints_[to.node] <= square_[to.node]) knots_.push_back({end_s - beside_s, kTurn});
   std::ranges::sort(knots_, {}, &Knot::at_s);
   double begin_s = 0;
   KinematicState begin = profile.start();
@@ -363,6 +378,7 @@ bool PathCourse::Make(Planner& planner, double share, bool follow) noexcept {
 bool PathCourse::Make(const PathCourse& other, const PathPlan& plan) noexcept {
   nodes_ = other.nodes_;  // there is room: it does not allocate
   square_ = other.square_;
+  joints_ = other.joints_;
   coordinates_ = other.coordinates_;
   begin_ = other.begin_;
   factor_ = other.factor_;
@@ -532,7 +548,10 @@ void PathCourse::SetLimits(std::size_t end) noexcept {
     for (std::size_t i = step.node;; ++i) {
       along = Least(along, nodes_[i].at.limits);
       const bool within = nodes_[i].at.s >= before.position - kHere && nodes_[i].at.s <= after.position + kHere;
-      if (within && IsJoint(i)) joints = std::min(joints, square_[i]);
+      if (within) joints = std::min(joints, joints_[i]);
+      if (within && joints_[i] <= square_[i]) {
+        along.jerk = std::min(along.jerk, kJerkAtJoint * LimitsAt(nodes_[i].at, coordinates_, kCoordinateShare).jerk);
+      }
       if (factor_ < 1 && along.velocity >= kNoLimitFrom) own = std::min(own, square_[i]);
       if (i == end || nodes_[i].at.s >= after.position - kHere) break;
     }

@@ -27,6 +27,12 @@ AlongPath LimitsAt(const PathPoint& point, const CoordinateLimits& limits, doubl
 // or before the position.
 double UseOf(const PathWindow& window, std::uint64_t node, const KinematicState& along, double jerk) noexcept;
 
+// Shares of the jerk of coordinates where a joint is passed: what accelerations step by in that cycle, and what the
+// motion uses meanwhile. The rest is for set points: the step comes within a cycle, and velocities are to fit, too.
+inline constexpr double kStepAtJoint = 0.4, kJerkAtJoint = 0.5;
+// The share of jerk alone.
+double JerkUse(const PathWindow& window, std::uint64_t node, const KinematicState& along, double jerk) noexcept;
+
 // Allocates only in the constructor.
 class PathCourse {
  public:
@@ -96,7 +102,6 @@ class PathCourse {
   Laid Lay(double of_build_up, Planner& planner) noexcept;
   bool Cut(const Slow& from, const Slow& to, const Profile& profile, double longest_s) noexcept;
   void Add(const KinematicState& from, const KinematicState& to, double length_s) noexcept;
-  bool IsJoint(std::size_t node) const noexcept;  // the second slopes step there
   void Grade() noexcept;
   bool Ease() noexcept;
   void SetLimits(std::size_t end) noexcept;
@@ -122,6 +127,7 @@ class PathCourse {
   std::vector<ReferenceRate> rates_;
   std::vector<Slow> slow_;
   std::vector<double> square_;  // of the largest speed at each node
+  std::vector<double> joints_;  // of what a step of the second slopes at each node allows; it may be the largest speed
   std::vector<Knot> knots_;
   std::vector<double> turns_;  // share of the jerk limit that steps at each node, at that speed
 };

@@ -61,6 +61,12 @@ double WithinAfter(std::uint64_t cycles) {
   return kBrakesWithin[std::min<std::size_t>(cycles / kMoreAfter, std::size(kBrakesWithin) - 1)];
 }
 
+// At a joint: a step of accelerations, as a share of what jerk makes in a cycle, and the use of jerk there.
+bool LeavesTooLittle(double step, double use, double within) {
+  constexpr double kForStep = (1 - kJerkAtJoint) / kStepAtJoint;
+  return step > within * kStepAtJoint || use + kForStep * step > within;
+}
+
 bool IsAtRest(const KinematicState& state) {
   return state.velocity == 0 && state.acceleration == 0;
 }
@@ -168,8 +174,10 @@ bool PathTiming::Holds(const PathWindow& window, std::uint64_t node, const Profi
         if (UseOf(window, node, there, jerk) > within) return false;
         const PathSlopes &slopes = window[node].at.slopes, &behind = window[node + 1].at.slopes;
         const bool joint = window[node].at.s == s;
-        if (joint && square > within * within * JointSquare(slopes, behind, window.limits(), period_s_)) return false;
+        const double step = joint ? square / JointSquare(slopes, behind, window.limits(), period_s_) : 0;
+        if (step > 0 && LeavesTooLittle(step, JerkUse(window, node, there, jerk), within)) return false;
         ++node;
+        if (step > 0 && LeavesTooLittle(step, JerkUse(window, node, there, jerk), within)) return false;
         if (UseOf(window, node, there, jerk) > within) return false;
       }
       if (UseOf(window, node, at, jerk) > within) return false;
