@@ -447,6 +447,28 @@ def test_a_buffered_way_back_begins_at_rest() -> None:
     assert mover.track_position == 100
 
 
+def before_curve(radius: float, maximum: tuple[float, float, float]) -> Engine:
+    """A mover at rest on a track, 700 mm before a curve. maximum: velocity, acceleration, jerk."""
+    velocity, acceleration, jerk = maximum
+    engine = Engine(f"""
+name: curve
+axes: []
+movers:
+  - name: one
+    initial: {{x: 500}}
+    xy: {{maximum: {{velocity: {velocity}, acceleration: {acceleration}, jerk: {jerk}}}}}
+tracks:
+  - name: track
+    elements:
+      - {{from: {{x: 300, y: 0}}, to: {{x: 1200, y: 0}}}}
+      - {{from: {{x: {1200 + radius}, y: {radius}}}, to: {{x: {1200 + radius}, y: 700}}}}
+""")
+    engine.track("track").enable().wait()
+    engine.mover("one").enable().wait()
+    engine.mover("one").join_track(track="track").wait()
+    return engine
+
+
 @pytest.mark.parametrize(
     ("radius", "first", "seconds", "second"),
     [
@@ -462,23 +484,8 @@ def test_a_new_jerk_before_a_curve_turns_no_mover_back(
 ) -> None:
     """PL-21, PL-82: it had to brake in the curve with less jerk than it had begun with (-67 to -210 mm/s)."""
     velocity, acceleration, jerk = first
-    with Engine(f"""
-name: curve
-axes: []
-movers:
-  - name: one
-    initial: {{x: 500}}
-    xy: {{maximum: {{velocity: 2000, acceleration: 10000, jerk: 50000}}}}
-tracks:
-  - name: track
-    elements:
-      - {{from: {{x: 300, y: 0}}, to: {{x: 1200, y: 0}}}}
-      - {{from: {{x: {1200 + radius}, y: {radius}}}, to: {{x: {1200 + radius}, y: 700}}}}
-""") as engine:
+    with before_curve(radius, (2000, 10000, 50000)) as engine:
         one = engine.mover("one")
-        engine.track("track").enable().wait()
-        one.enable().wait()
-        one.join_track(track="track").wait()
         record = engine.record("one")
         one.move_on_track(position=1400, velocity=velocity, acceleration=acceleration, jerk=jerk)
         engine.run(seconds)
@@ -499,23 +506,8 @@ def test_a_move_to_a_place_in_a_curve_passes_it_hardly(
     radius: float, maximum: tuple[float, float, float], move: tuple[float, float, float], position: float
 ) -> None:
     """PL-21, PL-82: its plan ends at rest there, though braking as the curve asks would be later (1.9 mm)."""
-    with Engine(f"""
-name: curve
-axes: []
-movers:
-  - name: one
-    initial: {{x: 500}}
-    xy: {{maximum: {{velocity: {maximum[0]}, acceleration: {maximum[1]}, jerk: {maximum[2]}}}}}
-tracks:
-  - name: track
-    elements:
-      - {{from: {{x: 300, y: 0}}, to: {{x: 1200, y: 0}}}}
-      - {{from: {{x: {1200 + radius}, y: {radius}}}, to: {{x: {1200 + radius}, y: 700}}}}
-""") as engine:
+    with before_curve(radius, maximum) as engine:
         one = engine.mover("one")
-        engine.track("track").enable().wait()
-        one.enable().wait()
-        one.join_track(track="track").wait()
         record = engine.record("one")
         one.move_on_track(
             position=position, velocity=move[0], acceleration=move[1], deceleration=move[1], jerk=move[2]

@@ -705,6 +705,32 @@ def test_no_instant_leads_off_the_path_where_curvature_steps(case: Stadium, dist
     assert worst <= 1e-3
 
 
+@pytest.mark.parametrize("stop", STOPS)
+def test_every_stop_where_curvature_steps(stop: str) -> None:
+    """GR-40, AX-100: within the limits of the axes, on the path unless its members brake, and nothing resumes."""
+    case = STADIUM[2]
+    for instant in (250, 290, 320, 350, 400):
+        with takt.Engine(case.machine()) as session:
+            group = session.group("g")
+            group.power().wait()
+            group.enable().wait()
+            recorder = session.record("x", "y")
+            group.move_path(path="p")
+            session.step(instant)
+            STOPS[stop](session, group)
+            session.run(1.0)
+            recording = recorder.stop()
+            if stop not in OFF_PATH:
+                assert case.off(recording) <= 1e-3
+            ends = [recording[name]["set_position"][-1] for name in "xy"]
+            session.run(0.2)
+            assert [session.axis(name).set_position for name in "xy"] == pytest.approx(ends, abs=1e-9)
+            for name in "xy":
+                assert np.abs(recording[name]["set_acceleration"]).max() <= WITHIN * 5000
+                if stop != "emergency stop":  # which switches off: on straight paths, too, accelerations step
+                    assert np.abs(np.diff(recording[name]["set_acceleration"])).max() <= WITHIN * 100
+
+
 @pytest.mark.parametrize(
     ("radius", "override"), [(3, 1), (5, 1), (5, 0.8), (5, 0.5), (10, 0.8), (15, 1), (15, 0.9), (40, 1), (100, 1)]
 )

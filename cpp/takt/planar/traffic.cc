@@ -220,8 +220,8 @@ class Traffic::Step_ {
     return {r.plan_from + r.direction * way.position, r.direction * way.velocity, r.direction * way.acceleration};
   }
 
-  // Braking so it does not only come to rest, but goes back then.
-  static bool TurnsBack(const KinematicState& from, const Braking& braking) {
+  // Whether this braking reverses the motion before it rests.
+  static bool Reverses(const KinematicState& from, const Braking& braking) {
     return (from.velocity > 0 ? braking.highest - braking.rest : braking.rest - braking.lowest) > kTolerance;
   }
 
@@ -229,11 +229,11 @@ class Traffic::Step_ {
   bool TryToTake(std::uint32_t i, const KinematicState& next) {
     held_by_guard_ = false;
     const Rider& r = riders_[i];
-    const bool on_plan = r.aim == Aim::kTarget && r.planned && r.plan_ends;  // it rests without that
+    const bool on_plan = r.aim == Aim::kTarget && r.planned && r.plan_ends;  // which rests at the target without that
     for (std::size_t share = 0; share < kShares.size(); ++share) {
       const Brakes brakes = WithShare(r.brakes, r.pace, share);
       const Braking braking = Brake(next, brakes);
-      if (share > 0 && !on_plan && TurnsBack(next, braking)) return false;
+      if (share > 0 && !on_plan && Reverses(next, braking)) return false;
       if (!KeepsToVectors(network_, r, next, braking, period())) continue;
       // A smaller share would only make it come to rest later.
       if (!KeepsToLimits(network_, r, next, braking, brakes.jerk) || !w_.MayTake(i, next, braking)) return false;

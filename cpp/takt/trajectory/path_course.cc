@@ -57,6 +57,12 @@ Slopes SlopesAt(const PathNode& before, const PathNode& after, double place, std
           a.second[k] + part * (bend + sag * (1 - part)), (bend + sag * (1 - 2 * part)) / length};
 }
 
+// The jerk of a coordinate.
+double JerkAt(const Slopes& q, const KinematicState& along, double jerk) {
+  const double v = along.velocity;
+  return q.first * jerk + 3 * q.second * v * along.acceleration + q.third * v * v * v;
+}
+
 const PathNode& Next(const PathWindow& window, std::uint64_t node) {
   const bool last = node + 1 >= window.end() || window[node].stop;
   return window[last ? node : node + 1];
@@ -90,12 +96,10 @@ AlongPath LimitsAt(const PathPoint& point, const CoordinateLimits& limits, doubl
 double JerkUse(const PathWindow& window, std::uint64_t node, const KinematicState& along, double jerk) noexcept {
   const PathNode &before = window[node], &after = Next(window, node);
   const CoordinateLimits& limits = window.limits();
-  const double v = along.velocity;
   double use = 0;
   for (std::size_t k = 0; k < limits.count; ++k) {
     const Slopes q = SlopesAt(before, after, along.position, k);
-    const double rate = q.first * jerk + 3 * q.second * v * along.acceleration + q.third * v * v * v;
-    use = std::max(use, std::abs(rate) / limits.of[k].jerk);
+    use = std::max(use, std::abs(JerkAt(q, along, jerk)) / limits.of[k].jerk);
   }
   return use;
 }
@@ -110,7 +114,7 @@ double UseOf(const PathWindow& window, std::uint64_t node, const KinematicState&
     const Slopes q = SlopesAt(before, after, along.position, k);
     use =
         std::max({use, std::abs(q.first * v) / of.velocity, std::abs(q.first * a + q.second * v * v) / of.acceleration,
-                  std::abs(q.first * jerk + 3 * q.second * v * a + q.third * v * v * v) / of.jerk});
+                  std::abs(JerkAt(q, along, jerk)) / of.jerk});
   }
   return use;
 }

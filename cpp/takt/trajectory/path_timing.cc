@@ -205,8 +205,8 @@ bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, co
     bend = i - 1;
     break;
   }
-  // Where it bends at once a plan from rest is there soon; without one it goes as fast as the slowest place, to where
-  // much more or much less is allowed.
+  // A path that bends at once waits for its plan. Without one the speed is that of the slowest place, up to the first
+  // place that allows much more or much less.
   if (slowly) {
     double slowest = std::numeric_limits<double>::infinity(), fastest = 0;
     std::uint64_t alike = pace.node;
