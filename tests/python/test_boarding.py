@@ -1,11 +1,9 @@
-"""GR-40, GR-42: getting onto belts and tables from rest, by time, beside anything that may come between."""
+"""GR-40, GR-42: a tool at rest gets onto belts and tables, whatever comes between."""
 
 from __future__ import annotations
 
-import math
 import os
 import random
-from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,7 +26,9 @@ class Robot(NamedTuple):
 
 FREE = "{velocity: 4000, acceleration: 60000, jerk: 3000000}"
 ROBOTS = {
-    "gantry": Robot(("x", "y", "z"), (1500, 15000, 500000), "{gantry: {axes: [x, y, z]}}", FREE, {"x": 0, "y": 0, "z": 0}),
+    "gantry": Robot(
+        ("x", "y", "z"), (1500, 15000, 500000), "{gantry: {axes: [x, y, z]}}", FREE, {"x": 0, "y": 0, "z": 0}
+    ),
     "delta": Robot(
         ("a1", "a2", "a3"),
         (800, 20000, 1e6),
@@ -112,13 +112,6 @@ class Cell:
         return run
 
 
-@pytest.fixture
-def cell(request: pytest.FixtureRequest) -> Iterator[Cell]:
-    made = Cell(*request.param)
-    yield made
-    made.engine.close()
-
-
 def off_target(run: Recording, cycle: int, target: dict[str, float]) -> float:
     """How far [mm] the tool is from a place of the object in a cycle."""
     robot = run["robot"]
@@ -127,7 +120,7 @@ def off_target(run: Recording, cycle: int, target: dict[str, float]) -> float:
 
 
 def test_random_boardings_keep_all_limits() -> None:
-    """GR-40, GR-42: on belts and tables, whatever comes between: limits hold, and what is Done is on its place."""
+    """GR-40, GR-42: limits hold whatever comes between, and what is Done is on its place."""
     done = 0
     for seed in range(RUNS):
         chance = random.Random(seed)
@@ -151,7 +144,9 @@ def test_random_boardings_keep_all_limits() -> None:
                 transition_parameter=5,
             )
         cell.engine.run(chance.choice([chance.uniform(0, 0.05), chance.uniform(0, 0.3)]))
-        event = chance.choice(["none", "halt", "stop", "interrupt", "override", "none at all", "speed", "other", "carrier"])
+        event = chance.choice(
+            ["none", "halt", "stop", "interrupt", "slow", "override 0", "belt", "other", "belt halts"]
+        )
         if event == "halt":
             cell.group.halt()
         elif event == "stop":
@@ -160,15 +155,15 @@ def test_random_boardings_keep_all_limits() -> None:
             cell.group.interrupt()
             cell.engine.run(chance.uniform(0, 0.3))
             cell.group.continue_path()
-        elif event in ("override", "none at all"):
-            cell.group.set_override(velocity_factor=chance.uniform(0.1, 0.9) if event == "override" else 0)
+        elif event in ("slow", "override 0"):
+            cell.group.set_override(velocity_factor=chance.uniform(0.1, 0.9) if event == "slow" else 0)
             cell.engine.run(chance.uniform(0, 0.3))
             cell.group.set_override()
-        elif event == "speed":
+        elif event == "belt":
             cell.carrier.set_override(velocity_factor=chance.uniform(0.3, 0.9))
         elif event == "other":
             cell.group.move_linear_absolute(**{axis: cell.robot.begin[axis] for axis in "xyz"})
-        elif event == "carrier":
+        elif event == "belt halts":
             cell.carrier.halt()
         cell.engine.run(2.0)
         run = cell.judge()
@@ -177,3 +172,81 @@ def test_random_boardings_keep_all_limits() -> None:
             assert off_target(run, move.cycle, cell.target(by)) < 1e-4, f"seed {seed}: {event}"
         cell.engine.close()
     assert done > RUNS / 3
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("carrier", ["belt", "table"])
+def test_a_tool_is_taken_along_at_once(name: str, carrier: str) -> None:
+    """GR-42: up from a carrier at speed takes about as long as from one that stands, and time_left says when."""
+    cycles = []
+    for speed in (0, 200 if carrier == "belt" else 40):
+        cell = Cell(name, carrier, speed)
+        start = cell.engine.cycle
+        move = cell.line((0, 0, 60)).wait()
+        run = cell.judge()
+        cycles.append(move.cycle - start)
+        assert off_target(run, move.cycle, cell.target((0, 0, 60))) < 1e-6
+    assert cycles[1] <= 1.15 * cycles[0]
+    robot = run["robot"]
+    known = np.flatnonzero(~np.isnan(robot["time_left"]))
+    ends = robot["cycle"][known] + np.round(robot["time_left"][known] / cell.engine.period)
+    assert len(known) > 10
+    assert np.all(ends == move.cycle)
+
+
+def test_time_left_counts_what_getting_into_step_takes() -> None:
+    """GR-42, GR-60: where that takes longer than the way, time_left is until the tool is in step."""
+    cell = Cell("gantry", "belt", 500)
+    move = cell.line((0, 12, 0)).wait()
+    robot = cell.judge()["robot"]
+    known = np.flatnonzero(~np.isnan(robot["time_left"]))
+    ends = robot["cycle"][known] + np.round(robot["time_left"][known] / cell.engine.period)
+    assert len(known) > 10
+    assert np.all(ends == move.cycle)
+
+
+def test_override_0_keeps_a_tool_where_it_is() -> None:
+    """GR-42: at override 0 a tool at rest is not taken along; later it gets there."""
+    cell = Cell("gantry", "belt", 200)
+    cell.group.set_override(velocity_factor=0)
+    move = cell.line((0, 50, 0))
+    cell.engine.run(0.5)
+    assert cell.group.pose[:3] == (0, 0, 0)
+    cell.group.set_override()
+    move.wait()
+    assert off_target(cell.judge(), move.cycle, cell.target((0, 50, 0))) < 1e-4
+
+
+def test_moves_before_it_are_done_first() -> None:
+    """GR-22, GR-42: a move from rest behind others, or behind one of no length, is carried out like any other."""
+    for way in (0.0, 30.0):
+        cell = Cell("gantry", "belt", 150)
+        first = cell.group.move_linear_absolute(z=way)
+        second = cell.line((0, 40, way), buffer_mode="buffered")
+        third = cell.line((20, 40, way), buffer_mode="buffered")
+        third.wait(timeout=3)
+        assert (first.done, second.done) == (True, True)
+        assert first.cycle <= second.cycle < third.cycle
+        run = cell.judge()
+        assert off_target(run, second.cycle, cell.target((0, 40, way))) < 1e-6
+        assert off_target(run, third.cycle, cell.target((20, 40, way))) < 1e-6
+
+
+@pytest.mark.parametrize("upper", [*range(196, 230, 3)])
+def test_a_place_that_leaves_the_range_is_refused_or_let_go(upper: int) -> None:
+    """GR-40, GR-42: near the end of an axis the move ends with error 3021, and the tool stands within the range."""
+    ends = f"{{name: gx, unit: mm, limits: {{lower: -1000, upper: {upper}, "
+    text = machine(ROBOTS["gantry"]).replace("{name: gx, unit: mm, limits: {", ends)
+    with takt.Engine(text) as engine:
+        group = engine.group("robot")
+        for axis in engine.axes.values():
+            axis.power().wait()
+        group.enable().wait()
+        engine.axis("drive").move_velocity(velocity=300).wait(until="reached")
+        group.set_dyn_coord_transform(pcs=1, carrier="belt").wait()
+        move = group.move_linear_absolute(x=100, y=150, z=0, coordinate_system="pcs", pcs=1, velocity=800).wait_final()
+        engine.run(1.0)
+        assert move.done or move.error_id == 3021
+        assert group.state is takt.GroupState.GROUP_STANDBY
+        assert engine.axis("gx").set_position <= upper
+        assert engine.axis("gx").set_velocity == 0
