@@ -81,7 +81,7 @@ trajectory::Limits Shared(trajectory::Limits limits, double share) {
 }
 
 trajectory::Limits LimitsNow(const Clutch& clutch, const State& s) {
-  return clutch.coupled && !s.lets_go ? clutch.limits() : Shared(clutch.limits(), BrakeShare(s));
+  return (clutch.coupled || clutch.boards) && !s.lets_go ? clutch.limits() : Shared(clutch.limits(), BrakeShare(s));
 }
 
 KinematicState Less(const KinematicState& a, const KinematicState& b) {
@@ -95,18 +95,17 @@ KinematicState Sum(const KinematicState& a, const KinematicState& b) {
   return {a.position + b.position, a.velocity + b.velocity, a.acceleration + b.acceleration};
 }
 
-// The way into step, seen from the carrier: what that does by itself, and how coarsely it is measured, is no matter
-// then. A cycle later; nothing when it is there.
+// The way into step a cycle later; nothing when it is there.
 KinematicState Closer(trajectory::Planner& planner, const KinematicState& carrier, const trajectory::Limits& limits,
                       const KinematicState& apart, double period_s) {
-  const double toward = apart.position > 0 ? -1 : 1;
-  const double velocity = std::max(limits.velocity - toward * carrier.velocity, kLeastClosing * limits.velocity);
-  const double most = kCarriersOwn * limits.acceleration;
-  const double own = std::clamp(carrier.acceleration, -most, most);
-  const trajectory::Bounds bounds = {limits.acceleration - own, limits.acceleration + own, limits.jerk};
   trajectory::Profile profile;
-  if (planner.ToPosition(apart, 0, velocity, bounds, profile).failed()) return apart;
+  if (ComeCloser(planner, carrier, limits, apart, profile).failed()) return apart;
   return profile.duration() > period_s ? profile.At(period_s) : KinematicState{};
+}
+
+void EndBoarding(const Context& c, Clutch& clutch) {
+  clutch.boards = false;
+  c.ahead.rides[clutch.ride % kRides].boarding.on = false;
 }
 
 void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& clutch) {
@@ -126,6 +125,7 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
     planner.ToVelocity(clutch.travel, 0, limits, profile);
     clutch.travel = profile.At(period);
     clutch.coupled = clutch.catches_up = false;
+    EndBoarding(c, clutch);
     return;
   }
   // A belt whose encoder was lost may turn up elsewhere: that is no motion to go along with.
@@ -145,6 +145,7 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
     clutch.catches_up = true;
     clutch.apart = Closer(planner, carrier, catching_up, clutch.apart, period);
     clutch.coupled = clutch.apart == KinematicState{};
+    if (clutch.coupled || jumps) EndBoarding(c, clutch);
     clutch.travel = clutch.coupled ? carrier : Sum(carrier, clutch.apart);
     return;
   }
@@ -165,7 +166,7 @@ void StepOne(const Context& c, const Stretch& stretch, double way, std::uint64_t
     // At rest somewhere else: what the axes can do on the way from there. It stays so until the tool is in step,
     // because CanLetGo counts on it.
     const bool stands = clutch->travel.velocity == 0 && clutch->travel.acceleration == 0;
-    if (!s.lets_go && !clutch->coupled && stands) {
+    if (!s.lets_go && !clutch->coupled && !clutch->boards && stands) {
       const double way_to_go = carrier.travel.position - clutch->travel.position;
       SetLimits(LimitsAlong(c, s, stretch, way, number, clutch->travel, way_to_go), *clutch);
     }
@@ -209,6 +210,21 @@ bool RidesFreely(const Context& c, const State& s) noexcept {
 
 bool Slips(const State& s) noexcept {
   return std::ranges::any_of(s.clutches, [](const Clutch& k) { return k.used && !k.coupled; });
+}
+
+bool WaitsForClutch(const State& s) noexcept {
+  return std::ranges::any_of(s.clutches, [](const Clutch& k) { return k.used && !k.coupled && !k.boards; });
+}
+
+Status ComeCloser(trajectory::Planner& planner, const KinematicState& carrier, const trajectory::Limits& limits,
+                  const KinematicState& apart, trajectory::Profile& out) noexcept {
+  // What the carrier does by itself, and how coarsely it is measured, is no matter then.
+  const double toward = apart.position > 0 ? -1 : 1;
+  const double velocity = std::max(limits.velocity - toward * carrier.velocity, kLeastClosing * limits.velocity);
+  const double most = kCarriersOwn * limits.acceleration;
+  const double own = std::clamp(carrier.acceleration, -most, most);
+  const trajectory::Bounds bounds = {limits.acceleration - own, limits.acceleration + own, limits.jerk};
+  return planner.ToPosition(apart, 0, velocity, bounds, out);
 }
 
 bool ClutchesStand(const State& s) noexcept {

@@ -19,6 +19,11 @@ bool RidesFreely(const Context& c, const State& s) noexcept;
 
 // The tool is not where its carriers are, and comes after them.
 bool Slips(const State& s) noexcept;
+// The same, and the path waits for that.
+bool WaitsForClutch(const State& s) noexcept;
+// The way into step, seen from the carrier, as it is now, from so far apart.
+Status ComeCloser(trajectory::Planner& planner, const KinematicState& carrier, const trajectory::Limits& limits,
+                  const KinematicState& apart, trajectory::Profile& out) noexcept;
 // Nothing that was let go of moves on.
 bool ClutchesStand(const State& s) noexcept;
 

@@ -5,6 +5,7 @@
 
 #include "takt/axis/following.h"
 #include "takt/axis/guidance.h"
+#include "takt/group/boarding.h"
 #include "takt/group/clutch.h"
 #include "takt/group/jog.h"
 #include "takt/group/members.h"
@@ -70,13 +71,6 @@ void EndCutShort(const Context& c, State& s) {
   ComeToRest(c, s);
 }
 
-// At the end of what is known of the path.
-bool StandsAtEnd(const Context& c, const State& s) {
-  const trajectory::PathWindow& window = c.ahead.window;
-  const bool last = s.pace.node + 1 >= window.known();
-  return s.pace.raw_stands && last && window.swept() && c.ahead.sampling >= c.ahead.end();
-}
-
 bool IsThrough(const Context& c, const State& s) {
   return StandsAtEnd(c, s) && IsPlanned(c, s);
 }
@@ -92,6 +86,11 @@ bool NothingToGo(const Context& c, const State& s) {
 // The move that would be planned next waits for the command that tracks its object.
 bool LeadsToTracking(const State& s) {
   return s.planning.move < s.done + s.queue.count && WaitsForTracking(s, MoveAt(s, s.planning.move));
+}
+
+// The move that is planned next is one for which the tool may board.
+bool LeadsToBoarding(const Context& c, const State& s) {
+  return s.planning.move < s.done + s.queue.count && MayBoard(c, s);
 }
 
 // Each brakes by itself, off the path.
@@ -126,9 +125,10 @@ void MoveOn(const Context& c, State& s) {
     if (s.task == Task::kInterrupt) EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
     return;
   }
-  // Before a zone or an object it waits for, all that leads there is done.
+  // Before a zone or an object it waits for, or a carrier to be boarded, all that leads there is done.
   const bool for_object = LeadsToTracking(s) && StandsAtEnd(c, s);
-  while ((for_object || (s.waits_for != 0 && StandsAtEnd(c, s))) && s.done < s.planning.move) {
+  const bool waits = s.waits_for != 0 || LeadsToBoarding(c, s);
+  while ((for_object || (waits && StandsAtEnd(c, s))) && s.done < s.planning.move) {
     Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
     s.active = 0;
   }
@@ -332,6 +332,7 @@ void Step(const Context& c, State& s) noexcept {
   if (plans && !Streams(s)) {
     if (!s.interrupted) StepTracking(c, s);
     if (!s.ends && !s.interrupted) Plan(c, s);
+    WatchBoarding(c, s);
     if (!s.begun && !s.ends && MayBegin(c)) BeginMotion(c, s);
   }
   if (Streams(s)) {

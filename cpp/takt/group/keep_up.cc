@@ -33,7 +33,7 @@ bool HasChanged(const Context& c, std::uint64_t number) {
 }
 
 bool IsLate(const Context& c, const State& s) {
-  return s.velocity_factor < 1 || Slips(s) || Follows(c, s);
+  return s.velocity_factor < 1 || WaitsForClutch(s) || Follows(c, s);
 }
 
 bool CarriersHaveChanged(const Context& c, const State& s) {

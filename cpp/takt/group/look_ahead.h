@@ -15,6 +15,7 @@
 #include "takt/trajectory/path_sampling.h"
 #include "takt/trajectory/path_timing.h"
 #include "takt/trajectory/path_window.h"
+#include "takt/trajectory/profile.h"
 
 namespace takt::group {
 
@@ -23,6 +24,18 @@ using kinematics::Frame;
 inline constexpr std::size_t kStretches = 512;
 inline constexpr std::size_t kNodes = 4096;
 inline constexpr std::size_t kRides = 16;
+
+// The way of a tool that was at rest onto a carrier that moves (boarding.h).
+struct Boarding {
+  bool on = false;
+  std::uint64_t begin = 0;    // the cycle in which it begins
+  trajectory::Profile apart;  // of the travel of the tool from the carrier's [mm or rad], from the cycle before on
+  // Acceleration and jerk of that, per velocity of the carrier [1/s, 1/s²]: so much of a coordinate's limits it takes,
+  // times the velocity at which the carrier takes the coordinate along, ...
+  double acceleration = 0;
+  double jerk = 0;
+  double reach = 0;  // ... before this place along the path [mm]: the path is not further when it ends
+};
 
 // What a path is carried by from some place on (rides.h).
 struct Ride {
@@ -33,6 +46,7 @@ struct Ride {
   double begin = 0;
   double end = 0;
   double speed = 0;  // of what carries, when it was planned
+  Boarding boarding;
 };
 
 // A carrier of a product coordinate system, and whether its speed has changed in the last seconds.

@@ -333,9 +333,37 @@ trajectory::PathSlopes SlopesOf(const kinematics::JointMotion& motion) {
   return slopes;
 }
 
-// Axes, then the tool along and about X, Y and Z of the world.
-trajectory::PathSlopes SlopesOf(const Context& c, const kinematics::JointMotion& motion,
-                                const path::MovingFrame& tool) {
+// Computes the share of each limit that the path may use: carriers use q_t of the velocity, q = q_s v + q_t, and
+// 2 q_st v + q_tt of the acceleration. An unsteady carrier may have to be braked together with the path: then the least
+// share over all axes and quantities holds for every one of them. A tool that boards takes its own part besides.
+void Reserve(const Context& c, const trajectory::PathSlopes& moving, const trajectory::PathSlopes& resting,
+             bool unsteady, const Boarding& boarding, trajectory::PathPoint& point) {
+  const trajectory::CoordinateLimits& limits = c.ahead.window.limits();
+  const auto left = [](double taken) { return 1 - std::min(taken, kMostReserve); };
+  for (int round = 0; round < kReserveRounds; ++round) {
+    const double speed = std::sqrt(trajectory::SquareAt(point, limits, 1));
+    double most = 0;
+    for (std::size_t k = 0; k < limits.count; ++k) {
+      const trajectory::CoordinateLimits::One& of = limits.of[k];
+      const double cross = 0.5 * (moving.second[k] - point.slopes.second[k] - resting.second[k]);
+      const double velocity = kBeltChange * std::abs(resting.first[k]) / of.velocity;
+      const double bend = kBeltChange * (2 * std::abs(cross) * speed + std::abs(resting.second[k])) / of.acceleration;
+      // Where the axes are not linear in the travel of the carrier, its part of the jerk is not known.
+      const double jerk = bend > kBends ? std::max(velocity, bend) : kBegins * velocity;
+      const double boards = boarding.acceleration * std::abs(resting.first[k]) / of.acceleration;
+      const double boards_jerk = boarding.jerk * std::abs(resting.first[k]) / of.jerk;
+      point.left[k] = {left(velocity), left(bend + kBegins * velocity + boards), left(jerk + boards_jerk)};
+      most = std::max({most, velocity, bend});
+      c.ahead.load = std::max(c.ahead.load, velocity);
+    }
+    if (unsteady) point.left.fill({left(most), left(most), left(most)});
+  }
+}
+
+}  // namespace
+
+trajectory::PathSlopes CoordinatesOf(const Context& c, const kinematics::JointMotion& motion,
+                                     const path::MovingFrame& tool) noexcept {
   trajectory::PathSlopes slopes = SlopesOf(motion);
   if (c.ahead.window.limits().count <= kMaxAxes) return slopes;
   const KDL::Rotation& world = c.mounting.base.M;
@@ -351,33 +379,6 @@ trajectory::PathSlopes SlopesOf(const Context& c, const kinematics::JointMotion&
   return slopes;
 }
 
-// Computes the share of each limit that the path may use: carriers use q_t of the velocity, q = q_s v + q_t, and
-// 2 q_st v + q_tt of the acceleration. An unsteady carrier may have to be braked together with the path: then the least
-// share over all axes and quantities holds for every one of them.
-void Reserve(const Context& c, const trajectory::PathSlopes& moving, const trajectory::PathSlopes& resting,
-             bool unsteady, trajectory::PathPoint& point) {
-  const trajectory::CoordinateLimits& limits = c.ahead.window.limits();
-  const auto left = [](double taken) { return 1 - std::min(taken, kMostReserve); };
-  for (int round = 0; round < kReserveRounds; ++round) {
-    const double speed = std::sqrt(trajectory::SquareAt(point, limits, 1));
-    double most = 0;
-    for (std::size_t k = 0; k < limits.count; ++k) {
-      const trajectory::CoordinateLimits::One& of = limits.of[k];
-      const double cross = 0.5 * (moving.second[k] - point.slopes.second[k] - resting.second[k]);
-      const double velocity = kBeltChange * std::abs(resting.first[k]) / of.velocity;
-      const double bend = kBeltChange * (2 * std::abs(cross) * speed + std::abs(resting.second[k])) / of.acceleration;
-      // Where the axes are not linear in the travel of the carrier, its part of the jerk is not known.
-      const double jerk = bend > kBends ? std::max(velocity, bend) : kBegins * velocity;
-      point.left[k] = {left(velocity), left(bend + kBegins * velocity), left(jerk)};
-      most = std::max({most, velocity, bend});
-      c.ahead.load = std::max(c.ahead.load, velocity);
-    }
-    if (unsteady) point.left.fill({left(most), left(most), left(most)});
-  }
-}
-
-}  // namespace
-
 kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& stretch, double way,
                             const kinematics::Joints& near, trajectory::PathPoint& point,
                             kinematics::JointMotion& motion) noexcept {
@@ -390,7 +391,8 @@ kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& str
   }
   const bool carried = IsCarried(c.ahead, stretch);
   const KinematicState along = {way, 1, 0}, resting = {way, 0, 0};
-  point.slopes = SlopesOf(c, motion, carried ? PredictedTool(c, stretch, along, true) : path::At(stretch.segment, way));
+  point.slopes =
+      CoordinatesOf(c, motion, carried ? PredictedTool(c, stretch, along, true) : path::At(stretch.segment, way));
   if (!carried) return reason;
   std::array<trajectory::PathSlopes, 2> with;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -399,9 +401,11 @@ kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& str
     kinematics::JointMotion moved;
     reason = AxesFor(c, s, stretch, tool, one, motion.position, moved);
     if (reason != kinematics::Reason::kNone) return reason;
-    with[i] = SlopesOf(c, moved, tool);
+    with[i] = CoordinatesOf(c, moved, tool);
   }
-  Reserve(c, with[0], with[1], IsUnsteady(c, stretch), point);
+  const Boarding& boarding = c.ahead.rides[stretch.to_ride % kRides].boarding;
+  const bool boards = boarding.on && stretch.begin + way - stretch.from < boarding.reach;
+  Reserve(c, with[0], with[1], IsUnsteady(c, stretch), boards ? boarding : Boarding{}, point);
   return reason;
 }
 
@@ -422,7 +426,7 @@ bool Foresee(const Context& c, const State& s, const KinematicState& along, doub
   kinematics::JointMotion motion;
   if (AxesFor(c, s, stretch, tool, way, near, motion) != kinematics::Reason::kNone) return false;
   std::copy(motion.position.begin(), motion.position.end(), positions.begin());
-  const trajectory::PathSlopes values = SlopesOf(c, motion, tool);
+  const trajectory::PathSlopes values = CoordinatesOf(c, motion, tool);
   velocities = values.first;
   accelerations = values.second;
   return true;

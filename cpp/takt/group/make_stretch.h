@@ -26,6 +26,11 @@ kinematics::Reason AxesFor(const Context& c, const State& s, const Stretch& stre
 std::uint64_t FailuresOn(const Context& c, const State& s, const Stretch& stretch, double way,
                          kinematics::Reason reason, const kinematics::Joints& near) noexcept;
 
+// Velocities and accelerations of all coordinates of LimitsOf: the axes, then the tool along and about X, Y and Z of
+// the world.
+trajectory::PathSlopes CoordinatesOf(const Context& c, const kinematics::JointMotion& motion,
+                                     const path::MovingFrame& tool) noexcept;
+
 // What a motion along the path asks of all coordinates of LimitsOf where it is carried, if that goes on as it does now.
 // `positions` of the place before, NaN: none. False: it is not carried there, or the axes cannot be so.
 bool Foresee(const Context& c, const State& s, const KinematicState& along, double ahead_s,

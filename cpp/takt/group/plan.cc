@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/group/ask.h"
+#include "takt/group/boarding.h"
 #include "takt/group/clutch.h"
 #include "takt/group/jog.h"
 #include "takt/group/join.h"
@@ -318,7 +319,9 @@ void Verify(const Context& c, int& budget, State& s) {
     NoteZones(c, s, motion.position, to, !p.verifying);
     c.ahead.near = motion.position;
     c.ahead.tried = point.slopes;
-    if (!p.verifying || p.step == full) c.ahead.build_up.Add(point, c.ahead.window.limits());
+    // Where boarding takes a part, accelerations build up as fast as behind that.
+    const bool boards = stretch.begin + to < c.ahead.rides[stretch.to_ride % kRides].boarding.reach && to < length;
+    if ((!p.verifying || p.step == full) && !boards) c.ahead.build_up.Add(point, c.ahead.window.limits());
     p.step = p.verifying ? std::min(full, 2 * p.step) : full;
     p.verified = to;
     p.verifying = true;
@@ -408,6 +411,9 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   }
   most = std::max(most, kLeastStep);
   double end = left < 1.5 * most ? stretch.end() : c.ahead.last.s + most;
+  // What boarding takes of the limits is free from there on.
+  const Boarding& boarding = c.ahead.rides[stretch.to_ride % kRides].boarding;
+  if (boarding.on && c.ahead.last.s < boarding.reach) end = std::min(end, boarding.reach);
   trajectory::PathPoint next;
   const auto bends = carried                       ? trajectory::HiddenBends::kIgnored
                      : c.params.path.planned_ahead ? trajectory::HiddenBends::kInJerk
@@ -600,6 +606,8 @@ void Plan(const Context& c, State& s) noexcept {
         }
         if (s.planning.move >= s.done + s.queue.count || c.ahead.cut_short) return;
         if (WaitsForTracking(s, MoveAt(s, s.planning.move))) return;
+        // It boards at the end of what is planned before it.
+        if (c.ahead.count > 0 && s.planning.move > s.done && MayBoard(c, s)) return;
         if (!Tries(s) && !HasRoom(c.ahead)) return;
         if (c.ahead.corner.open && !IsPath(s) && HasWorkspace(c, s)) {  // nothing waits for an answer
           c.ahead.corner.open = false;
@@ -619,6 +627,7 @@ void Plan(const Context& c, State& s) noexcept {
         if (!MayEnter(c, s)) return;
         break;
       case Stage::kJoin:
+        if (CanBoard(c, s) && Board(c, s)) break;  // it is planned anew from there
         budget -= Join(c, s);
         s.planning.joined = c.cycle.count;
         NextElement(c, s);
@@ -667,7 +676,7 @@ void Rehearse(const Context& c, const State& s) noexcept {
     const State& s;
   };
   const Owner owner{c, s};
-  if (s.velocity_factor < 1 || Slips(s) || c.ahead.keep_up.on || Jogs(s)) {
+  if (s.velocity_factor < 1 || WaitsForClutch(s) || c.ahead.keep_up.on || Jogs(s)) {
     c.ahead.delayed = true;
   } else if (c.ahead.delayed) {  // it comes later than was rehearsed
     c.ahead.delayed = false;
@@ -693,9 +702,14 @@ double TimeLeft(const Context& c, const State& s) noexcept {
     const bool known = s.begun && !s.ends && !s.interrupted && IsPlanned(c, s) && timing.Settles(end);
     return known ? c.cycle.period_s * static_cast<double>(timing.rest_cycles()) : kNotGiven;
   }
-  const std::uint64_t end = c.ahead.rehearsal.end_cycle();
-  const bool slowed = Jogs(s) || s.velocity_factor < 1 || s.ends || s.interrupted || Slips(s) || c.ahead.keep_up.on ||
-                      s.master.axis != 0;
+  std::uint64_t end = c.ahead.rehearsal.end_cycle();
+  const Boarding& boarding = c.ahead.rides[c.ahead.end_ride % kRides].boarding;
+  if (boarding.on && end > 0) {
+    const double cycles = std::ceil(boarding.apart.duration() / c.cycle.period_s);
+    end = std::max(end, boarding.begin - 1 + static_cast<std::uint64_t>(cycles));
+  }
+  const bool slowed = Jogs(s) || s.velocity_factor < 1 || s.ends || s.interrupted || WaitsForClutch(s) ||
+                      c.ahead.keep_up.on || s.master.axis != 0;
   if (!s.begun || slowed || !IsPlanned(c, s) || end == 0) return kNotGiven;
   return end > c.cycle.count ? static_cast<double>(end - c.cycle.count) * c.cycle.period_s : 0;
 }

@@ -138,8 +138,16 @@ Frame ReferenceOf(const Ride& ride) noexcept {
   return ride.reference_inverse.Inverse();
 }
 
+KinematicState ApartIn(const Context& c, const Ride& ride, double ahead_s) noexcept {
+  if (!ride.boarding.on) return {};
+  const double since_s = static_cast<double>(c.cycle.count + 1 - ride.boarding.begin) * c.cycle.period_s;
+  return ride.boarding.apart.At(since_s + ahead_s);
+}
+
 MovingFrame DisplacementOf(const Context& c, const Ride& ride, double ahead_s) noexcept {
-  return Displaced(ride, CarrierOf(c, ride.cargo, ahead_s));
+  kinematics::Carrier carrier = CarrierOf(c, ride.cargo, ahead_s);
+  carrier.travel.position += ApartIn(c, ride, ahead_s).position;
+  return Displaced(ride, carrier);
 }
 
 std::uint64_t RideTo(const Context& c, const Cargo& cargo, double arrival_s) noexcept {
@@ -153,6 +161,17 @@ std::uint64_t RideTo(const Context& c, const Cargo& cargo, double arrival_s) noe
   ride.speed = SpeedOf(c, cargo);
   ride.displaces = Moves(ride) || !KDL::Equal(ride.reference_inverse, Frame::Identity(), 0);
   return ahead.rides_end;
+}
+
+Ride RideAtRest(const Context& c, const Cargo& cargo, double travel) noexcept {
+  kinematics::Carrier carrier = CarrierOf(c, cargo);
+  carrier.travel = {travel, 0, 0};
+  Ride ride;
+  ride.cargo = cargo;
+  ride.reference_inverse =
+      kinematics::PoseOn(carrier, cargo.from, kinematics::ToFrame(cargo.lies)).GetFrame().Inverse();
+  ride.displaces = true;
+  return ride;
 }
 
 bool IsCarried(const LookAhead& ahead, const Stretch& stretch) noexcept {
@@ -196,7 +215,13 @@ MovingFrame PredictedTool(const Context& c, const Stretch& stretch, const Kinema
 
 MovingFrame ToolIn(const Context& c, const Stretch& stretch, const KinematicState& way, double ahead_s) noexcept {
   return ToolOn(c.ahead, stretch, way, [&](std::uint64_t number) {
-    return DisplacementOf(c, RideAt(c.ahead, number), std::max(ahead_s, 1e-9));
+    const Ride& ride = RideAt(c.ahead, number);
+    const double time_s = std::max(ahead_s, 1e-9);
+    kinematics::Carrier carrier = CarrierOf(c, ride.cargo, time_s);
+    const KinematicState apart = ApartIn(c, ride, time_s);
+    carrier.travel = {carrier.travel.position + apart.position, carrier.travel.velocity + apart.velocity,
+                      carrier.travel.acceleration + apart.acceleration};
+    return Displaced(ride, carrier);
   });
 }
 

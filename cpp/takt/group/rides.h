@@ -28,6 +28,8 @@ MovingFrame PlaceOf(const Context& c, const Cargo& cargo, double ahead_s = 0) no
 // else a new one, prepared in slot rides_end and not in use before the move is joined. `arrival_s`: time until the tool
 // is expected there [s].
 std::uint64_t RideTo(const Context& c, const Cargo& cargo, double arrival_s) noexcept;
+// Returns a ride on which the still world is the MCS with the carrier at this travel [mm or rad].
+Ride RideAtRest(const Context& c, const Cargo& cargo, double travel) noexcept;
 // Where its object lies in the still world.
 Frame ReferenceOf(const Ride& ride) noexcept;
 

@@ -12,6 +12,7 @@
 #include "takt/group/members.h"
 #include "takt/group/plan.h"
 #include "takt/group/queue.h"
+#include "takt/group/rides.h"
 #include "takt/group/rise.h"
 #include "takt/group/switches.h"
 #include "takt/group/sync.h"
@@ -150,7 +151,7 @@ double Braked(const Context& c, const trajectory::PathNode& node, const Brake& b
 double WishOf(const Context& c, State& s) {
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   if (!s.ends && !s.interrupted) {
-    if (Slips(s)) return SlowDown(c, s, Braked(c, node, {}, s));
+    if (WaitsForClutch(s)) return SlowDown(c, s, Braked(c, node, {}, s));
     if (Follows(c, s)) return SlowDown(c, s, WishOfMaster(c, s));
     const double own = node.at.limits.velocity;
     const double full = own < kUnlimited ? own : std::sqrt(node.own);  // as fast as the axes can
@@ -237,7 +238,9 @@ bool Advance(const Context& c, State& s) noexcept {
     // Behind a stop the next motion begins.
     const std::uint64_t next = s.pace.node + 1;
     const trajectory::PathWindow& window = c.ahead.window;
-    if (window[s.pace.node].stop && next + 1 < window.known() && window.swept() && !ToolLags(c, s)) {
+    const bool boards = s.pace.now.position == 0 && std::ranges::any_of(s.clutches, &Clutch::boards);
+    const bool waits = !boards && ToolLags(c, s);
+    if (window[s.pace.node].stop && next + 1 < window.known() && window.swept() && !waits) {
       trajectory::BeginAt(window, next, c.cycle.period_s, s.pace);
       const std::uint64_t move = c.ahead[c.ahead.first].move;
       BeginFollowing(c, MoveAt(s, move), move, s);
@@ -259,6 +262,12 @@ bool Advance(const Context& c, State& s) noexcept {
   WatchMaster(c, s);
   Forget(c, s);
   return true;
+}
+
+bool StandsAtEnd(const Context& c, const State& s) noexcept {
+  const trajectory::PathWindow& window = c.ahead.window;
+  const bool last = s.pace.node + 1 >= window.known();
+  return s.pace.raw_stands && last && window.swept() && c.ahead.sampling >= c.ahead.end();
 }
 
 bool Rests(const State& s) noexcept {
@@ -348,6 +357,26 @@ void SitOn(const Context& c, const Ride& ride, const path::Point& place, State& 
   s.begun = true;
   s.ends = s.lets_go = false;
   s.brake = {};
+}
+
+Clutch& SitDown(const Context& c, const Cargo& cargo, double travel, State& s) noexcept {
+  const End end = Present(c, s);
+  s.joints = end.joints;
+  if (s.begun) s.way_before += s.pace.now.position;
+  ForgetPlan(c, s);
+  path::Point place{end.tool, {}};
+  for (std::size_t k = c.kinematics->count; k < kMaxAxes; ++k) {
+    place.auxiliaries[k - c.kinematics->count] = end.joints[k];
+  }
+  c.ahead.window.SetLimits(LimitsOf(c, s));
+  SitOn(c, RideAtRest(c, cargo, travel), place, s);
+  s.clutches = {};
+  Clutch& clutch = s.clutches[0];
+  clutch.used = true;
+  clutch.ride = c.ahead.end_ride;
+  clutch.travel.position = travel;
+  if (s.state == GroupState::kStandby) Enter(GroupState::kMoving, s);
+  return clutch;
 }
 
 void GiveUpPath(const Context& c, const Brake& brake, bool lets_go, State& s) noexcept {

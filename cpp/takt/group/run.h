@@ -17,6 +17,9 @@ void BeginTiming(const Context& c, State& s) noexcept;
 // The next set points of the members; ends moves that are over. False: the axes cannot be there, nothing was set.
 bool Advance(const Context& c, State& s) noexcept;
 
+// At rest at the end of what is known of the path.
+bool StandsAtEnd(const Context& c, const State& s) noexcept;
+
 // At rest, with everything ended: nothing to do but what waits in the queue.
 bool Rests(const State& s) noexcept;
 
@@ -35,6 +38,9 @@ const Stretch* Here(const Context& c, const State& s) noexcept;
 bool IsOnRide(const Context& c, const State& s) noexcept;
 // It goes over from one ride to another.
 bool IsBetweenRides(const Context& c, const State& s) noexcept;
+// Sits down, where it stands, on a carrier whose travel is `travel` [mm or rad] as far as the tool is concerned.
+// Returns the clutch between them, which is not coupled.
+Clutch& SitDown(const Context& c, const Cargo& cargo, double travel, State& s) noexcept;
 // Forgets the path and stays where it is on the ride.
 void Sit(const Context& c, State& s) noexcept;
 // The same on another ride, at a place of its still world.

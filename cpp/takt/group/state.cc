@@ -63,6 +63,7 @@ void describe(Description<Clutch>& d) {
   d.internal<&Clutch::ride>("Number of the ride.");
   d.internal<&Clutch::travel>("Of the carrier, as far as the tool is concerned.");
   d.internal<&Clutch::catches_up>("The tool is on its way into step.");
+  d.internal<&Clutch::boards>("From rest, and the path goes on meanwhile.");
   d.internal<&Clutch::apart>("Of its travel from the carrier's, on that way.");
   d.internal<&Clutch::velocity>("Largest, of the travel.");
   d.internal<&Clutch::acceleration>("The same.");
@@ -121,6 +122,7 @@ void describe(Description<State>& d) {
   d.internal<&S::queue>("Moves.");
   d.internal<&S::done>("Moves that are over.");
   d.internal<&S::failed>("Number of the last move that was aborted or failed; 0: none.");
+  d.internal<&S::boards>("Number of the move for which the tool boards; 0: none.");
   d.internal<&S::active>("Ticket of the move in execution.");
   d.internal<&S::planning>("Planning.");
   d.internal<&S::pace>("Motion along the path.");

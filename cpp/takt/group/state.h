@@ -54,6 +54,7 @@ struct Clutch {
   std::uint64_t ride = 0;   // number of the ride
   KinematicState travel;    // mm or rad
   bool catches_up = false;  // the tool is on its way into step
+  bool boards = false;      // from rest, and the path goes on meanwhile (boarding.h)
   KinematicState apart;     // how far its travel is from the carrier's then, and how that changes
   // Of the travel.
   double velocity = 0;
@@ -160,6 +161,7 @@ struct State {
   Queue queue;               // [first] is the one planned or moved along now
   std::uint64_t done = 1;    // number of the move at queue.first
   std::uint64_t failed = 0;  // number of the last one before it that was aborted or failed; 0: none
+  std::uint64_t boards = 0;  // number of the one for which the tool boards, until it is active (boarding.h); 0: none
   Ticket active = 0;         // of the move in execution
   Planning planning;
   trajectory::PathPace pace;

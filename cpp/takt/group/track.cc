@@ -65,14 +65,11 @@ double TravelOfTool(const Track& track, const kinematics::Carrier& carrier, cons
 }
 
 // Sits down on the object's carrier; the clutch takes the tool along.
-void SitDown(const Context& c, const kinematics::Carrier& carrier, State& s) {
+void SitDownOnObject(const Context& c, const kinematics::Carrier& carrier, State& s) {
   const ErrorId error = TakeMembers(c, s);
   if (error != ErrorId::kNone) return EndTracking(c, FeedbackState::kError, error, s);
-  const End end = Present(c, s);
-  s.joints = end.joints;
   Track& track = s.track;
   Clutch clutch;
-  clutch.used = true;
   // Where it should begin, if that was passed just now.
   const double begin = track.cargo.from + track.sense * track.begin;
   const double passed = std::abs(carrier.travel.position - begin);
@@ -81,31 +78,17 @@ void SitDown(const Context& c, const kinematics::Carrier& carrier, State& s) {
   clutch.law_length = track.sense * track.in_distance;
   const bool given = track.in_distance > 0 && track.in_tool > 0;
   clutch.travel.position = given ? clutch.law_begin + clutch.law_length - track.sense * track.in_tool
-                                 : TravelOfTool(track, carrier, end.tool);
+                                 : TravelOfTool(track, carrier, Present(c, s).tool);
   clutch.law_from = clutch.travel.position;
   clutch.law_way = clutch.law_begin + clutch.law_length - clutch.law_from;
-  Ride ride;
-  ride.cargo = track.cargo;
-  kinematics::Carrier there = carrier;
-  there.travel = clutch.travel;
-  const Frame on = kinematics::ToFrame(track.cargo.lies);
-  ride.reference_inverse = kinematics::PoseOn(there, track.cargo.from, on).GetFrame().Inverse();
-  ride.displaces = true;
-  ForgetPlan(c, s);
-  path::Point place{end.tool, {}};
-  for (std::size_t k = c.kinematics->count; k < kMaxAxes; ++k) {
-    place.auxiliaries[k - c.kinematics->count] = end.joints[k];
-  }
-  c.ahead.window.SetLimits(LimitsOf(c, s));
-  SitOn(c, ride, place, s);
-  clutch.ride = c.ahead.end_ride;
+  Clutch& seated = SitDown(c, track.cargo, clutch.travel.position, s);
+  clutch.used = true;
+  clutch.ride = seated.ride;
+  seated = clutch;
   const Stretch& seat = c.ahead[c.ahead.first];
   SetLimits(LimitsAlong(c, s, seat, seat.from, clutch.ride, carrier.travel, kAhead_s * carrier.travel.velocity),
-            clutch);
-  s.clutches = {};
-  s.clutches[0] = clutch;
+            seated);
   track.started = track.boarded = true;
-  if (s.state == GroupState::kStandby) Enter(GroupState::kMoving, s);
 }
 
 void Wait(const Context& c, const kinematics::Carrier& carrier, State& s) {
@@ -126,7 +109,7 @@ void Wait(const Context& c, const kinematics::Carrier& carrier, State& s) {
       return EndMotion(c, {}, true, s);
     }
   }
-  SitDown(c, carrier, s);
+  SitDownOnObject(c, carrier, s);
 }
 
 Clutch* ClutchOf(const Context& c, State& s) {

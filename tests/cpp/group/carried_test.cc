@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "belts.h"
+#include "takt/trajectory/planner.h"
 
 namespace takt::group {
 namespace {
@@ -61,6 +62,55 @@ TEST(Carried, TakesAsLongAsAtRest) {
       }
     }
   }
+}
+
+// The least time [s] in which an axis gets from rest to a place that is `way` ahead and moves with `speed`, seen from
+// there: the profile is Ruckig's.
+double LeastTime(double way, double speed, const trajectory::Limits& axis) {
+  trajectory::Planner planner;
+  trajectory::Profile profile;
+  const trajectory::Bounds bounds = {axis.acceleration, axis.acceleration, axis.jerk};
+  EXPECT_FALSE(planner.ToPosition({-way, -speed, 0}, 0, axis.velocity + std::abs(speed), bounds, profile).failed());
+  return profile.duration();
+}
+
+// GR-42: reaching a place on a belt from rest, beside the least time of its axes.
+TEST(Carried, GetsOntoABeltFromRestNearlyAsFastAsItsAxes) {
+  const trajectory::Limits axis = {1500, 10000, 10000, 500000};
+  double sum = 0;
+  int count = 0;
+  for (const double speed : {50.0, -150.0, 300.0}) {
+    for (const auto& [dx, dy] : {std::pair{0.0, 20.0},
+                                 {0.0, 50.0},
+                                 {0.0, 200.0},
+                                 {50.0, 0.0},
+                                 {200.0, 0.0},
+                                 {-200.0, 0.0},
+                                 {100.0, 100.0},
+                                 {-50.0, 150.0}}) {
+      SCOPED_TRACE(testing::Message() << dx << ", " << dy << " on a belt at " << speed << " mm/s");
+      KinematicsParams gantry;
+      gantry.gantry.emplace().axes = {Coordinate::kX, Coordinate::kY, Coordinate::kZ};
+      const PathLimits free{.velocity = 4000, .acceleration = 60000, .deceleration = {}, .jerk = 3e6};
+      Rig rig = Machine(gantry, {"x", "y", "z"}, {}, free);
+      rig.StartAt({});
+      const auto belts = Put(rig, {BeltAt("belt", {}, [speed = speed](double t) { return Steady(t, speed); })});
+      const double now = static_cast<double>(rig.cycle.count) * rig.cycle.period_s * speed;
+      rig.RunToEnd(rig.Give(SetDynCoordTransform{.pcs = 1, .carrier = Name::Of("belt"), .recorded_position = now}));
+      rig.trace.clear();
+      const Ticket move = rig.Give(Line(dx, dy, 0, 1));
+      EXPECT_TRUE(rig.RunToEnd(move, 5));
+      EXPECT_TRUE(rig.lives[move].done);
+      ExpectSmooth(rig);
+      const double time = static_cast<double>(rig.trace.size()) * rig.cycle.period_s;
+      const double least = std::max(LeastTime(dx, speed, axis), LeastTime(dy, 0, axis));
+      std::cout << dx << ", " << dy << " on a belt at " << speed << " mm/s: " << time / least << " of the least time\n";
+      EXPECT_LE(time, 1.3 * least);
+      sum += time / least;
+      ++count;
+    }
+  }
+  EXPECT_LE(sum / count, 1.12);
 }
 
 }  // namespace

@@ -1,0 +1,251 @@
+"""GR-40, GR-42: a tool at rest gets onto belts and tables, whatever comes between."""
+
+from __future__ import annotations
+
+import os
+import random
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+import takt
+from takt.recording import Recording
+
+RUNS = 2000 if os.environ.get("TAKT_LONG") else 120
+ROOM = 1e-6  # of each limit
+
+
+class Robot(NamedTuple):
+    axes: tuple[str, ...]
+    limits: tuple[float, float, float]
+    kinematics: str
+    path: str
+    begin: dict[str, float]  # where the tool stands
+
+
+FREE = "{velocity: 4000, acceleration: 60000, jerk: 3000000}"
+ROBOTS = {
+    "gantry": Robot(
+        ("x", "y", "z"), (1500, 15000, 500000), "{gantry: {axes: [x, y, z]}}", FREE, {"x": 0, "y": 0, "z": 0}
+    ),
+    "delta": Robot(
+        ("a1", "a2", "a3"),
+        (800, 20000, 1e6),
+        "{delta: {base_radius: 200, platform_radius: 45, upper_arm: 235, lower_arm: 800}}",
+        FREE,
+        {"x": 0, "y": 0, "z": -880},
+    ),
+    "scara": Robot(
+        ("a1", "a2", "z", "c"),
+        (600, 6000, 200000),
+        "{scara: {first_arm: 325, second_arm: 275, height: 0}}",
+        "{velocity: 2000, acceleration: 20000, jerk: 600000}",
+        {"x": 400, "y": 0, "z": -50, "c": 0},
+    ),
+    "six axes": Robot(
+        ("a1", "a2", "a3", "a4", "a5", "a6"),
+        (300, 3000, 100000),
+        "{six_axis: {a1: 25, a2: -35, b: 0, c1: 400, c2: 455, c3: 420, c4: 80}}",
+        "{velocity: 1000, acceleration: 8000, jerk: 300000}",
+        {"x": 450, "y": 0, "z": 500, "a": 0, "b": 65, "c": 0},
+    ),
+}
+
+
+def machine(robot: Robot, extra: str = "") -> str:
+    """The robot, a belt and a table whose coordinate systems lie where its tool stands."""
+    velocity, acceleration, jerk = robot.limits
+    limits = f"{{velocity: {velocity}, acceleration: {acceleration}, jerk: {jerk}}}"
+    axes = "".join(f"  - {{name: g{name}, unit: mm, limits: {limits}}}\n" for name in robot.axes)
+    begin = robot.begin
+    at = f"{{x: {begin['x']}, y: {begin['y']}, z: {begin['z']}}}"
+    beside = f"{{x: {begin['x']}, y: {begin['y'] - 150}, z: {begin['z']}}}"
+    return (
+        f"name: cell\naxes:\n{axes}"
+        "  - {name: drive, unit: mm, limits: {velocity: 2000, acceleration: 5000, jerk: 100000}}\n"
+        "  - {name: disc, unit: deg, kind: rotary, limits: {velocity: 400, acceleration: 2000, jerk: 40000}}\n"
+        f"groups:\n  - name: robot\n    axes: [{', '.join('g' + name for name in robot.axes)}]\n"
+        f"    kinematics: {robot.kinematics}\n    path: {robot.path}\n{extra}"
+        f"belts:\n  - {{name: belt, axis: drive, origin: {at}}}\n"
+        f"  - {{name: table, kind: turning, axis: disc, origin: {beside}}}\n"
+    )
+
+
+class Cell:
+    """A robot at rest, and a belt or table at speed whose coordinate system 1 is recorded now."""
+
+    def __init__(self, name: str, carrier: str, speed: float, extra: str = "") -> None:
+        self.robot = ROBOTS[name]
+        self.engine = takt.Engine(machine(self.robot, extra))
+        self.group = self.engine.group("robot")
+        self.carrier = self.engine.axis({"belt": "drive", "table": "disc"}[carrier])
+        for axis in self.engine.axes.values():
+            axis.power().wait()
+        self.group.enable().wait()
+        self.group.move_direct_absolute(coordinate_system="mcs", **self.robot.begin).wait()
+        if speed:
+            direction: Any = "positive" if speed > 0 else "negative"
+            self.carrier.move_velocity(velocity=abs(speed), direction=direction).wait(until="reached")
+        self.group.set_dyn_coord_transform(pcs=1, carrier=carrier).wait()
+        # The tool as the object sees it.
+        self.here = (0.0, 150.0, 0.0) if carrier == "table" else (0.0, 0.0, 0.0)
+        self.recorder = self.engine.record()
+
+    def target(self, by: tuple[float, float, float]) -> dict[str, float]:
+        return {axis: here + step for axis, here, step in zip("xyz", self.here, by, strict=True)}
+
+    def line(self, by: tuple[float, float, float], **more: Any) -> takt.Feedback:
+        return self.group.move_linear_absolute(coordinate_system="pcs", pcs=1, **self.target(by), **more)
+
+    def judge(self) -> Recording:
+        """Stops recording, and holds all axes of the group against their limits."""
+        run = self.recorder.stop()
+        velocity, acceleration, jerk = (limit * (1 + ROOM) for limit in self.robot.limits)
+        for name in self.robot.axes:
+            made = run["g" + name]
+            assert np.max(np.abs(made["set_velocity"])) <= velocity, name
+            assert np.max(np.abs(made["set_acceleration"])) <= acceleration, name
+            assert np.max(np.abs(np.diff(made["set_acceleration"]))) / self.engine.period <= jerk, name
+            steps = np.diff(made["set_position"])
+            assert np.max(np.abs(steps)) <= velocity * self.engine.period * (1 + 1e-9), name
+        return run
+
+
+def off_target(run: Recording, cycle: int, target: dict[str, float]) -> float:
+    """How far [mm] the tool is from a place of the object in a cycle."""
+    robot = run["robot"]
+    row = int(np.searchsorted(robot["cycle"], cycle))
+    return max(abs(float(robot[f"object_{axis}"][row]) - place) for axis, place in target.items())
+
+
+def test_random_boardings_keep_all_limits() -> None:
+    """GR-40, GR-42: limits hold whatever comes between, and what is Done is on its place."""
+    done = 0
+    for seed in range(RUNS):
+        chance = random.Random(seed)
+        carrier = chance.choice(["belt", "belt", "table"])
+        fast = (20, 450) if carrier == "belt" else (5, 80)
+        cell = Cell(chance.choice(list(ROBOTS)), carrier, chance.choice([-1, 1]) * chance.uniform(*fast))
+        far = chance.choice([5, 30, 100])
+        by = (chance.uniform(-far, far), chance.uniform(-far, far), chance.uniform(-far, far))
+        slow = {"velocity": chance.uniform(50, 500), "acceleration": chance.uniform(1000, 5000)}
+        before = chance.random() < 0.3
+        if before:
+            cell.group.move_linear_relative(z=chance.uniform(-15, 15), velocity=200)
+        more: dict[str, Any] = slow if chance.random() < 0.3 else {}
+        move = cell.line(by, **more, **({"buffer_mode": "buffered"} if before else {}))
+        blended = chance.random() < 0.3
+        if blended:
+            cell.line(
+                (by[0] + 10, by[1] - 20, by[2]),
+                buffer_mode="blending_next",
+                transition_mode="corner_distance",
+                transition_parameter=5,
+            )
+        cell.engine.run(chance.choice([chance.uniform(0, 0.05), chance.uniform(0, 0.3)]))
+        event = chance.choice(
+            ["none", "halt", "stop", "interrupt", "slow", "override 0", "belt", "other", "belt halts"]
+        )
+        if event == "halt":
+            cell.group.halt()
+        elif event == "stop":
+            cell.group.stop()
+        elif event == "interrupt":
+            cell.group.interrupt()
+            cell.engine.run(chance.uniform(0, 0.3))
+            cell.group.continue_path()
+        elif event in ("slow", "override 0"):
+            cell.group.set_override(velocity_factor=chance.uniform(0.1, 0.9) if event == "slow" else 0)
+            cell.engine.run(chance.uniform(0, 0.3))
+            cell.group.set_override()
+        elif event == "belt":
+            cell.carrier.set_override(velocity_factor=chance.uniform(0.3, 0.9))
+        elif event == "other":
+            cell.group.move_linear_absolute(**{axis: cell.robot.begin[axis] for axis in "xyz"})
+        elif event == "belt halts":
+            cell.carrier.halt()
+        cell.engine.run(2.0)
+        run = cell.judge()
+        if move.done and not blended:
+            done += 1
+            assert off_target(run, move.cycle, cell.target(by)) < 1e-4, f"seed {seed}: {event}"
+        cell.engine.close()
+    assert done > RUNS / 3
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("carrier", ["belt", "table"])
+def test_a_tool_is_taken_along_at_once(name: str, carrier: str) -> None:
+    """GR-42: up from a carrier at speed takes about as long as from one that stands, and time_left says when."""
+    cycles = []
+    for speed in (0, 200 if carrier == "belt" else 40):
+        cell = Cell(name, carrier, speed)
+        start = cell.engine.cycle
+        move = cell.line((0, 0, 60)).wait()
+        run = cell.judge()
+        cycles.append(move.cycle - start)
+        assert off_target(run, move.cycle, cell.target((0, 0, 60))) < 1e-6
+    assert cycles[1] <= 1.15 * cycles[0]
+    robot = run["robot"]
+    known = np.flatnonzero(~np.isnan(robot["time_left"]))
+    ends = robot["cycle"][known] + np.round(robot["time_left"][known] / cell.engine.period)
+    assert len(known) > 10
+    assert np.all(ends == move.cycle)
+
+
+def test_time_left_counts_what_getting_into_step_takes() -> None:
+    """GR-42, GR-60: where that takes longer than the way, time_left is until the tool is in step."""
+    cell = Cell("gantry", "belt", 500)
+    move = cell.line((0, 12, 0)).wait()
+    robot = cell.judge()["robot"]
+    known = np.flatnonzero(~np.isnan(robot["time_left"]))
+    ends = robot["cycle"][known] + np.round(robot["time_left"][known] / cell.engine.period)
+    assert len(known) > 10
+    assert np.all(ends == move.cycle)
+
+
+def test_override_0_keeps_a_tool_where_it_is() -> None:
+    """GR-42: at override 0 a tool at rest is not taken along; later it gets there."""
+    cell = Cell("gantry", "belt", 200)
+    cell.group.set_override(velocity_factor=0)
+    move = cell.line((0, 50, 0))
+    cell.engine.run(0.5)
+    assert cell.group.pose[:3] == (0, 0, 0)
+    cell.group.set_override()
+    move.wait()
+    assert off_target(cell.judge(), move.cycle, cell.target((0, 50, 0))) < 1e-4
+
+
+def test_moves_before_it_are_done_first() -> None:
+    """GR-22, GR-42: a move from rest behind others, or behind one of no length, is carried out like any other."""
+    for way in (0.0, 30.0):
+        cell = Cell("gantry", "belt", 150)
+        first = cell.group.move_linear_absolute(z=way)
+        second = cell.line((0, 40, way), buffer_mode="buffered")
+        third = cell.line((20, 40, way), buffer_mode="buffered")
+        third.wait(timeout=3)
+        assert (first.done, second.done) == (True, True)
+        assert first.cycle <= second.cycle < third.cycle
+        run = cell.judge()
+        assert off_target(run, second.cycle, cell.target((0, 40, way))) < 1e-6
+        assert off_target(run, third.cycle, cell.target((20, 40, way))) < 1e-6
+
+
+@pytest.mark.parametrize("upper", [*range(196, 230, 3)])
+def test_a_place_that_leaves_the_range_is_refused_or_let_go(upper: int) -> None:
+    """GR-40, GR-42: near the end of an axis the move ends with error 3021, and the tool stands within the range."""
+    ends = f"{{name: gx, unit: mm, limits: {{lower: -1000, upper: {upper}, "
+    text = machine(ROBOTS["gantry"]).replace("{name: gx, unit: mm, limits: {", ends)
+    with takt.Engine(text) as engine:
+        group = engine.group("robot")
+        for axis in engine.axes.values():
+            axis.power().wait()
+        group.enable().wait()
+        engine.axis("drive").move_velocity(velocity=300).wait(until="reached")
+        group.set_dyn_coord_transform(pcs=1, carrier="belt").wait()
+        move = group.move_linear_absolute(x=100, y=150, z=0, coordinate_system="pcs", pcs=1, velocity=800).wait_final()
+        engine.run(1.0)
+        assert move.done or move.error_id == 3021
+        assert group.state is takt.GroupState.GROUP_STANDBY
+        assert engine.axis("gx").set_position <= upper
+        assert engine.axis("gx").set_velocity == 0
