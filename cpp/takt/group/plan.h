@@ -15,6 +15,9 @@ void Plan(const Context& c, State& s) noexcept;
 // Goes some way along the path ahead of the motion, and takes back what would be too much for the axes.
 void Rehearse(const Context& c, const State& s) noexcept;
 
+// The element of a path that is planned, from 1; 0: no path.
+std::uint32_t ElementOf(const State& s) noexcept;
+
 // Forgets everything that was planned.
 void ForgetPlan(const Context& c, State& s) noexcept;
 
