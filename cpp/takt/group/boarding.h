@@ -21,7 +21,7 @@ bool CanBoard(const Context& c, const State& s) noexcept;
 // Begins to board; the move is planned anew from there. False: the members cannot be controlled, nothing was changed.
 bool Board(const Context& c, State& s) noexcept;
 
-// Lets go again where the move was refused after all; once per cycle.
-void WatchBoarding(const Context& c, State& s) noexcept;
+// Lets go again: the move cannot be carried out so, and is planned from rest to go over along the path.
+void GiveUpBoarding(const Context& c, State& s) noexcept;
 
 }  // namespace takt::group

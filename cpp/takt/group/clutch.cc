@@ -95,12 +95,28 @@ KinematicState Sum(const KinematicState& a, const KinematicState& b) {
   return {a.position + b.position, a.velocity + b.velocity, a.acceleration + b.acceleration};
 }
 
-// The way into step a cycle later; nothing when it is there.
-KinematicState Closer(trajectory::Planner& planner, const KinematicState& carrier, const trajectory::Limits& limits,
-                      const KinematicState& apart, double period_s) {
+// The way into step, seen from the carrier: what that does by itself, and how coarsely it is measured, is no matter
+// then.
+Status ComeCloser(trajectory::Planner& planner, const KinematicState& carrier, const trajectory::Limits& limits,
+                  const KinematicState& apart, trajectory::Profile& out) {
+  const double toward = apart.position > 0 ? -1 : 1;
+  const double velocity = std::max(limits.velocity - toward * carrier.velocity, kLeastClosing * limits.velocity);
+  const double most = kCarriersOwn * limits.acceleration;
+  const double own = std::clamp(carrier.acceleration, -most, most);
+  const trajectory::Bounds bounds = {limits.acceleration - own, limits.acceleration + own, limits.jerk};
+  return planner.ToPosition(apart, 0, velocity, bounds, out);
+}
+
+// The same a cycle later; nothing when it is there.
+KinematicState Closer(const Context& c, const State& s, const Clutch& clutch, const KinematicState& carrier,
+                      const trajectory::Limits& limits) {
+  trajectory::Planner& planner = PlannerOf(c, s);
   trajectory::Profile profile;
-  if (ComeCloser(planner, carrier, limits, apart, profile).failed()) return apart;
-  return profile.duration() > period_s ? profile.At(period_s) : KinematicState{};
+  const bool boards = clutch.boards && carrier.acceleration == 0;
+  const Status status = boards ? ComeAboard(planner, carrier.velocity, limits, clutch.apart, profile)
+                               : ComeCloser(planner, carrier, limits, clutch.apart, profile);
+  if (status.failed()) return clutch.apart;
+  return profile.duration() > c.cycle.period_s ? profile.At(c.cycle.period_s) : KinematicState{};
 }
 
 void EndBoarding(const Context& c, Clutch& clutch) {
@@ -143,7 +159,7 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
   if (params.after_sync == AfterSync::kStay && !law) {
     if (!clutch.catches_up || jumps) clutch.apart = Less(clutch.travel, before);
     clutch.catches_up = true;
-    clutch.apart = Closer(planner, carrier, catching_up, clutch.apart, period);
+    clutch.apart = Closer(c, s, clutch, carrier, catching_up);
     clutch.coupled = clutch.apart == KinematicState{};
     if (clutch.coupled || jumps) EndBoarding(c, clutch);
     clutch.travel = clutch.coupled ? carrier : Sum(carrier, clutch.apart);
@@ -216,15 +232,12 @@ bool WaitsForClutch(const State& s) noexcept {
   return std::ranges::any_of(s.clutches, [](const Clutch& k) { return k.used && !k.coupled && !k.boards; });
 }
 
-Status ComeCloser(trajectory::Planner& planner, const KinematicState& carrier, const trajectory::Limits& limits,
+Status ComeAboard(trajectory::Planner& planner, double velocity, const trajectory::Limits& limits,
                   const KinematicState& apart, trajectory::Profile& out) noexcept {
-  // What the carrier does by itself, and how coarsely it is measured, is no matter then.
-  const double toward = apart.position > 0 ? -1 : 1;
-  const double velocity = std::max(limits.velocity - toward * carrier.velocity, kLeastClosing * limits.velocity);
-  const double most = kCarriersOwn * limits.acceleration;
-  const double own = std::clamp(carrier.acceleration, -most, most);
-  const trajectory::Bounds bounds = {limits.acceleration - own, limits.acceleration + own, limits.jerk};
-  return planner.ToPosition(apart, 0, velocity, bounds, out);
+  // Alike on both sides, so that the rest of the way is planned alike in each cycle.
+  const double closing = std::max(limits.velocity - std::abs(velocity), kLeastClosing * limits.velocity);
+  const trajectory::Bounds bounds = {limits.acceleration, limits.acceleration, limits.jerk};
+  return planner.ToPosition(apart, 0, closing, bounds, out);
 }
 
 bool ClutchesStand(const State& s) noexcept {

@@ -21,8 +21,8 @@ bool RidesFreely(const Context& c, const State& s) noexcept;
 bool Slips(const State& s) noexcept;
 // The same, and the path waits for that.
 bool WaitsForClutch(const State& s) noexcept;
-// The way into step, seen from the carrier, as it is now, from so far apart.
-Status ComeCloser(trajectory::Planner& planner, const KinematicState& carrier, const trajectory::Limits& limits,
+// The way into step, seen from a carrier at this constant velocity, from so far apart: of a tool that boards.
+Status ComeAboard(trajectory::Planner& planner, double velocity, const trajectory::Limits& limits,
                   const KinematicState& apart, trajectory::Profile& out) noexcept;
 // Nothing that was let go of moves on.
 bool ClutchesStand(const State& s) noexcept;

@@ -332,7 +332,6 @@ void Step(const Context& c, State& s) noexcept {
   if (plans && !Streams(s)) {
     if (!s.interrupted) StepTracking(c, s);
     if (!s.ends && !s.interrupted) Plan(c, s);
-    WatchBoarding(c, s);
     if (!s.begun && !s.ends && MayBegin(c)) BeginMotion(c, s);
   }
   if (Streams(s)) {

@@ -30,11 +30,12 @@ struct Boarding {
   bool on = false;
   std::uint64_t begin = 0;    // the cycle in which it begins
   trajectory::Profile apart;  // of the travel of the tool from the carrier's [mm or rad], from the cycle before on
-  // Acceleration and jerk of that, per velocity of the carrier [1/s, 1/s²]: so much of a coordinate's limits it takes,
-  // times the velocity at which the carrier takes the coordinate along, ...
-  double acceleration = 0;
-  double jerk = 0;
-  double reach = 0;  // ... before this place along the path [mm]: the path is not further when it ends
+  // What it takes of each coordinate at most, ...
+  trajectory::PathCoordinateValues velocity{};
+  trajectory::PathCoordinateValues acceleration{};
+  trajectory::PathCoordinateValues jerk{};
+  double faster = 1;  // the largest velocity of the tool's travel, of the carrier's
+  double reach = 0;   // ... before this place along the path [mm]: the path is not further when it ends
 };
 
 // What a path is carried by from some place on (rides.h).

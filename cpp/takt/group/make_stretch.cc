@@ -346,15 +346,16 @@ void Reserve(const Context& c, const trajectory::PathSlopes& moving, const traje
     for (std::size_t k = 0; k < limits.count; ++k) {
       const trajectory::CoordinateLimits::One& of = limits.of[k];
       const double cross = 0.5 * (moving.second[k] - point.slopes.second[k] - resting.second[k]);
-      const double velocity = kBeltChange * std::abs(resting.first[k]) / of.velocity;
-      const double bend = kBeltChange * (2 * std::abs(cross) * speed + std::abs(resting.second[k])) / of.acceleration;
+      const double own = kBeltChange * std::abs(resting.first[k]), own_bend = kBeltChange * std::abs(resting.second[k]);
+      const double velocity = std::max(own, boarding.velocity[k]) / of.velocity;
+      const double over = kBeltChange * boarding.faster * 2 * std::abs(cross) * speed;
+      const double bend = (over + std::max(own_bend, boarding.acceleration[k])) / of.acceleration;
       // Where the axes are not linear in the travel of the carrier, its part of the jerk is not known.
-      const double jerk = bend > kBends ? std::max(velocity, bend) : kBegins * velocity;
-      const double boards = boarding.acceleration * std::abs(resting.first[k]) / of.acceleration;
-      const double boards_jerk = boarding.jerk * std::abs(resting.first[k]) / of.jerk;
-      point.left[k] = {left(velocity), left(bend + kBegins * velocity + boards), left(jerk + boards_jerk)};
+      const double bends = (over + own_bend) / of.acceleration;
+      const double jerk = bends > kBends ? std::max(own / of.velocity, bends) : kBegins * own / of.velocity;
+      point.left[k] = {left(velocity), left(bend + kBegins * velocity), left(jerk + boarding.jerk[k] / of.jerk)};
       most = std::max({most, velocity, bend});
-      c.ahead.load = std::max(c.ahead.load, velocity);
+      c.ahead.load = std::max(c.ahead.load, own / of.velocity);
     }
     if (unsteady) point.left.fill({left(most), left(most), left(most)});
   }
@@ -403,9 +404,12 @@ kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& str
     if (reason != kinematics::Reason::kNone) return reason;
     with[i] = CoordinatesOf(c, moved, tool);
   }
-  const Boarding& boarding = c.ahead.rides[stretch.to_ride % kRides].boarding;
+  // One of them at most: it begins from rest.
+  const Boarding& from = c.ahead.rides[stretch.from_ride % kRides].boarding;
+  const Boarding& boarding = from.on ? from : c.ahead.rides[stretch.to_ride % kRides].boarding;
   const bool boards = boarding.on && stretch.begin + way - stretch.from < boarding.reach;
-  Reserve(c, with[0], with[1], IsUnsteady(c, stretch), boards ? boarding : Boarding{}, point);
+  static constexpr Boarding kNone{};
+  Reserve(c, with[0], with[1], IsUnsteady(c, stretch), boards ? boarding : kNone, point);
   return reason;
 }
 

@@ -96,6 +96,10 @@ void NextElement(const Context& c, State& s) {
 }
 
 void Refuse(const Context& c, ErrorId error, State& s) {
+  if (s.boards != 0 && s.boards == MoveAt(s, s.planning.move).ticket) {
+    GiveUpBoarding(c, s);
+    return BeginAgain(false, s);
+  }
   if (s.planning.tried && s.planning.element > 0) {
     c.ahead.cut_short = true;
     AbortBehind(c, s.planning.move, s);
@@ -422,6 +426,7 @@ void Plan(const Context& c, State& s) noexcept {
   while (budget > 0) {
     switch (s.planning.stage) {
       case Stage::kIdle:
+        if (s.ends) return;
         if (c.ahead.sampling < SampledTo(c, s)) {
           s.planning.stage = Stage::kSample;
           break;

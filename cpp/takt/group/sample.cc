@@ -75,7 +75,8 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   most = std::max(most, kLeastStep);
   double end = left < 1.5 * most ? stretch.end() : c.ahead.last.s + most;
   // What boarding takes of the limits is free from there on.
-  const Boarding& boarding = c.ahead.rides[stretch.to_ride % kRides].boarding;
+  const Boarding& from = c.ahead.rides[stretch.from_ride % kRides].boarding;
+  const Boarding& boarding = from.on ? from : c.ahead.rides[stretch.to_ride % kRides].boarding;
   if (boarding.on && c.ahead.last.s < boarding.reach) end = std::min(end, boarding.reach);
   trajectory::PathPoint next;
   const auto bends = carried                       ? trajectory::HiddenBends::kIgnored

@@ -122,8 +122,9 @@ void describe(Description<State>& d) {
   d.internal<&S::queue>("Moves.");
   d.internal<&S::done>("Moves that are over.");
   d.internal<&S::failed>("Number of the last move that was aborted or failed; 0: none.");
-  d.internal<&S::boards>("Number of the move for which the tool boards; 0: none.");
   d.internal<&S::active>("Ticket of the move in execution.");
+  d.internal<&S::boards>("Ticket of the move for which the tool boards.");
+  d.internal<&S::goes_over>("Ticket of a move for which it does not.");
   d.internal<&S::planning>("Planning.");
   d.internal<&S::pace>("Motion along the path.");
   d.internal<&S::guides>("In control of its members.");

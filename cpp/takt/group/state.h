@@ -161,8 +161,9 @@ struct State {
   Queue queue;               // [first] is the one planned or moved along now
   std::uint64_t done = 1;    // number of the move at queue.first
   std::uint64_t failed = 0;  // number of the last one before it that was aborted or failed; 0: none
-  std::uint64_t boards = 0;  // number of the one for which the tool boards, until it is active (boarding.h); 0: none
   Ticket active = 0;         // of the move in execution
+  Ticket boards = 0;         // of the move for which the tool has boarded (boarding.h); 0: none
+  Ticket goes_over = 0;      // of a move that could not be carried out so
   Planning planning;
   trajectory::PathPace pace;
   bool guides = false;        // the members go by the group's set points
