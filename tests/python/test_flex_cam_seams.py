@@ -313,6 +313,46 @@ def test_a_sequence_begins_wherever_a_linear_master_has_got_to(begin, velocity):
         assert peaks(rig.seconds(1.2), begin) == [10, 20, 30, 30]
 
 
+def largest_step_of_y(recording: Any) -> float:
+    return float(np.abs(np.diff(recording["m"]["mp06_y_to_slave_position"])).max())
+
+
+RISES = [rise(name, 100, height) for name, height in (("one", 10), ("two", 20), ("three", 30), ("four", 40))]
+RELATIVE = {"slave_absolute": False, "sync_mode": "absolute", "cam_sequence_mode": "cam1_cam3"}
+
+
+@pytest.mark.parametrize(
+    ("change", "to", "back"),
+    [
+        ({"when": "next_cycle"}, 220, 180),
+        ({"when": "next_cycle", "align": "velocity"}, 220, 80),
+        ({"when": "at_once"}, 150, 50),
+        ({"when": "cam_position", "position": 60}, 170, 50),
+        (None, 150, 50),
+    ],
+)
+def test_a_change_of_cam_ends_a_sequence_so_no_cam_before_it_comes_back(change, to, back):
+    """CAM-70, CAM-86: a master that reverses behind the change moves Y on without a step."""
+    with Rig(*RISES, settings=RELATIVE) as rig:
+        rig.module.control(cam_sequencer=True)
+        rig.module.control(sync_cam=True).wait_final()
+        rig.web.move_absolute(position=150, velocity=200).wait()
+        assert rig.module.cam_table == 3
+        if change:
+            rig.module.control(cam_sequencer=False)
+            feedback = rig.module.change_cam(cam_table=2, **change)
+            rig.web.move_absolute(position=to, velocity=200).wait()
+            assert feedback.wait_final().done
+        else:
+            rig.module.control(cam_table=2, cam_change_instant=True)
+            rig.engine.run(0.01)
+        assert rig.module.cam_table == 2
+        recorder = rig.engine.record()
+        rig.web.move_absolute(position=back, velocity=200).wait()
+        assert largest_step_of_y(recorder.stop()) < 0.2
+        assert rig.module.cam_table == (2 if change else 1)  # the sequencer is on and begins anew
+
+
 @pytest.mark.parametrize("velocity", [300, -300])
 def test_cams_that_meet_at_their_ends_are_changed_there(velocity):  # CAM-70
     with Rig(hill("a", 100, 500), hill("b", 60, 500), settings=AT_ONCE) as rig:

@@ -96,6 +96,12 @@ void Take(const SequenceStep& next, State& s) {
   s.way.profiler.cam = s.slots[next.slot - 1] - 1;
 }
 
+// A change of cam that is no step of a sequence ends the sequence, and X cannot go back to the cam before.
+void LeaveSequence(State& s) {
+  s.sequencer = {};
+  s.entry = {};
+}
+
 const PendingChange* Due(const State& s, ChangeWhen when) {
   return s.pending_count > 0 && s.pending[0].change.when == when ? &s.pending[0] : nullptr;
 }
@@ -125,6 +131,7 @@ bool ChangeHere(const Context& c, std::uint32_t slot, ChangeAlign align, double 
   const bool meets = align != ChangeAlign::kNothing || !s.settings.slave_absolute;
   p.base = meets ? was.y - ValueAt(to, p, x_before).y : zero;
   s.inputs.cam_table = slot;
+  LeaveSequence(s);
   return true;
 }
 
@@ -201,7 +208,6 @@ void TakeChanges(const Context& c, double x_before, State& s) {
   if (s.instant) {
     s.instant = false;
     ChangeHere(c, s.inputs.cam_table, ChangeAlign::kNothing, x_before, s);
-    s.sequencer = {};
   }
   while (s.pending_count > 0 && IsDue(c, s.pending[0], x_before, s)) {
     const ChangeCam change = s.pending[0].change;
@@ -259,6 +265,7 @@ bool TakePending(const Context& c, const Passed& passed, State& s) {
   } else {
     const bool relative = change.align == ChangeAlign::kPosition || !s.settings.slave_absolute;
     ChangeAtEnd(c, passed, {change.cam_table, s.settings.cam_cyclic}, relative, s);
+    LeaveSequence(s);
   }
   s.inputs.cam_table = change.cam_table;
   EndChange(c, FeedbackState::kDone, ErrorId::kNone, s);
@@ -345,6 +352,7 @@ std::optional<SequenceStep> AfterHeld(const Context& c, bool& meets, State& s) {
     s.inputs.cam_table = pending->change.cam_table;
     meets = meets || pending->change.align != ChangeAlign::kNothing;
     EndChange(c, FeedbackState::kDone, ErrorId::kNone, s);
+    LeaveSequence(s);
     return SequenceStep{s.inputs.cam_table, s.settings.cam_cyclic};
   }
   if (const std::optional<SequenceStep> next = FromHeld(SequencerOf(c, s), s.sequencer)) return next;
