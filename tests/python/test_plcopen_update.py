@@ -301,6 +301,36 @@ def test_a_cam_stays_where_it_is(s: takt.Engine, absolute: bool, change: str) ->
     assert block.Error or block.CommandAborted
 
 
+@pytest.mark.parametrize("modulus", [None, 360])
+@pytest.mark.parametrize("shift", [-50.0, 30.0])
+@pytest.mark.parametrize("scaling", [None, 1.0, 1.5])
+def test_a_cam_that_waits_keeps_its_phase(modulus: int | None, shift: float, scaling: float | None) -> None:
+    """AX-111: a change of MC_CamIn before the sync position does not move it by the phase."""
+    rotary = f", kind: rotary, modulus: {modulus}" if modulus else ""
+    machine = MACHINE.replace("{name: x,", f"{{name: x{rotary},")
+    with takt.Engine(machine) as s:
+        x, y = s.axis("x"), s.axis("y")
+        x.power().wait()
+        y.power().wait()
+        given = {"master": "x", "cam": "hill", "master_sync_position": 100, "master_start_distance": 20}
+        y.cam_in(**given)
+        y.phasing_absolute(phase_shift=shift).wait(until="active")
+        s.run(1.0)  # the shift is over
+        x.move_absolute(position=70 - shift).wait()  # with -50 behind the position, but for the phase
+        if scaling:
+            y.cam_in(**given, slave_scaling=scaling, update=True)
+        x.move_absolute(position=95 - shift).wait()
+        assert not y.in_step
+        x.move_absolute(position=130 - shift).wait()
+        s.run(0.5)
+        assert y.in_step
+        assert y.set_position == pytest.approx(20 * (scaling or 1) * _law((130 % 120) / 60), abs=1e-6)
+
+
+def _law(share: float) -> float:
+    return share**3 * (10 - 15 * share + 6 * share**2)
+
+
 @pytest.mark.parametrize(
     ("block_of", "inputs", "changes"),
     [
