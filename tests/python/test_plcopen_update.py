@@ -301,6 +301,35 @@ def test_a_cam_stays_where_it_is(s: takt.Engine, absolute: bool, change: str) ->
     assert block.Error or block.CommandAborted
 
 
+@pytest.mark.parametrize("sync", [{}, {"MasterSyncPosition": 30.0}])
+@pytest.mark.parametrize("at", [25.0, 275.0, -410.0])
+def test_a_cam_of_another_length_counts_from_the_zero_of_its_master(s: takt.Engine, at: float, sync: Any) -> None:
+    """AX-111: in each cycle of an absolute cam the slave is where a new block puts it."""
+    x, y = s.axis("x"), s.axis("y")
+    x.move_absolute(position=at - 50).wait()
+    if sync:
+        x.move_absolute(position=0).wait()
+    block = MC_CamIn(y, Master=x, CamTableID=SelectedCam("hill", None, True, True), ContinuousUpdate=True, **sync)
+    run(s, block, 0.1)
+    x.move_absolute(position=60 if sync else at)
+    run(s, block, 4)
+    x.move_absolute(position=at)
+    run(s, block, 4)
+    places = []
+    for scaling in (1.0, 1.25, 1.0):
+        run(s, block, 1, MasterScaling=scaling)
+        assert block.InSync
+        places.append(y.set_position)
+    again = MC_CamIn(y, Master=x, CamTableID=SelectedCam("hill", None, True, True))
+    for scaling, place in zip((1.0, 1.25), places, strict=False):
+        again(Execute=False)
+        run(s, again, 1, MasterScaling=scaling)
+        assert again.InSync
+        assert y.set_position == pytest.approx(place)
+    assert places[2] == pytest.approx(places[0])
+    assert abs(places[1] - places[0]) > 1
+
+
 @pytest.mark.parametrize("modulus", [None, 360])
 @pytest.mark.parametrize("shift", [-50.0, 30.0])
 @pytest.mark.parametrize("scaling", [None, 1.0, 1.5])

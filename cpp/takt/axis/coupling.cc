@@ -518,7 +518,11 @@ void UpdateCam(const Context& c, const Request& r, State& s) noexcept {
   const double cycle = WholeCycles(was, k.cam, place);
   const double begin = k.cam.master + cycle * was.way();  // of the cycle that the master is in
   if (fixed) {
-    const double zero = begin - (was.table.begin() - (k.law.master_offset - offset)) / was.ratio;
+    // Cycles of another length are counted from the master's zero, as BeginCam does; of the same length, from any.
+    const std::uint32_t its = k.law.terms[0].master;
+    const double zero = law.periodic && law.ratio != was.ratio
+                            ? place - ReportedOf(c, its, place - OriginOf(c, its))
+                            : begin - (was.table.begin() - (k.law.master_offset - offset)) / was.ratio;
     k.cam.master = zero + (law.table.begin() - k.law.master_offset) / law.ratio;
     BeginCycles(law, place, k.cam);
     k.cam.master -= cycle * law.way();
