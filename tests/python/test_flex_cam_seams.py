@@ -318,6 +318,7 @@ def largest_step_of_y(recording: Any) -> float:
 
 
 RISES = [rise(name, 100, height) for name, height in (("one", 10), ("two", 20), ("three", 30), ("four", 40))]
+ONCE = [rise(name, length, height, end_v=0) for name, length, height in (("a", 100, 10), ("b", 60, 20), ("c", 100, 30))]
 RELATIVE = {"slave_absolute": False, "sync_mode": "absolute", "cam_sequence_mode": "cam1_cam3"}
 
 
@@ -351,6 +352,35 @@ def test_a_change_of_cam_ends_a_sequence_so_no_cam_before_it_comes_back(change, 
         rig.web.move_absolute(position=back, velocity=200).wait()
         assert largest_step_of_y(recorder.stop()) < 0.2
         assert rig.module.cam_table == (2 if change else 1)  # the sequencer is on and begins anew
+
+
+@pytest.mark.parametrize("then", ["next_cycle", "sequencer"])
+def test_a_cam_that_is_over_where_it_is_taken_is_held(then):
+    """CAM-70: X is beyond the end of the shorter cam, so what follows begins where X is, not at that end."""
+    with Rig(*ONCE, settings={**RELATIVE, "cam_cyclic": False}) as rig:
+        rig.module.control(sync_cam=True).wait_final()
+        rig.web.move_absolute(position=80, velocity=100).wait()
+        held = rig.knife.set_position
+        recorder = rig.engine.record()
+        rig.module.change_cam(cam_table=2, when="at_once")
+        if then == "next_cycle":
+            rig.module.change_cam(cam_table=3, when="next_cycle", align="position")
+        else:
+            rig.module.control(cam_sequencer=True)
+        rig.engine.run(0.05)
+        assert rig.module.cam_table == (3 if then == "next_cycle" else 1)
+        assert rig.knife.set_position == pytest.approx(held)
+        rig.web.move_velocity(velocity=100)
+        rig.engine.run(0.3)
+        assert largest_step_of_y(recorder.stop()) < 0.1
+    with Rig(*ONCE, settings={**RELATIVE, "cam_cyclic": False}) as rig:  # the cam is as far behind as its end
+        rig.module.control(sync_cam=True).wait_final()
+        rig.web.move_absolute(position=80, velocity=100).wait()
+        rig.module.change_cam(cam_table=2, when="at_once").wait_final()
+        rig.web.move_absolute(position=61, velocity=100).wait()
+        assert rig.knife.set_position == pytest.approx(held)
+        rig.web.move_absolute(position=0, velocity=100).wait()
+        assert rig.knife.set_position == pytest.approx(held - 20)
 
 
 @pytest.mark.parametrize("velocity", [300, -300])

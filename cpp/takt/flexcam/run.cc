@@ -128,6 +128,7 @@ bool ChangeHere(const Context& c, std::uint32_t slot, ChangeAlign align, double 
   const bool cyclic = IsOpen(TableOf(c, s)) ? s.settings.cam_cyclic : !p.once;
   Take({slot, true}, s);
   Lay(to, x_before, x, RunsOnce(c, cyclic, s), p);
+  if (p.once) GoOn(to, x_before, p);  // X may be outside the other cam: its end is held
   const bool meets = align != ChangeAlign::kNothing || !s.settings.slave_absolute;
   p.base = meets ? was.y - ValueAt(to, p, x_before).y : zero;
   s.inputs.cam_table = slot;
