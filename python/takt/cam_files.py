@@ -35,7 +35,12 @@ ALIASES = {
     "v": {"v", "dv", "velocity", "slavevelo", "slavevelocity", "y'"},
     "a": {"a", "da", "acceleration", "slaveacc", "slaveacceleration", "y''"},
     "law": {"functiontype", "segmenttype"},
+    "type": {"pointtype"},
+    "ignored": {"ignored"},
 }
+TEXTS = ("law", "type", "ignored")  # fields that are no numbers
+# Points that TwinCAT leaves out: of the type MOTIONPOINTTYPE_IGNORE, 0, and those of MC3 with Ignored := TRUE.
+IGNORED = {"type": {"ignore", "0"}, "ignored": {"true", "1"}}
 # Functions of TwinCAT and CODESYS between two points, by name or number.
 LAWS = {
     **dict.fromkeys(("polynom1", "1", "line"), "line"),
@@ -82,6 +87,7 @@ def read(
         content.read_code(code)
     else:
         content.read_columns(text, columns)
+    content.leave_out_ignored()
     content.tell()
     units = {"x_unit": x_unit or content.units.get("x", "u"), "y_unit": y_unit or content.units.get("y", "u")}
     head = {"name": name or path.stem, "cyclic": cyclic, **units}
@@ -120,6 +126,13 @@ class _Content:
             self._add(None, f"expected 2 to 100,000 points, found {len(self.rows)}")
         if self._wrong:
             raise ConfigError(self._wrong)
+
+    def leave_out_ignored(self) -> None:
+        """A type of 0 of every point means that the file gives no types."""
+        if all(row.get("type", "0") == "0" for row in self.rows):
+            for row in self.rows:
+                row.pop("type", None)
+        self.rows = [row for row in self.rows if not _is_ignored(row)]
 
     def placed(self, problem: str) -> str:
         """What is wrong with the cam, with its place in the file."""
@@ -223,7 +236,7 @@ class _Content:
         row: Row = {"line": line}
         for key, k in places.items():
             text = cells[k] if k < len(cells) else ""
-            if key == "law":
+            if key in TEXTS:
                 row[key] = text
             elif text or key in "xy":
                 row[key] = self._number(text, key, line, decimal_comma)
@@ -254,19 +267,22 @@ class _Content:
             for key, field in places.items():
                 if field:
                     value = fields[field]
-                    row[key] = value if key == "law" else self._number(value, field, line, False)
+                    row[key] = value if key in TEXTS else self._number(value, field, line, False)
             self.rows.append(row)
             begins.append(at)
         points = "(dX := ..., dY := ...) or (MasterPos := ..., SlavePos := ...)"
         read = set(begins)
         rest = _STRUCT.sub(lambda match: _blank(match[0]) if match.start() in read else match[0], code)
-        for match in itertools.islice(_POSITION.finditer(rest), ERRORS):
-            found = " ".join(rest[match.start(1) : match.start(1) + 40].split())
-            self._add(_line(rest, match.start(1)), f"expected {points}, found '{found}'")
+        odd = {match.start(1) for match in itertools.islice(_POSITION.finditer(rest), ERRORS)}
         for array in _STRUCTS.finditer(code):
             count = bisect_left(begins, array.end(2)) - bisect_left(begins, array.start(2))
             if count:
                 self._check_count(array[1], count, _line(code, array.start()))
+                lacking = itertools.islice(_STRUCT.finditer(rest, *array.span(2)), ERRORS)
+                odd |= {match.start(1) for match in lacking if not _POSITION.search(match[0])}
+        for at in sorted(odd):
+            found = " ".join(rest[at : at + 40].split())
+            self._add(_line(rest, at), f"expected {points}, found '{found}'")
         if not self.rows:
             self._add(None, f"expected {points}, found neither")
 
@@ -355,6 +371,10 @@ class _Content:
         if law is None:
             self._add(row["line"], f"expected one of the functions {', '.join(LAWS)}, found {given!r}")
         return law or "quintic"
+
+
+def _is_ignored(row: Row) -> bool:
+    return any(str(row.get(key, "")).lower().rpartition("type_")[2] in names for key, names in IGNORED.items())
 
 
 def _code(text: str) -> str:

@@ -163,6 +163,27 @@ def test_twincat_motion_functions_become_laws(tmp_path, text):  # CAM-92
         assert np.allclose(got, wanted, atol=1e-12)
 
 
+IGNORED = {
+    "type": """c : ARRAY[0..2] OF MC_MotionFunctionPoint := [
+  (FunctionType := 1, PointType := MOTIONPOINTTYPE_REST, MasterPos := 0, SlavePos := 0),
+  (FunctionType := 5, PointType := MOTIONPOINTTYPE_IGNORE, MasterPos := 50, SlavePos := 99),
+  (FunctionType := 1, PointType := MOTIONPOINTTYPE_REST, MasterPos := 100, SlavePos := 10)];""",
+    "MC3": """c : ARRAY[1..3] OF MotionFunctionPoint := [
+  (FunctionType := 1, MasterPosition := 0, SlavePosition := 0),
+  (FunctionType := 5, MasterPosition := 50, SlavePosition := 99, Ignored := TRUE),
+  (FunctionType := 1, MasterPosition := 100, SlavePosition := 10, Ignored := FALSE)];""",
+    "columns": "FunctionType;PointType;MasterPos;SlavePos\n1;1;0;0\n5;0;50;99\n1;1;100;10\n",
+}
+
+
+@pytest.mark.parametrize("text", IGNORED.values(), ids=IGNORED.keys())
+def test_points_that_twincat_ignores_are_left_out(tmp_path, text):
+    """CAM-92: the function before an ignored point leads to the point behind it."""
+    file = tmp_path / "mf.txt"
+    file.write_text(text)
+    assert np.allclose(Table.from_file(file).at(np.array([0.0, 25, 50, 100])).y, [0, 2.5, 5, 10])
+
+
 def test_twincat_cnc_tables_close_over_a_turn(tmp_path):  # CAM-92
     file = tmp_path / "sine.tab"
     values = [10 * math.sin(2 * math.pi * k / 36) for k in range(36)]
@@ -208,6 +229,8 @@ def test_twincat_cnc_tables_close_over_a_turn(tmp_path):  # CAM-92
          ":1: ARRAY[0..3]: expected 4 points, found 3"),
         ("c : ARRAY[1..3] OF SMC_CAMXYVA := [(dX := 0, dY := 0),\n(dX := 9, dY := 1)];", None,
          ":1: ARRAY[1..3]: expected 3 points, found 2"),
+        ("c : ARRAY[0..LAST] OF SMC_CAMXYVA := [(dV := 0, dA := 0),\n(dX := 9, dY := 1),\n(dX := 18, dY := 2)];", None,
+         ":1: expected (dX := ..., dY := ...) or (MasterPos := ..., SlavePos := ...), found 'dV := 0, dA := 0)"),
         ("(dX := 0, dY := 0),\n(* (dX := 9, dY := 1)", None, ":2: the comment has no end: expected *)"),
         ("a: ARRAY[0..0, 0..1] OF REAL := [0, 0];\nb: ARRAY[0..0, 0..1] OF REAL := [1, 1];", None,
          ":2: expected one table of positions, found another one in line 1"),
