@@ -44,9 +44,9 @@ IGNORED = {"type": {"ignore", "0"}, "ignored": {"true", "1"}}
 # Functions of TwinCAT and CODESYS between two points, by name or number.
 LAWS = {
     **dict.fromkeys(("polynom1", "1", "line"), "line"),
-    **dict.fromkeys(("polynom5", "5", "poly5"), "quintic"),
-    **dict.fromkeys(("sinusline", "10", "inclinedsine"), "cycloid"),
-    **dict.fromkeys(("modsinusline", "11", "modifiedsine"), "modified_sine"),
+    **dict.fromkeys(("polynom5", "5", "poly5", "polynom5mm", "15"), "quintic"),
+    **dict.fromkeys(("sinuslinie", "10", "inclinedsine"), "cycloid"),
+    **dict.fromkeys(("modsinuslinie", "11", "modifiedsine"), "modified_sine"),
     **dict.fromkeys(("beschltrapez", "13"), "modified_trapezoid"),
 }
 _STRUCT = re.compile(r"\(([^()]*:=[^()]*)\)")

@@ -130,7 +130,7 @@ def test_codesys_polynomials_are_those_of_codesys(tmp_path):  # CAM-92: its defa
 
 
 TWINCAT = """
-  (PointIndex := 1, FunctionType := MOTIONFUNCTYPE_MODSINUSLINE, MasterPos := 0, SlavePos := 0, SlaveVelo := 0),
+  (PointIndex := 1, FunctionType := MOTIONFUNCTYPE_MODSINUSLINIE, MasterPos := 0, SlavePos := 0, SlaveVelo := 0),
   (PointIndex := 2, FunctionType := MOTIONFUNCTYPE_POLYNOM1, MasterPos := 90, SlavePos := 40),
   (PointIndex := 3, FunctionType := MOTIONFUNCTYPE_POLYNOM5, MasterPos := 150, SlavePos := 40, SlaveVelo := 0),
   (PointIndex := 4, FunctionType := MOTIONFUNCTYPE_POLYNOM1, MasterPos := 270, SlavePos := 10, SlaveVelo := -0.2),
@@ -161,6 +161,29 @@ def test_twincat_motion_functions_become_laws(tmp_path, text):  # CAM-92
     x = np.linspace(0, 300, 1001)
     for got, wanted in zip(table.at(x), own.at(x), strict=True):
         assert np.allclose(got, wanted, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("function", "number", "law"),
+    [
+        ("SINUSLINIE", 10, "cycloid"),
+        ("MODSINUSLINIE", 11, "modified_sine"),
+        ("BESCHLTRAPEZ", 13, "modified_trapezoid"),
+        ("POLYNOM5_MM", 15, "polynomial_345"),
+    ],
+)
+def test_twincat_functions_by_name_and_number(tmp_path, function, number, law):
+    """CAM-92: the members of MC_MotionFunctionType."""
+    own = Table.from_segments([{"to": {"x": 100, "y": 10}, "law": law}])
+    file = tmp_path / "mf.txt"
+    x = np.linspace(0, 100, 101)
+    for name in (f"MOTIONFUNCTYPE_{function}", f"MC_MotionFunctionType.MOTIONFUNCTYPE_{function}", number):
+        ends = "SlaveVelo := 0, SlaveAcc := 0"
+        file.write_text(
+            f"(FunctionType := {name}, MasterPos := 0, SlavePos := 0, {ends}),\n"
+            f"(FunctionType := {name}, MasterPos := 100, SlavePos := 10, {ends})"
+        )
+        assert np.allclose(Table.from_file(file).at(x).y, own.at(x).y, atol=1e-12)
 
 
 IGNORED = {
