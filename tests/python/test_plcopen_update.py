@@ -330,6 +330,27 @@ def test_a_cam_of_another_length_counts_from_the_zero_of_its_master(s: takt.Engi
     assert abs(places[1] - places[0]) > 1
 
 
+@pytest.mark.parametrize("distance", [None, 10.0])
+@pytest.mark.parametrize(("at", "sync"), [(60.0, 30.0), (25.0, 30.0), (275.0, 30.0), (-410.0, 30.0), (150.0, 90.0)])
+def test_a_relative_cam_of_another_length_counts_from_its_sync_position(
+    s: takt.Engine, at: float, sync: float, distance: float | None
+) -> None:
+    """AX-111: in each cycle the slave is where the cam is that begins at the sync position."""
+    x, y = s.axis("x"), s.axis("y")
+    given = {"MasterSyncPosition": sync} | ({} if distance is None else {"MasterStartDistance": distance})
+    block = MC_CamIn(y, Master=x, CamTableID=SelectedCam("hill", None, False, True), ContinuousUpdate=True, **given)
+    run(s, block, 0.1)
+    x.move_absolute(position=sync + 10)
+    run(s, block, 3)
+    x.move_absolute(position=at)
+    run(s, block, 4)
+    for scaling in (1.0, 1.25, 1.0001, 1.0):
+        run(s, block, 1, MasterScaling=scaling)
+        assert block.InSync
+        u = 1 - abs((at - sync) * scaling % 120 / 60 - 1)
+        assert y.set_position == pytest.approx(20 * u**3 * (10 - 15 * u + 6 * u * u), abs=1e-6)
+
+
 @pytest.mark.parametrize("modulus", [None, 360])
 @pytest.mark.parametrize("shift", [-50.0, 30.0])
 @pytest.mark.parametrize("scaling", [None, 1.0, 1.5])

@@ -507,7 +507,8 @@ void UpdateCam(const Context& c, const Request& r, State& s) noexcept {
   if (k.joining == Joining::kWaiting) return CoupleAgain(c, r, s);  // it has not begun yet
   const CamLaw was = CamOf(c, s.active);
   const CamLaw law = CamOf(c, r);
-  const bool fixed = k.law.master_absolute || k.law.at_sync_position;  // x counts from a place of the master
+  const bool absolute = k.law.master_absolute;
+  const bool fixed = absolute || k.law.at_sync_position;  // x counts from a place of the master
   const double offset = r.coupling.master_offset - k.law.master_offset;
   const double slave_offset = r.table.offset - s.active.table.offset;
   Grant(c, r, s);
@@ -518,12 +519,16 @@ void UpdateCam(const Context& c, const Request& r, State& s) noexcept {
   const double cycle = WholeCycles(was, k.cam, place);
   const double begin = k.cam.master + cycle * was.way();  // of the cycle that the master is in
   if (fixed) {
-    // Cycles of another length are counted from the master's zero, as BeginCam does; of the same length, from any.
+    // Cycles of another length are counted from the master's zero, those of a relative cam from its sync position, as
+    // BeginCam does; of the same length, from any.
     const std::uint32_t its = k.law.terms[0].master;
-    const double zero = law.periodic && law.ratio != was.ratio
+    const bool other_length = law.periodic && law.ratio != was.ratio;
+    const double zero = other_length && k.law.master_absolute
                             ? place - ReportedOf(c, its, place - OriginOf(c, its))
                             : begin - (was.table.begin() - (k.law.master_offset - offset)) / was.ratio;
     k.cam.master = zero + (law.table.begin() - k.law.master_offset) / law.ratio;
+    if (other_length && !absolute && !k.law.master_absolute)
+      k.cam.master = k.master_sync - k.law.master_offset / law.ratio;
     BeginCycles(law, place, k.cam);
     k.cam.master -= cycle * law.way();
   } else {
