@@ -35,13 +35,18 @@ ALIASES = {
     "v": {"v", "dv", "velocity", "slavevelo", "slavevelocity", "y'"},
     "a": {"a", "da", "acceleration", "slaveacc", "slaveacceleration", "y''"},
     "law": {"functiontype", "segmenttype"},
+    "type": {"pointtype"},
+    "ignored": {"ignored"},
 }
+TEXTS = ("law", "type", "ignored")  # fields that are no numbers
+# Points that TwinCAT leaves out: of the type MOTIONPOINTTYPE_IGNORE, 0, and those of MC3 with Ignored := TRUE.
+IGNORED = {"type": {"ignore", "0"}, "ignored": {"true", "1"}}
 # Functions of TwinCAT and CODESYS between two points, by name or number.
 LAWS = {
     **dict.fromkeys(("polynom1", "1", "line"), "line"),
-    **dict.fromkeys(("polynom5", "5", "poly5"), "quintic"),
-    **dict.fromkeys(("sinusline", "10", "inclinedsine"), "cycloid"),
-    **dict.fromkeys(("modsinusline", "11", "modifiedsine"), "modified_sine"),
+    **dict.fromkeys(("polynom5", "5", "poly5", "polynom5mm", "15"), "quintic"),
+    **dict.fromkeys(("sinuslinie", "10", "inclinedsine"), "cycloid"),
+    **dict.fromkeys(("modsinuslinie", "11", "modifiedsine"), "modified_sine"),
     **dict.fromkeys(("beschltrapez", "13"), "modified_trapezoid"),
 }
 _STRUCT = re.compile(r"\(([^()]*:=[^()]*)\)")
@@ -171,11 +176,13 @@ class _Content:
             for k in places.values()
             if k < len(row)
         )
-        for line, row in cells:
+        texts = [{key: row[k] if k < len(row) else "" for key, k in places.items()} for _, row in cells]
+        ignored = _ignored(texts)
+        for k, (line, row) in enumerate(cells):
             if sentence := surplus(row, width):
                 self._add(line, sentence)
-            else:
-                self._take(line, row, places, decimal_comma)
+            elif not ignored[k]:
+                self._take(line, texts[k], decimal_comma)
         return None
 
     def _places(
@@ -190,12 +197,7 @@ class _Content:
                 return dict(zip("xyva", range(width), strict=False))
             self._add(None, f"expected the columns x, y and perhaps v, a, found {width}: say which with columns")
             return None
-        found: dict[str, int] = {}
-        for k, title in enumerate(header):
-            plain = re.sub(r"[\[(].*|[^a-z']", "", title.lower())
-            for key, names in ALIASES.items():
-                if plain in names:
-                    found.setdefault(key, k)
+        found = _titled(header)
         if not {"x", "y"} <= found.keys():
             titles = ", ".join(f"'{title}'" for title in header)
             self._add(None, f"expected columns for x and y, found {titles}: say which with columns")
@@ -204,7 +206,7 @@ class _Content:
 
     def _chosen(self, header: list[str] | None, width: int, columns: Mapping[str, str | int]) -> dict[str, int] | None:
         titles = [title.lower() for title in header or []]
-        found: dict[str, int] = {}
+        found = {key: k for key, k in _titled(header or []).items() if key in IGNORED}
         for key, column in columns.items():
             if key not in ("x", "y", "v", "a"):
                 self._add(None, f"columns: expected x, y, v or a, found {key!r}")
@@ -219,11 +221,10 @@ class _Content:
             self._add(None, "columns: expected x and y at least")
         return None if self._wrong else found
 
-    def _take(self, line: int, cells: list[str], places: Mapping[str, int], decimal_comma: bool) -> None:
+    def _take(self, line: int, texts: Mapping[str, str], decimal_comma: bool) -> None:
         row: Row = {"line": line}
-        for key, k in places.items():
-            text = cells[k] if k < len(cells) else ""
-            if key == "law":
+        for key, text in texts.items():
+            if key in TEXTS:
                 row[key] = text
             elif text or key in "xy":
                 row[key] = self._number(text, key, line, decimal_comma)
@@ -241,32 +242,38 @@ class _Content:
             self.read_array(code)
 
     def read_structs(self, code: str) -> None:
-        begins = list[int]()  # of points
+        structs = list[tuple[int, int, dict[str, str], dict[str, str]]]()  # place, line, names and texts of the fields
         line, at = 1, 0
         for match in _STRUCT.finditer(code):
             line, at = line + code.count("\n", at, match.start()), match.start()
             pairs = dict(part.split(":=", 1) for part in match[1].split(",") if ":=" in part)
             fields = {re.sub(r"[^a-z']", "", key.lower()): value.strip() for key, value in pairs.items()}
-            places = {key: next((n for n in names if n in fields), "") for key, names in ALIASES.items()}
-            if not places["x"] or not places["y"]:
-                continue
-            row: Row = {"line": line}
-            for key, field in places.items():
-                if field:
-                    value = fields[field]
-                    row[key] = value if key == "law" else self._number(value, field, line, False)
-            self.rows.append(row)
-            begins.append(at)
+            known = {key: field for key, names in ALIASES.items() for field in names if field in fields}
+            structs.append((at, line, known, {key: fields[field] for key, field in known.items()}))
+        begins = list[int]()  # of points
+        ignored = _ignored([texts for *_, texts in structs])
+        for k, (at, line, known, texts) in enumerate(structs):
+            if ignored[k]:
+                begins.append(at)
+            elif {"x", "y"} <= known.keys():
+                begins.append(at)
+                row: Row = {"line": line}
+                for key, text in texts.items():
+                    row[key] = text if key in TEXTS else self._number(text, known[key], line, False)
+                self.rows.append(row)
         points = "(dX := ..., dY := ...) or (MasterPos := ..., SlavePos := ...)"
         read = set(begins)
         rest = _STRUCT.sub(lambda match: _blank(match[0]) if match.start() in read else match[0], code)
-        for match in itertools.islice(_POSITION.finditer(rest), ERRORS):
-            found = " ".join(rest[match.start(1) : match.start(1) + 40].split())
-            self._add(_line(rest, match.start(1)), f"expected {points}, found '{found}'")
+        odd = {match.start(1) for match in itertools.islice(_POSITION.finditer(rest), ERRORS)}
         for array in _STRUCTS.finditer(code):
             count = bisect_left(begins, array.end(2)) - bisect_left(begins, array.start(2))
             if count:
                 self._check_count(array[1], count, _line(code, array.start()))
+                lacking = itertools.islice(_STRUCT.finditer(rest, *array.span(2)), ERRORS)
+                odd |= {match.start(1) for match in lacking if not _POSITION.search(match[0])}
+        for at in sorted(odd):
+            found = " ".join(rest[at : at + 40].split())
+            self._add(_line(rest, at), f"expected {points}, found '{found}'")
         if not self.rows:
             self._add(None, f"expected {points}, found neither")
 
@@ -355,6 +362,24 @@ class _Content:
         if law is None:
             self._add(row["line"], f"expected one of the functions {', '.join(LAWS)}, found {given!r}")
         return law or "quintic"
+
+
+def _titled(header: Sequence[str]) -> dict[str, int]:
+    """The first column, from 0, of each field that a title names."""
+    found: dict[str, int] = {}
+    for k, title in enumerate(header):
+        plain = re.sub(r"[\[(].*|[^a-z']", "", title.lower())
+        for key, names in ALIASES.items():
+            if plain in names:
+                found.setdefault(key, k)
+    return found
+
+
+def _ignored(points: Sequence[Mapping[str, str]]) -> list[bool]:
+    """Of each point whether it is left out. A type of 0 of every point means that the file gives no types."""
+    typed = any(point.get("type", "0") != "0" for point in points)
+    keys = [key for key in IGNORED if typed or key != "type"]
+    return [any(point.get(key, "").lower().rpartition("type_")[2] in IGNORED[key] for key in keys) for point in points]
 
 
 def _code(text: str) -> str:

@@ -166,7 +166,7 @@ class RotaryKnife:
         return "a blade would come back into the cut zone between two cuts" if inside else ""
 
     def _problem(self, table: Table, speed: float) -> str:
-        return beyond(table, self.limits, speed, "knife") or self._blocked(table)
+        return self._blocked(table) or beyond(table, self.limits, speed, "knife")
 
     def highest_speed(self, length: float) -> float:
         """mm/s of web up to which the limits hold for products of this length; 0: the knife would turn back, or come
@@ -180,7 +180,8 @@ class RotaryKnife:
         slower = self.highest_speed(length)
         synchronous = self.circumference / self.blades  # at this length the knife runs evenly
         if self.highest_speed(synchronous) < speed:
-            return f"up to {slower:.6g} mm/s it would do; at {speed:g} mm/s no length would"
+            no_length = f"at {speed:g} mm/s no length would"
+            return f"{no_length} do" if slower == 0 else f"up to {slower:.6g} mm/s it would do; {no_length}"
         bad, good = length, synchronous
         for _ in range(SEARCH_STEPS):
             middle = (bad + good) / 2

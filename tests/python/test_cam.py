@@ -464,3 +464,16 @@ def test_smooth_points_have_no_jumps(count: int, seed: int, cyclic: bool) -> Non
     y = np.cumsum(random.normal(size=count))
     result = check(cam.Table.from_points(x, y, cyclic=cyclic))
     assert result.continuity == "position, velocity and acceleration have no jump"
+
+
+@pytest.mark.parametrize("interpolation", ["quintic", "monotone"])
+@pytest.mark.parametrize("given", [0, 2])
+@pytest.mark.parametrize("extra", [{"v": 1.0}, {"a": 0.05}, {"v": 1.0, "a": 0.05}])
+def test_one_end_of_a_cyclic_cam_gives_the_other(interpolation: str, given: int, extra: dict[str, float]) -> None:
+    """CAM-01, CAM-03: first and last point are one, so a number given for one holds for both."""
+    points: list[dict[str, float]] = [{"x": 0, "y": 0}, {"x": 50, "y": 20}, {"x": 100, "y": 100}]
+    points[given] |= extra
+    table = cam.Table.from_dict({"name": "c", "cyclic": True, "interpolation": interpolation, "points": points})
+    for at in (table.at(0.0), table.at(100.0)):
+        for key, value in extra.items():
+            assert {"v": at.dy, "a": at.ddy}[key] == pytest.approx(value)

@@ -130,7 +130,7 @@ def test_codesys_polynomials_are_those_of_codesys(tmp_path):  # CAM-92: its defa
 
 
 TWINCAT = """
-  (PointIndex := 1, FunctionType := MOTIONFUNCTYPE_MODSINUSLINE, MasterPos := 0, SlavePos := 0, SlaveVelo := 0),
+  (PointIndex := 1, FunctionType := MOTIONFUNCTYPE_MODSINUSLINIE, MasterPos := 0, SlavePos := 0, SlaveVelo := 0),
   (PointIndex := 2, FunctionType := MOTIONFUNCTYPE_POLYNOM1, MasterPos := 90, SlavePos := 40),
   (PointIndex := 3, FunctionType := MOTIONFUNCTYPE_POLYNOM5, MasterPos := 150, SlavePos := 40, SlaveVelo := 0),
   (PointIndex := 4, FunctionType := MOTIONFUNCTYPE_POLYNOM1, MasterPos := 270, SlavePos := 10, SlaveVelo := -0.2),
@@ -161,6 +161,79 @@ def test_twincat_motion_functions_become_laws(tmp_path, text):  # CAM-92
     x = np.linspace(0, 300, 1001)
     for got, wanted in zip(table.at(x), own.at(x), strict=True):
         assert np.allclose(got, wanted, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("function", "number", "law"),
+    [
+        ("SINUSLINIE", 10, "cycloid"),
+        ("MODSINUSLINIE", 11, "modified_sine"),
+        ("BESCHLTRAPEZ", 13, "modified_trapezoid"),
+        ("POLYNOM5_MM", 15, "polynomial_345"),
+    ],
+)
+def test_twincat_functions_by_name_and_number(tmp_path, function, number, law):
+    """CAM-92: the members of MC_MotionFunctionType."""
+    own = Table.from_segments([{"to": {"x": 100, "y": 10}, "law": law}])
+    file = tmp_path / "mf.txt"
+    x = np.linspace(0, 100, 101)
+    for name in (f"MOTIONFUNCTYPE_{function}", f"MC_MotionFunctionType.MOTIONFUNCTYPE_{function}", number):
+        ends = "SlaveVelo := 0, SlaveAcc := 0"
+        file.write_text(
+            f"(FunctionType := {name}, MasterPos := 0, SlavePos := 0, {ends}),\n"
+            f"(FunctionType := {name}, MasterPos := 100, SlavePos := 10, {ends})"
+        )
+        assert np.allclose(Table.from_file(file).at(x).y, own.at(x).y, atol=1e-12)
+
+
+IGNORED = {
+    "type": """c : ARRAY[0..2] OF MC_MotionFunctionPoint := [
+  (FunctionType := 1, PointType := MOTIONPOINTTYPE_REST, MasterPos := 0, SlavePos := 0),
+  (FunctionType := 5, PointType := MOTIONPOINTTYPE_IGNORE, MasterPos := 50, SlavePos := 99),
+  (FunctionType := 1, PointType := MOTIONPOINTTYPE_REST, MasterPos := 100, SlavePos := 10)];""",
+    "MC3": """c : ARRAY[1..3] OF MotionFunctionPoint := [
+  (FunctionType := 1, MasterPosition := 0, SlavePosition := 0),
+  (FunctionType := 5, MasterPosition := 50, SlavePosition := 99, Ignored := TRUE),
+  (FunctionType := 1, MasterPosition := 100, SlavePosition := 10, Ignored := FALSE)];""",
+    "columns": "FunctionType;PointType;MasterPos;SlavePos\n1;1;0;0\n5;0;50;99\n1;1;100;10\n",
+    "type without positions": """c : ARRAY[0..2] OF MC_MotionFunctionPoint := [
+  (FunctionType := 1, PointType := 1, MasterPos := 0, SlavePos := 0),
+  (PointType := MOTIONPOINTTYPE_IGNORE),
+  (FunctionType := 1, PointType := 1, MasterPos := 100, SlavePos := 10)];""",
+    "MC3 without numbers": """c : ARRAY[0..2] OF MotionFunctionPoint := [
+  (FunctionType := 1, MasterPosition := 0, SlavePosition := 0),
+  (MasterPosition := NONE, Ignored := TRUE),
+  (FunctionType := 1, MasterPosition := 100, SlavePosition := 10)];""",
+    "columns without positions": "FunctionType;PointType;MasterPos;SlavePos\n1;1;0;0\n5;0;;-\n1;1;100;10\n",
+}
+
+
+@pytest.mark.parametrize("text", IGNORED.values(), ids=IGNORED.keys())
+def test_points_that_twincat_ignores_are_left_out(tmp_path, text):
+    """CAM-92: the function before an ignored point leads to the point behind it."""
+    file = tmp_path / "mf.txt"
+    file.write_text(text)
+    assert np.allclose(Table.from_file(file).at(np.array([0.0, 25, 50, 100])).y, [0, 2.5, 5, 10])
+
+
+@pytest.mark.parametrize("mark", ["PointType", "Ignored"])
+def test_points_of_chosen_columns_are_ignored_as_well(tmp_path, mark):
+    """CAM-92: columns names the positions only."""
+    kept, left_out = ("1", "0") if mark == "PointType" else ("FALSE", "TRUE")
+    file = tmp_path / "mf.txt"
+    file.write_text(f"A;{mark};B\n0;{kept};0\n50;{left_out};99\n;{left_out};\n100;{kept};10\n")
+    table = Table.from_file(file, columns={"x": "A", "y": 3}, interpolation="linear")
+    assert table.at(50).y == pytest.approx(5)
+
+
+def test_types_of_0_of_every_point_ignore_none(tmp_path):
+    """CAM-92: the file gives no types then."""
+    file = tmp_path / "mf.txt"
+    points = ", ".join(f"(PointType := 0, MasterPos := {x}, SlavePos := {y})" for x, y in ((0, 0), (50, 9), (100, 10)))
+    file.write_text(f"c : ARRAY[0..2] OF MC_MotionFunctionPoint := [{points}];")
+    assert Table.from_file(file).at(50).y == pytest.approx(9)
+    file.write_text("A;PointType;B\n0;0;0\n50;0;9\n100;0;10\n")
+    assert Table.from_file(file, columns={"x": "A", "y": "B"}).at(50).y == pytest.approx(9)
 
 
 def test_twincat_cnc_tables_close_over_a_turn(tmp_path):  # CAM-92
@@ -208,6 +281,11 @@ def test_twincat_cnc_tables_close_over_a_turn(tmp_path):  # CAM-92
          ":1: ARRAY[0..3]: expected 4 points, found 3"),
         ("c : ARRAY[1..3] OF SMC_CAMXYVA := [(dX := 0, dY := 0),\n(dX := 9, dY := 1)];", None,
          ":1: ARRAY[1..3]: expected 3 points, found 2"),
+        ("c : ARRAY[0..1] OF MC_MotionFunctionPoint := [(PointType := 0, MasterPos := 0, SlavePos := 0),\n"
+         "(PointType := 0)];", None,
+         ":2: expected (dX := ..., dY := ...) or (MasterPos := ..., SlavePos := ...), found 'PointType := 0)"),
+        ("c : ARRAY[0..LAST] OF SMC_CAMXYVA := [(dV := 0, dA := 0),\n(dX := 9, dY := 1),\n(dX := 18, dY := 2)];", None,
+         ":1: expected (dX := ..., dY := ...) or (MasterPos := ..., SlavePos := ...), found 'dV := 0, dA := 0)"),
         ("(dX := 0, dY := 0),\n(* (dX := 9, dY := 1)", None, ":2: the comment has no end: expected *)"),
         ("a: ARRAY[0..0, 0..1] OF REAL := [0, 0];\nb: ARRAY[0..0, 0..1] OF REAL := [1, 1];", None,
          ":2: expected one table of positions, found another one in line 1"),

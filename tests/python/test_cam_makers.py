@@ -55,6 +55,17 @@ def test_a_knife_that_may_not_turn_back_says_so():  # CAM-91
     RotaryKnife(circumference=480, cut_zone=15, limits=LIMITS, may_reverse=True).cam(2000, speed=100)
 
 
+@pytest.mark.parametrize("weak", [Limits(velocity=100), Limits(velocity=600)])
+def test_what_no_speed_mends_comes_before_the_limits(weak):
+    """CAM-91: a knife that would turn back is told so whatever its limits, without a speed of 0 as remedy."""
+    knife = RotaryKnife(circumference=500, cut_zone=20, limits=weak)
+    with pytest.raises(takt.ConfigError, match="the knife would turn back between two cuts; at") as error:
+        knife.cam(1200, speed=1000)
+    assert "up to" not in str(error.value)
+    assert str(error.value).endswith("at 1000 mm/s no length would do")
+    assert knife.highest_speed(1200) == 0
+
+
 def test_a_knife_that_may_turn_back_stays_out_of_the_cut_zone_between_two_cuts():  # CAM-91
     knife = RotaryKnife(circumference=500, cut_zone=20, limits=LIMITS, may_reverse=True)
     with pytest.raises(

@@ -313,6 +313,115 @@ def test_a_sequence_begins_wherever_a_linear_master_has_got_to(begin, velocity):
         assert peaks(rig.seconds(1.2), begin) == [10, 20, 30, 30]
 
 
+def largest_step_of_y(recording: Any) -> float:
+    return float(np.abs(np.diff(recording["m"]["mp06_y_to_slave_position"])).max())
+
+
+RISES = [rise(name, 100, height) for name, height in (("one", 10), ("two", 20), ("three", 30), ("four", 40))]
+ONCE = [rise(name, length, height, end_v=0) for name, length, height in (("a", 100, 10), ("b", 60, 20), ("c", 100, 30))]
+RELATIVE = {"slave_absolute": False, "sync_mode": "absolute", "cam_sequence_mode": "cam1_cam3"}
+
+
+@pytest.mark.parametrize(
+    ("change", "to", "back"),
+    [
+        ({"when": "next_cycle"}, 220, 180),
+        ({"when": "next_cycle", "align": "velocity"}, 220, 80),
+        ({"when": "at_once"}, 150, 50),
+        ({"when": "cam_position", "position": 60}, 170, 50),
+    ],
+)
+def test_a_change_of_cam_ends_a_sequence_so_no_cam_before_it_comes_back(change, to, back):
+    """CAM-70, CAM-86: a master that reverses behind the change moves Y on without a step."""
+    with Rig(*RISES, settings=RELATIVE) as rig:
+        rig.module.control(cam_sequencer=True)
+        rig.module.control(sync_cam=True).wait_final()
+        rig.web.move_absolute(position=150, velocity=200).wait()
+        assert rig.module.cam_table == 3
+        rig.module.control(cam_sequencer=False)
+        feedback = rig.module.change_cam(cam_table=2, **change)
+        rig.web.move_absolute(position=to, velocity=200).wait()
+        assert feedback.wait_final().done
+        assert rig.module.cam_table == 2
+        recorder = rig.engine.record()
+        rig.web.move_absolute(position=back, velocity=200).wait()
+        assert largest_step_of_y(recorder.stop()) < 0.2
+        assert rig.module.cam_table == 2
+
+
+@pytest.mark.parametrize("absolute", [True, False])
+@pytest.mark.parametrize("then", ["next_cycle", "sequencer"])
+def test_a_cam_that_is_over_where_it_is_taken_is_held(then, absolute):
+    """CAM-70: X is beyond the end of the shorter cam, so what follows begins where X is, not at that end."""
+    settings = {**RELATIVE, "cam_cyclic": False, "slave_absolute": absolute}
+    with Rig(*ONCE, settings=settings) as rig:
+        rig.module.control(sync_cam=True).wait_final()
+        rig.web.move_absolute(position=80, velocity=100).wait()
+        held = 20 if absolute else rig.knife.set_position  # of the shorter cam
+        rig.module.change_cam(cam_table=2, when="at_once")
+        if then == "next_cycle":
+            rig.module.change_cam(cam_table=3, when="next_cycle", align="position")
+        else:
+            rig.module.control(cam_sequencer=True)
+        rig.engine.run(0.05)
+        assert rig.module.cam_table == (3 if then == "next_cycle" else 1)
+        assert rig.knife.set_position == pytest.approx(held)
+        recorder = rig.engine.record()
+        rig.web.move_velocity(velocity=100)
+        rig.engine.run(0.3)
+        assert largest_step_of_y(recorder.stop()) < 0.1
+    with Rig(*ONCE, settings=settings) as rig:  # the cam is as far behind as its end
+        rig.module.control(sync_cam=True).wait_final()
+        rig.web.move_absolute(position=80, velocity=100).wait()
+        rig.module.change_cam(cam_table=2, when="at_once").wait_final()
+        rig.web.move_absolute(position=61, velocity=100).wait()
+        assert rig.knife.set_position == pytest.approx(held)
+        rig.web.move_absolute(position=0, velocity=100).wait()
+        assert rig.knife.set_position == pytest.approx(held - 20)
+
+
+@pytest.mark.parametrize("absolute", [True, False])
+@pytest.mark.parametrize("length", [60, 100])
+@pytest.mark.parametrize("how", ["at_once", "instant"])
+def test_a_cam_held_behind_a_sequence_is_changed_without_a_step(how, length, absolute):
+    """CAM-70, CAM-86: X is at the end of the other cam or beyond it; the other cam goes on, as it is cyclic."""
+    cams = [RISES[0], rise("two", length, 10), *RISES[2:]]
+    with Rig(*cams, settings={**RELATIVE, "slave_absolute": absolute}) as rig:
+        rig.module.control(cam_sequencer=True)
+        rig.module.control(sync_cam=True).wait_final()
+        rig.web.move_absolute(position=150, velocity=200).wait()
+        rig.module.control(cam_sequencer=False)
+        rig.web.move_absolute(position=330, velocity=200).wait()
+        assert rig.knife.set_position == pytest.approx(50)  # cam one is run once, from 200 to 300
+        recorder = rig.engine.record()
+        if how == "instant":
+            rig.module.control(cam_table=2, cam_change_instant=True)
+        else:
+            rig.module.change_cam(cam_table=2, when=how)
+        rig.engine.run(0.05)
+        assert rig.module.cam_table == 2
+        assert rig.knife.set_position == pytest.approx(50)
+        rig.web.move_absolute(position=330 + length, velocity=200).wait()
+        assert largest_step_of_y(recorder.stop()) < 0.1
+        assert rig.knife.set_position == pytest.approx(60)
+
+
+@pytest.mark.parametrize(("absolute", "held"), [(True, 10), (False, 10 * 0.94208)])
+def test_a_sequence_begins_at_the_end_of_the_cam_that_is_over(absolute, held):
+    """CAM-70, CAM-86: the change is made while the sequencer is on, where X is beyond the end of the other cam."""
+    cams = [RISES[0], rise("two", 60, 10), *RISES[2:]]
+    with Rig(*cams, settings={**RELATIVE, "slave_absolute": absolute}) as rig:
+        rig.module.control(cam_sequencer=True)
+        rig.module.control(sync_cam=True).wait_final()
+        rig.web.move_absolute(position=80, velocity=200).wait()
+        rig.module.control(cam_table=2, cam_change_instant=True)
+        rig.engine.run(0.05)
+        assert rig.module.cam_table == 1
+        assert rig.knife.set_position == pytest.approx(held)
+        rig.web.move_absolute(position=180, velocity=200).wait()
+        assert rig.knife.set_position == pytest.approx(held + 10)
+
+
 @pytest.mark.parametrize("velocity", [300, -300])
 def test_cams_that_meet_at_their_ends_are_changed_there(velocity):  # CAM-70
     with Rig(hill("a", 100, 500), hill("b", 60, 500), settings=AT_ONCE) as rig:

@@ -169,3 +169,22 @@ def test_a_reference_in_passing(follow: Callable[[Session], None]) -> None:
     session.run(0.1)
     assert found.done
     assert (roll.error, roll.state) == (0, "SynchronizedMotion")
+
+
+@pytest.mark.parametrize("jerk", [0, 5e6])
+@pytest.mark.parametrize(("deceleration", "after_s"), [(2000, 0.2), (4500, 0.1)])
+def test_catching_up_with_a_master_that_brakes(deceleration: float, after_s: float, jerk: float) -> None:
+    """AX-14, AX-45: the axis moves no further in a cycle than its velocity limit allows."""
+    web = {"velocity": 300, "acceleration": 40000, "jerk": 0}
+    roll = {"velocity": 600, "acceleration": 60000, "jerk": jerk}
+    axes = [{"name": "web", "unit": "mm", "limits": web}, {"name": "roll", "unit": "mm", "limits": roll}]
+    with powered({"name": "braking", "axes": axes}) as session:
+        session.axis("web").move_velocity(velocity=250).wait(until="reached")
+        session.axis("roll").gear_in_pos(master="web", master_sync_position=0, slave_sync_position=200)
+        with session.record("roll") as recorder:
+            session.run(after_s)
+            session.axis("web").halt(deceleration=deceleration)
+            session.run(1)
+        assert session.axis("roll").in_step
+    takt.expect.within_limits(recorder.recording, "roll")
+    takt.expect.continuous(recorder.recording, "roll")

@@ -161,3 +161,34 @@ def test_tables_over_time(engine: takt.Engine) -> None:
     call(engine, by_acceleration, 0.505, Execute=True)
     assert by_acceleration.ProfileCompleted
     assert y.set_velocity - begun_at == pytest.approx(100 * 0.25, rel=0.02)
+
+
+@pytest.mark.parametrize("scale", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("command", "most", "error"),
+    [("position_profile", 95, 8), ("velocity_profile", 500, 5), ("acceleration_profile", 5000, 5)],
+)
+def test_a_table_over_time_is_refused_for_a_peak_however_short(
+    command: str, most: float, error: int, scale: float
+) -> None:
+    """AX-41: the lowest and highest value count; one as high as the limit is allowed."""
+    times = (0, 40, 50, 50.05, 50.15, 50.25, 60, 100)
+    machine = takt.Engine(
+        MACHINE.replace("jerk: 100000}", "jerk: 100000, lower: -95, upper: 95}", 1)
+        + "".join(
+            f"  - name: {name}\n    interpolation: monotone\n    points: ["
+            + ", ".join(
+                f"{{x: {x}, y: {share * most}}}"
+                for x, share in zip(times, (0, 0.5, 0.5, 0.5, peak, 0.5, 0.5, 0), strict=True)
+            )
+            + "]\n"
+            for name, peak in (("high", 1.01), ("just", 1.0))
+        )
+    )
+    with machine as engine:
+        x = engine.axis("x")
+        x.power().wait()
+        scaled = {f"{command.removesuffix('_profile')}_scale": scale}
+        refused = getattr(x, command)(profile="high", **scaled).wait_final()
+        assert refused.error_id == error
+        assert getattr(x, command)(profile="just", **scaled).wait(until="active")

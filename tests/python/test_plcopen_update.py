@@ -301,6 +301,86 @@ def test_a_cam_stays_where_it_is(s: takt.Engine, absolute: bool, change: str) ->
     assert block.Error or block.CommandAborted
 
 
+@pytest.mark.parametrize("sync", [{}, {"MasterSyncPosition": 30.0}])
+@pytest.mark.parametrize("at", [25.0, 275.0, -410.0])
+def test_a_cam_of_another_length_counts_from_the_zero_of_its_master(s: takt.Engine, at: float, sync: Any) -> None:
+    """AX-111: in each cycle of an absolute cam the slave is where a new block puts it."""
+    x, y = s.axis("x"), s.axis("y")
+    x.move_absolute(position=at - 50).wait()
+    if sync:
+        x.move_absolute(position=0).wait()
+    block = MC_CamIn(y, Master=x, CamTableID=SelectedCam("hill", None, True, True), ContinuousUpdate=True, **sync)
+    run(s, block, 0.1)
+    x.move_absolute(position=60 if sync else at)
+    run(s, block, 4)
+    x.move_absolute(position=at)
+    run(s, block, 4)
+    places = []
+    for scaling in (1.0, 1.25, 1.0):
+        run(s, block, 1, MasterScaling=scaling)
+        assert block.InSync
+        places.append(y.set_position)
+    again = MC_CamIn(y, Master=x, CamTableID=SelectedCam("hill", None, True, True))
+    for scaling, place in zip((1.0, 1.25), places, strict=False):
+        again(Execute=False)
+        run(s, again, 1, MasterScaling=scaling)
+        assert again.InSync
+        assert y.set_position == pytest.approx(place)
+    assert places[2] == pytest.approx(places[0])
+    assert abs(places[1] - places[0]) > 1
+
+
+@pytest.mark.parametrize("distance", [None, 10.0])
+@pytest.mark.parametrize(("at", "sync"), [(60.0, 30.0), (25.0, 30.0), (275.0, 30.0), (-410.0, 30.0), (150.0, 90.0)])
+def test_a_relative_cam_of_another_length_counts_from_its_sync_position(
+    s: takt.Engine, at: float, sync: float, distance: float | None
+) -> None:
+    """AX-111: in each cycle the slave is where the cam is that begins at the sync position."""
+    x, y = s.axis("x"), s.axis("y")
+    given = {"MasterSyncPosition": sync} | ({} if distance is None else {"MasterStartDistance": distance})
+    block = MC_CamIn(y, Master=x, CamTableID=SelectedCam("hill", None, False, True), ContinuousUpdate=True, **given)
+    run(s, block, 0.1)
+    x.move_absolute(position=sync + 10)
+    run(s, block, 3)
+    x.move_absolute(position=at)
+    run(s, block, 4)
+    for scaling in (1.0, 1.25, 1.0001, 1.0):
+        run(s, block, 1, MasterScaling=scaling)
+        assert block.InSync
+        u = 1 - abs((at - sync) * scaling % 120 / 60 - 1)
+        assert y.set_position == pytest.approx(20 * u**3 * (10 - 15 * u + 6 * u * u), abs=1e-6)
+
+
+@pytest.mark.parametrize("modulus", [None, 360])
+@pytest.mark.parametrize("shift", [-50.0, 30.0])
+@pytest.mark.parametrize("scaling", [None, 1.0, 1.5])
+def test_a_cam_that_waits_keeps_its_phase(modulus: int | None, shift: float, scaling: float | None) -> None:
+    """AX-111: a change of MC_CamIn before the sync position does not move it by the phase."""
+    rotary = f", kind: rotary, modulus: {modulus}" if modulus else ""
+    machine = MACHINE.replace("{name: x,", f"{{name: x{rotary},")
+    with takt.Engine(machine) as s:
+        x, y = s.axis("x"), s.axis("y")
+        x.power().wait()
+        y.power().wait()
+        given = {"master": "x", "cam": "hill", "master_sync_position": 100, "master_start_distance": 20}
+        y.cam_in(**given)
+        y.phasing_absolute(phase_shift=shift).wait(until="active")
+        s.run(1.0)  # the shift is over
+        x.move_absolute(position=70 - shift).wait()  # with -50 behind the position, but for the phase
+        if scaling:
+            y.cam_in(**given, slave_scaling=scaling, update=True)
+        x.move_absolute(position=95 - shift).wait()
+        assert not y.in_step
+        x.move_absolute(position=130 - shift).wait()
+        s.run(0.5)
+        assert y.in_step
+        assert y.set_position == pytest.approx(20 * (scaling or 1) * _law((130 % 120) / 60), abs=1e-6)
+
+
+def _law(share: float) -> float:
+    return share**3 * (10 - 15 * share + 6 * share**2)
+
+
 @pytest.mark.parametrize(
     ("block_of", "inputs", "changes"),
     [

@@ -260,7 +260,7 @@ void BeginJoining(const Context& c, const Request& r, State& s) {
   CouplingState& k = s.coupling;
   const CouplingTerm& term = k.law.terms[0];
   const double origin = OriginOf(c, term.master);
-  const KinematicState seen = Seen(c, k, term, {});
+  const KinematicState seen = Seen(c, k, term, PhaseAt(c, k));
   const double sense = seen.velocity < 0 ? -1 : 1;
   const double distance = std::max(0.0, r.coupling.master_start_distance);
   k.turn = TurnOf(c, term.master);
@@ -283,7 +283,7 @@ void BeginCam(const Context& c, const Request& r, State& s) {
   const double origin = OriginOf(c, term.master);
   const double turn = TurnOf(c, term.master);
   const CamLaw law = CamOf(c, r);
-  const KinematicState seen = Seen(c, k, term, {});
+  const KinematicState seen = Seen(c, k, term, PhaseAt(c, k));
   const bool takes_over = s.end_of_profile && k.cam.end_axis == term.master;
   const double sense = seen.velocity < 0 ? -1 : 1;
   const bool waits = k.law.master_start_distance >= 0;
@@ -383,6 +383,30 @@ void BreakOff(const Context& c, ErrorId error, State& s) {
   ComeToRest(c, ramps, FromCycleBefore(c), s);
 }
 
+// Puts a request that couples in control, without phase, filters and added cams.
+void TakeCoupling(const Context& c, const Request& r, State& s) {
+  Grant(c, r, s);
+  CouplingState& k = s.coupling;
+  const CamState cam = k.cam;  // the end of one cam is the beginning of the next
+  k = CouplingState{};
+  k.law = r.coupling;
+  k.cam = cam;
+  k.cam.over = false;
+  s.limited_by = LimitedBy::kNothing;
+  s.motion.profile = trajectory::Profile{s.setpoint};
+  s.motion.target = s.setpoint.position;
+  s.motion.arrived = false;
+  k.locked = Joins(r.kind);
+  k.filtered = std::ranges::any_of(k.law.terms, [&](const CouplingTerm& term) { return FilterTime(c, term) > 0; });
+}
+
+// Lays what has a position over that of the master with its phase.
+void BeginCoupling(const Context& c, const Request& r, State& s) {
+  if (r.kind == RequestKind::kGearInPos) BeginJoining(c, r, s);
+  if (r.kind == RequestKind::kCamIn) BeginCam(c, r, s);
+  Enter(s, PlcState::kSynchronizedMotion);
+}
+
 Status ShiftPhase(const Context& c, Ticket ticket, bool relative, double shift, const std::optional<double>& velocity,
                   const std::optional<double>& acceleration, const std::optional<double>& deceleration,
                   const std::optional<double>& jerk, State& s) {
@@ -455,27 +479,13 @@ Status MayCouple(const Context& c, const Request& r, const State& s) noexcept {
 }
 
 void Couple(const Context& c, const Request& r, State& s) noexcept {
-  Grant(c, r, s);
-  CouplingState& k = s.coupling;
-  const CamState cam = k.cam;  // the end of one cam is the beginning of the next
-  k = CouplingState{};
-  k.law = r.coupling;
-  k.cam = cam;
-  k.cam.over = false;
-  s.limited_by = LimitedBy::kNothing;
-  s.motion.profile = trajectory::Profile{s.setpoint};
-  s.motion.target = s.setpoint.position;
-  s.motion.arrived = false;
-  k.locked = Joins(r.kind);
-  k.filtered = std::ranges::any_of(k.law.terms, [&](const CouplingTerm& term) { return FilterTime(c, term) > 0; });
-  if (r.kind == RequestKind::kGearInPos) BeginJoining(c, r, s);
-  if (r.kind == RequestKind::kCamIn) BeginCam(c, r, s);
-  Enter(s, PlcState::kSynchronizedMotion);
+  TakeCoupling(c, r, s);
+  BeginCoupling(c, r, s);
 }
 
 void CoupleAgain(const Context& c, const Request& r, State& s) noexcept {
   const CouplingState was = s.coupling;
-  Couple(c, r, s);
+  TakeCoupling(c, r, s);
   CouplingState& k = s.coupling;
   k.added = was.added;
   k.phase = was.phase;
@@ -489,6 +499,7 @@ void CoupleAgain(const Context& c, const Request& r, State& s) noexcept {
     const bool same = now.master == before.master && now.source == before.source && now.filter_s == before.filter_s;
     if (same) k.filters[i] = was.filters[i];
   }
+  BeginCoupling(c, r, s);
 }
 
 void UpdateCam(const Context& c, const Request& r, State& s) noexcept {
@@ -496,7 +507,8 @@ void UpdateCam(const Context& c, const Request& r, State& s) noexcept {
   if (k.joining == Joining::kWaiting) return CoupleAgain(c, r, s);  // it has not begun yet
   const CamLaw was = CamOf(c, s.active);
   const CamLaw law = CamOf(c, r);
-  const bool fixed = k.law.master_absolute || k.law.at_sync_position;  // x counts from a place of the master
+  const bool absolute = k.law.master_absolute;
+  const bool fixed = absolute || k.law.at_sync_position;  // x counts from a place of the master
   const double offset = r.coupling.master_offset - k.law.master_offset;
   const double slave_offset = r.table.offset - s.active.table.offset;
   Grant(c, r, s);
@@ -507,8 +519,16 @@ void UpdateCam(const Context& c, const Request& r, State& s) noexcept {
   const double cycle = WholeCycles(was, k.cam, place);
   const double begin = k.cam.master + cycle * was.way();  // of the cycle that the master is in
   if (fixed) {
-    const double zero = begin - (was.table.begin() - (k.law.master_offset - offset)) / was.ratio;
+    // Cycles of another length are counted from the master's zero, those of a relative cam from its sync position, as
+    // BeginCam does; of the same length, from any.
+    const std::uint32_t its = k.law.terms[0].master;
+    const bool other_length = law.periodic && law.ratio != was.ratio;
+    const double zero = other_length && k.law.master_absolute
+                            ? place - ReportedOf(c, its, place - OriginOf(c, its))
+                            : begin - (was.table.begin() - (k.law.master_offset - offset)) / was.ratio;
     k.cam.master = zero + (law.table.begin() - k.law.master_offset) / law.ratio;
+    if (other_length && !absolute && !k.law.master_absolute)
+      k.cam.master = k.master_sync - k.law.master_offset / law.ratio;
     BeginCycles(law, place, k.cam);
     k.cam.master -= cycle * law.way();
   } else {

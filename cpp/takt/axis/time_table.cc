@@ -16,8 +16,6 @@ using trajectory::Profile;
 
 namespace {
 
-constexpr int kPlaces = 256;  // where a table is looked at before it is followed
-
 // A request's table over the time since its start, scaled.
 struct Curve {
   const cam::Table& table;
@@ -41,12 +39,9 @@ struct Range {
 };
 
 Range RangeOf(const Curve& curve) {
-  Range range = {curve.At(0).y, curve.At(0).y};
-  for (int i = 1; i <= kPlaces; ++i) {
-    const double y = curve.At(curve.duration() * i / kPlaces).y;
-    range = {std::min(range.low, y), std::max(range.high, y)};
-  }
-  return range;
+  const double a = curve.request.scale * curve.table.lowest() + curve.request.offset;
+  const double b = curve.request.scale * curve.table.highest() + curve.request.offset;
+  return {std::min(a, b), std::max(a, b)};
 }
 
 // Gauss' formula of four points: exact for tables of the fifth degree, and for their second integral.
@@ -131,7 +126,8 @@ Status MayFollowTable(const Context& c, const Request& r, const State& s) noexce
   const Limits own = c.params.planner_limits();
   const double limit =
       r.kind == RequestKind::kVelocityProfile ? own.velocity : std::max(own.acceleration, own.deceleration);
-  const bool inside = range.low >= -limit && range.high <= limit;
+  const double most = limit + Rounding(limit);
+  const bool inside = range.low >= -most && range.high <= most;
   return inside ? Status::Ok() : Status::Failed(ErrorId::kParameter);
 }
 

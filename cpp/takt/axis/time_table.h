@@ -25,7 +25,7 @@ inline bool FollowsTable(RequestKind kind) noexcept {
   return kind == RequestKind::kPositionProfile || kind == RequestKind::kVelocityProfile ||
          kind == RequestKind::kAccelerationProfile;
 }
-// Refuses what can be told from the table's own values, looked at in 257 places: kTargetBehindLimit for positions
+// Refuses what can be told from the lowest and highest value of the table, scaled: kTargetBehindLimit for positions
 // outside the SW limits, kParameter for velocities or accelerations beyond the axis' own. What follows from them (the
 // velocity of a table of positions, ...) is held against the limits on the way. kNoReference: positions mean nothing
 // yet.

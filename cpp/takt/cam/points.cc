@@ -231,6 +231,7 @@ std::vector<double> MonotoneSlopes(std::span<const CamPoint> points, bool cyclic
   slopes.back() = cyclic ? slopes.front() : slope(n - 2);
   for (std::size_t i = 0; i < n; ++i) slopes[i] = points[i].v.value_or(slopes[i]);
   if (cyclic && !points.back().v) slopes.back() = slopes.front();
+  if (cyclic && !points.front().v) slopes.front() = slopes.back();
   return slopes;
 }
 
@@ -260,8 +261,12 @@ std::vector<Curve> Interpolate(std::span<const CamPoint> points, Interpolation i
     });
   } else if (interpolation == Interpolation::kMonotone) {
     const std::vector<double> slopes = MonotoneSlopes(points, cyclic);
+    const auto bend = [&](std::size_t k) {  // first and last point of a cyclic cam are one
+      const bool seam = cyclic && (k == 0 || k + 1 == points.size());
+      return points[k].a.value_or(seam ? points[points.size() - 1 - k].a.value_or(0) : 0);
+    };
     pieces([&](std::size_t i, double h, double) {
-      const auto value = [&](std::size_t k) { return Value{points[k].y, slopes[k], points[k].a.value_or(0), 0}; };
+      const auto value = [&](std::size_t k) { return Value{points[k].y, slopes[k], bend(k), 0}; };
       return Quintic(h, value(i), value(i + 1));
     });
   } else {

@@ -96,6 +96,12 @@ void Take(const SequenceStep& next, State& s) {
   s.way.profiler.cam = s.slots[next.slot - 1] - 1;
 }
 
+// A change of cam that is no step of a sequence ends the sequence, and X cannot go back to the cam before.
+void LeaveSequence(State& s) {
+  s.sequencer = {};
+  s.entry = {};
+}
+
 const PendingChange* Due(const State& s, ChangeWhen when) {
   return s.pending_count > 0 && s.pending[0].change.when == when ? &s.pending[0] : nullptr;
 }
@@ -122,9 +128,13 @@ bool ChangeHere(const Context& c, std::uint32_t slot, ChangeAlign align, double 
   const bool cyclic = IsOpen(TableOf(c, s)) ? s.settings.cam_cyclic : !p.once;
   Take({slot, true}, s);
   Lay(to, x_before, x, RunsOnce(c, cyclic, s), p);
+  // Outside the other cam its end is held. An end that X is at is passed.
+  const double near = 1e-9 * to.length();
+  if (p.once && (x < to.begin() - near || x > to.end() + near)) GoOn(to, x_before, p);
   const bool meets = align != ChangeAlign::kNothing || !s.settings.slave_absolute;
   p.base = meets ? was.y - ValueAt(to, p, x_before).y : zero;
   s.inputs.cam_table = slot;
+  LeaveSequence(s);
   return true;
 }
 
@@ -197,21 +207,24 @@ bool IsDue(const Context& c, const PendingChange& change, double x_before, State
   }
 }
 
-void TakeChanges(const Context& c, double x_before, State& s) {
+// Returns whether the cam was changed.
+bool TakeChanges(const Context& c, double x_before, State& s) {
+  bool changed = false;
   if (s.instant) {
     s.instant = false;
-    ChangeHere(c, s.inputs.cam_table, ChangeAlign::kNothing, x_before, s);
-    s.sequencer = {};
+    changed = ChangeHere(c, s.inputs.cam_table, ChangeAlign::kNothing, x_before, s);
   }
   while (s.pending_count > 0 && IsDue(c, s.pending[0], x_before, s)) {
     const ChangeCam change = s.pending[0].change;
     if (!ChangeHere(c, change.cam_table, change.align, x_before, s)) {
-      if (change.when == ChangeWhen::kWithoutJump) return;
+      if (change.when == ChangeWhen::kWithoutJump) return changed;
       EndChange(c, FeedbackState::kError, ErrorId::kPlanning, s);
       continue;
     }
+    changed = true;
     EndChange(c, FeedbackState::kDone, ErrorId::kNone, s);
   }
+  return changed;
 }
 
 // X stays in the cycle in which it is, for good.
@@ -259,6 +272,7 @@ bool TakePending(const Context& c, const Passed& passed, State& s) {
   } else {
     const bool relative = change.align == ChangeAlign::kPosition || !s.settings.slave_absolute;
     ChangeAtEnd(c, passed, {change.cam_table, s.settings.cam_cyclic}, relative, s);
+    LeaveSequence(s);
   }
   s.inputs.cam_table = change.cam_table;
   EndChange(c, FeedbackState::kDone, ErrorId::kNone, s);
@@ -345,6 +359,7 @@ std::optional<SequenceStep> AfterHeld(const Context& c, bool& meets, State& s) {
     s.inputs.cam_table = pending->change.cam_table;
     meets = meets || pending->change.align != ChangeAlign::kNothing;
     EndChange(c, FeedbackState::kDone, ErrorId::kNone, s);
+    LeaveSequence(s);
     return SequenceStep{s.inputs.cam_table, s.settings.cam_cyclic};
   }
   if (const std::optional<SequenceStep> next = FromHeld(SequencerOf(c, s), s.sequencer)) return next;
@@ -352,13 +367,14 @@ std::optional<SequenceStep> AfterHeld(const Context& c, bool& meets, State& s) {
   return other ? std::optional(SequenceStep{p.slot, s.settings.cam_cyclic}) : std::nullopt;
 }
 
-// The end of a cam that is run once is held until another one is to be run.
-void HoldOn(const Context& c, State& s) {
+// The end of a cam that is run once is held until another one is to be run. `changed`: the held cam was taken in this
+// cycle, so the next one begins at its Y.
+void HoldOn(const Context& c, bool changed, State& s) {
   ProfilerState& p = s.way.profiler;
-  bool meets = !s.settings.slave_absolute;
+  bool meets = changed || !s.settings.slave_absolute;
   const std::optional<SequenceStep> next = IsOnCurve(s.clutch) ? std::nullopt : AfterHeld(c, meets, s);
   if (!next || IsEmpty(s, next->slot)) return GoOn(TableOf(c, s), s.x.position, p);
-  const double was = s.y.position;
+  const double was = changed ? ValueAt(TableOf(c, s), p, s.x.position).y : s.y.position;
   Take(*next, s);
   const cam::Table& table = TableOf(c, s);
   const double back = s.x.velocity < 0 ? table.length() : 0;
@@ -479,12 +495,12 @@ void RunWay(const Context& c, State& s) noexcept {
   Advance(s.master.before, s.master.now, s.master.now.position - s.master.before.position, cycle, c.slave.planner,
           s.way.to_x.ramp);
   s.x = Convert(s.way.to_x, cycle, s.master.now);
-  if (!IsOnCurve(s.clutch)) TakeChanges(c, x_before, s);
+  const bool changed = !IsOnCurve(s.clutch) && TakeChanges(c, x_before, s);
   const std::optional<Passed> passed = PassedEnd(TableOf(c, s), s.way.profiler, s.x.position);
   if (passed) {
     PassEnd(c, *passed, x_before, s);
   } else if (s.way.profiler.held) {
-    HoldOn(c, s);
+    HoldOn(c, changed, s);
   }
   s.end_of_profile = AnnouncesEnd(TableOf(c, s), cycle, s.x, passed.has_value(), s.way.profiler);
   TakeY(c, s);

@@ -89,7 +89,8 @@ bool InFrame(const Chaser& c, ChaseMode mode, const KinematicState& before, cons
              KinematicState& next, bool& arrives) {
   const Limits& own = c.own;
   const double t = c.period_s;
-  const double speed = std::abs(demand.velocity);
+  const KinematicState begin = CycleBefore(demand, t);
+  const double speed = std::max(std::abs(begin.velocity), std::abs(demand.velocity));
   const double fastest = c.catching_up.velocity > speed ? c.catching_up.velocity : own.velocity;
   const double used = std::abs(demand.acceleration);
   Bounds room = BoundsInSense(sense, c.catching_up);
@@ -97,7 +98,6 @@ bool InFrame(const Chaser& c, ChaseMode mode, const KinematicState& before, cons
   room.down -= used;
   if (!(std::min(room.up, room.down) > kLeastRoom * std::min(own.acceleration, own.deceleration))) return false;
   if (mode == ChaseMode::kPosition && !(fastest - speed > kLeastRoom * own.velocity)) return false;
-  const KinematicState begin = CycleBefore(demand, t);
   const KinematicState from = {before.position - begin.position, before.velocity - begin.velocity,
                                before.acceleration - begin.acceleration};
   Profile profile{from};
