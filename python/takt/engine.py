@@ -184,8 +184,10 @@ class Engine(Session):
 
     def close(self) -> None:
         """Ends the session, and what external drives hear of it; what was recorded stays readable."""
-        super().close()
-        self._core.leave_network()
+        try:
+            super().close()
+        finally:
+            self._core.leave_network()
 
     def take_journal(self) -> list[JournalEntry]:
         """Commands applied since the last call: (cycle, ticket, lease in s, target, verb, arguments)."""
