@@ -14,6 +14,7 @@ from takt.changes import Value, text_of
 from takt.engine import Engine
 from takt.errors import ConfigError
 from takt.scenario import Outcome, Played, load_scenario, run_scenario, with_settings
+from takt.sweep.design import COLUMNS
 
 Row = dict[str, Any]
 TEXT = 300  # letters of a sentence
@@ -63,9 +64,11 @@ class Job:
                 found |= {"engine_s": round(session.now, 9), "hash": f"{session.state_hash:016x}"}
         more = _margins(outcome)
         if Played.of(outcome.recording).broken_off is None:
-            taken = {*found, *point, "run", "passed", "failed", "command", *more}
-            for name, value in scenario.numbers(outcome.recording).items():
-                more[f"{name} (result)" if name in taken else name] = _plain(value)
+            for given, value in scenario.numbers(outcome.recording).items():
+                name = " ".join(given.split())
+                while name in (*COLUMNS, *point, *more):
+                    name += " (result)"
+                more[name] = _plain(value)
         return _why(outcome), more
 
 
