@@ -23,6 +23,7 @@ import yaml
 
 from takt import _core
 from takt.engine import read_machine
+from takt.names import shown
 from takt.yaml_text import legible, to_json
 
 if TYPE_CHECKING:
@@ -175,8 +176,8 @@ class Table:
         """Points from a file with the columns x, y and perhaps v, a; called like the file unless `name` says
         otherwise."""
         path = Path(file)
-        how = (name or path.stem, interpolation, cyclic, x_unit, y_unit)
-        return cls(*_core.cam_from_csv(path.read_bytes(), str(path), *how))
+        how = (name or shown(path.stem), interpolation, cyclic, x_unit, y_unit)
+        return cls(*_core.cam_from_csv(path.read_bytes(), shown(path), *how))
 
     @classmethod
     def from_file(

@@ -28,6 +28,7 @@ from takt.events import Progress as Share
 from takt.figures import in_words
 from takt.lcmlog import open_log, to_recording, write_log
 from takt.missing import all_missing, troubles
+from takt.names import shown
 from takt.network import usual_url
 from takt.opcua.command import opcua, opcua_user
 from takt.plant import PlantError
@@ -580,7 +581,7 @@ def plot(
     window = None
     if start is not None or end is not None:
         window = (recording.start_s if start is None else start, recording.end_s if end is None else end)
-    figure = plotting.draw(recording, *signals, title=title or file.name, window=window)
+    figure = plotting.draw(recording, *signals, title=title or shown(file.name), window=window)
     for sentence in troubles(recording):
         print(sentence)
     print(plotting.save(figure, target))

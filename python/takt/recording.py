@@ -420,7 +420,8 @@ class Recording:
             fields.append(arrow.field(f"{component}.{field}", columns[-1].type, metadata={"unit": unit}))
         target = Path(path)
         target.parent.mkdir(parents=True, exist_ok=True)
-        parquet.write_table(arrow.Table.from_arrays(columns, schema=arrow.schema(fields)), target)
+        with target.open("wb") as file:  # pyarrow takes no names with bytes that are no UTF-8
+            parquet.write_table(arrow.Table.from_arrays(columns, schema=arrow.schema(fields)), file)
         return target
 
     def _part(self, signals: Sequence[str]) -> Recording:

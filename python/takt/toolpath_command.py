@@ -13,6 +13,7 @@ from rich.table import Table as Grid
 
 from takt import gcode, toolpath
 from takt.counted import counted
+from takt.names import shown
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ def run(file: Path, options: Options, out: Console) -> int:
     if options.target is not None:
         from takt.toolpath_picture import picture
 
-        print(f"picture: {picture(path, options.target, file.name)}")
+        print(f"picture: {picture(path, options.target, shown(file.name))}")
     return 0
 
 

@@ -12,6 +12,7 @@ from rich.table import Table as Grid
 
 from takt.counted import counted
 from takt.errors import ConfigError
+from takt.names import shown
 from takt.track_drawing import CORNER, DRAWINGS, read_drawing
 from takt.track_layout import TrackLayout
 
@@ -43,7 +44,7 @@ def run(file: Path, options: Options, out: Console) -> int:
     if options.target is not None:
         from takt.track_picture import picture
 
-        print(f"picture: {picture(layout, options.target, file.name)}")
+        print(f"picture: {picture(layout, options.target, shown(file.name))}")
     if drawing is not None and options.yaml_file is not None:
         options.yaml_file.write_text(drawing.tracks, encoding="utf-8")
         print(f"tracks: {options.yaml_file}")

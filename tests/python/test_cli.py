@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -264,3 +265,46 @@ def test_as_a_module(files: Path) -> None:
         assert f"  {command} " in done.stdout
     done = subprocess.run([*run, "check", str(files / "none.yaml")], capture_output=True, text=True)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+
+
+def test_names_of_files_that_are_no_utf8(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """PY-07, PY-24, CAM-92: every byte that Python cannot decode is shown as U+FFFD."""
+    name = os.fsdecode(b"m\xe4")
+    folder = files / name
+    folder.mkdir()
+    machine, scenario, cam = (folder / f"{name}.{ending}" for ending in ("yaml", "py", "csv"))
+    machine.write_text(MACHINE)
+    scenario.write_text("def scenario(session, d=1.0):\n    session.run(0.1)\ndef verify(recording):\n    assert False\n")
+    cam.write_text("x,y\n0,0\n1,1\n2,1\n")
+    assert main(["check", str(machine)]) == 0
+    report = folder / "report"
+    assert main(["run", str(scenario), "--machine", str(machine), "--report", str(report)]) == 1
+    assert "assert False (m\ufffd.py:4)" in (report / "report.html").read_text()
+    (folder / "recording.npz").write_bytes((report / "recording.npz").read_bytes())
+    for command, file in (
+        (["report", str(report / "recording.npz")], report / "recording.html"),
+        (["report", str(report), str(folder)], None),
+        (["plot", str(report / "recording.npz"), "x", "-o", str(folder / f"{name}.png")], folder / f"{name}.png"),
+        (["export", str(report), "--parquet", str(folder / f"{name}.parquet")], folder / f"{name}.parquet"),
+        (["cam", str(cam), "--yaml", str(folder / "cam.yaml")], folder / "cam.yaml"),
+    ):
+        assert main(command) == 0, capsys.readouterr().err
+        assert file is None or file.is_file()
+    assert 'name: "m\ufffd"' in (folder / "cam.yaml").read_text()
+    sweep = ["sweep", str(scenario), "--machine", str(machine), "--grid", "d=1,2", "-o", str(folder / name)]
+    assert main([*sweep, "--workers", "1"]) == 1
+    assert "m\ufffd.py" in (folder / name / "sweep.html").read_text()
+    machine.write_text("name: [")
+    assert main(["check", str(machine)]) == 2
+    assert "m\ufffd.yaml:1:" in capsys.readouterr().err
+
+
+def test_a_log_whose_name_is_no_utf8(files: Path) -> None:
+    """PY-06, PY-07."""
+    url = new_url()
+    log = files / os.fsdecode(b"l\xe4.log")
+    with running(files, url, "--log", str(log)), takt.connect(url) as session:
+        session.axis("x").power().wait()
+    assert main(["replay", str(log)]) == 0
+    assert main(["report", str(log)]) == 0
+    assert "l\ufffd.log" in log.with_suffix(".html").read_text()

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from takt.names import shown
 from takt.plot import png
 from takt.recording import Recording
 from takt.report.kept import keep
@@ -37,7 +38,7 @@ def names_of(runs: Sequence[Path]) -> tuple[str, str]:
     """What two runs are called: as short as they can be told apart."""
     whole = [run.resolve() for run in runs]
     for parts in range(1, max(len(run.parts) for run in whole)):
-        a, b = ("/".join(run.parts[-parts:]) for run in whole)
+        a, b = (shown("/".join(run.parts[-parts:])) for run in whole)
         if a != b:
             return a, b
     return "A", "B"
@@ -53,5 +54,5 @@ def judged(outcome: Outcome, scenario: Scenario) -> Recording:
 
 def write_page(recording: Recording, run: Path, target: Path) -> Path:
     """The page of a recording as it was kept."""
-    target.write_text(render_kept(recording, run.resolve().name), encoding="utf-8")
+    target.write_text(render_kept(recording, shown(run.resolve().name)), encoding="utf-8")
     return target

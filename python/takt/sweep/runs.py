@@ -13,6 +13,7 @@ from typing import Any
 from takt.changes import Value, text_of
 from takt.engine import Engine
 from takt.errors import ConfigError
+from takt.names import shown
 from takt.scenario import Outcome, Played, load_scenario, run_scenario, with_settings
 from takt.sweep.design import COLUMNS
 
@@ -33,7 +34,7 @@ class Job:
         words += ["--machine", self.machine] if self.machine else []
         for key, value in point.items():
             words += ["--set", f"{key}={text_of(value)}"]
-        return shlex.join(words)
+        return shown(shlex.join(words))
 
     def run(self, number: int, point: Mapping[str, Value]) -> Row:
         """Makes a run. Whatever goes wrong in it is said in its row."""
@@ -50,7 +51,7 @@ class Job:
 
     def row(self, number: int, point: Mapping[str, Value], failed: str, found: Row, more: Row) -> Row:
         """The columns of all rows first, then what this one has besides."""
-        said = " ".join(failed.split())
+        said = " ".join(shown(failed).split())
         head = {"run": number, **point, "passed": int(not failed), "failed": said[:TEXT]}
         return {**head, "engine_s": "", "hash": "", **found, "command": self.command(point), **more}
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from takt import _core
+from takt.names import shown
 from takt.sweep.design import Design, SweepError
 from takt.sweep.runs import Job, Row
 
@@ -28,9 +29,9 @@ def about(job: Job, design: Design) -> dict[str, Any]:
     return {
         "takt_sweep": FORMAT,
         "version": _core.__version__,
-        "scenario": job.scenario,
+        "scenario": shown(job.scenario),
         "scenario_sha256": _hash(scenario),
-        "machine": job.machine,
+        "machine": shown(job.machine),
         "machine_sha256": _hash(machine),
         "grid": [one.text for one in design.grids],
         "sample": [one.text for one in design.samples],
@@ -172,10 +173,11 @@ def to_parquet(path: Path, texts: set[str]) -> Path:
     types = {name: arrow.string() if name in texts else arrow.float64() for name in columns}
     types |= dict.fromkeys(whole, arrow.int64())
     options = arrow_csv.ConvertOptions(column_types=types, strings_can_be_null=True)
-    reader = arrow_csv.open_csv(path, convert_options=options)
-    with reader, parquet.ParquetWriter(target, reader.schema) as writer:
-        for batch in reader:
-            writer.write_batch(batch)
+    with path.open("rb") as read, target.open("wb") as written:
+        reader = arrow_csv.open_csv(read, convert_options=options)
+        with reader, parquet.ParquetWriter(written, reader.schema) as writer:
+            for batch in reader:
+                writer.write_batch(batch)
     return target
 
 
