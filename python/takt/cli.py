@@ -38,7 +38,7 @@ from takt.replay import replay as replay_log
 from takt.scenario import Outcome, load_scenario, run_scenario, settings_of, verify_recording, with_settings
 from takt.session import Session
 from takt.source import read_run
-from takt.terminal import Output
+from takt.terminal import Output, any_output
 
 if TYPE_CHECKING:
     from takt.sweep import sweeping
@@ -77,7 +77,13 @@ def cli() -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs the command line. 0: all is well; 1: something checked has failed; 2: bad input, said in one line."""
+    """Runs the command line. 0: all is well; 1: something checked has failed; 2: bad input, said in one line. None of
+    this depends on whether the output can be shown."""
+    with any_output():
+        return _main(arguments)
+
+
+def _main(arguments: Sequence[str] | None) -> int:
     given = list(sys.argv[1:] if arguments is None else arguments)
     show_all = "--traceback" in given
     given = [argument for argument in given if argument != "--traceback"]
@@ -194,11 +200,16 @@ def run(
     with session, _watching(session, scenario.title):
         outcome = run_scenario(scenario, session, report)
         figures = session.figures
-    _show(outcome)
-    if report is not None:
-        from takt.report.command import write_outcome
+    page = None
+    try:
+        if report is not None:
+            from takt.report.command import write_outcome
 
-        print(f"report: {write_outcome(outcome, scenario, report, figures).html}")
+            page = write_outcome(outcome, scenario, report, figures).html
+    finally:
+        _show(outcome)
+    if page is not None:
+        print(f"report: {page}")
     return 0 if outcome.passed else FAILED
 
 
@@ -312,9 +323,12 @@ def _demo(
     stays = page is not None and (sys.stdin.isatty() if stay is None else stay)
 
     def judged(outcome: Outcome, figures: Mapping[str, Any]) -> None:
-        _show(outcome)
-        _show_figures(in_words(figures))
-        _say(f"report: {write_outcome(outcome, scenario, report, figures).html}")
+        try:
+            written = write_outcome(outcome, scenario, report, figures).html
+        finally:
+            _show(outcome)
+            _show_figures(in_words(figures))
+        _say(f"report: {written}")
         if page is not None and stays:
             page.stay()
         else:
@@ -440,15 +454,20 @@ def run_twin(
     drawing = picture and _writable(picture, (".png",))
     machine, found = command.find(what, scenario)
     ran = command.run(machine, found, compare=compare, report=report)
-    _show(ran.outcome)
-    out.print(command.table(ran.judged))
+    page = None
+    try:
+        if report is not None:
+            from takt.report.command import write_outcome
+
+            page = write_outcome(ran.outcome, found, report, {}).html
+    finally:
+        _show(ran.outcome)
+        out.print(command.table(ran.judged))
     if speed:
         servo = f"; with simulated servos {ran.servo_cycles_s:,.0f}" if ran.servo_cycles_s else ""
         print(f"{ran.cycles_s:,.0f} cycles a second{servo}")
-    if report is not None:
-        from takt.report.command import write_outcome
-
-        print(f"report: {write_outcome(ran.outcome, found, report, {}).html}")
+    if page is not None:
+        print(f"report: {page}")
     if drawing:
         try:
             print(f"picture: {ran.twin.picture(drawing)}")
@@ -582,9 +601,10 @@ def plot(
     if start is not None or end is not None:
         window = (recording.start_s if start is None else start, recording.end_s if end is None else end)
     figure = plotting.draw(recording, *signals, title=title or shown(file.name), window=window)
+    plotting.save(figure, target)
     for sentence in troubles(recording):
         print(sentence)
-    print(plotting.save(figure, target))
+    print(target)
 
 
 @cli.command()
@@ -794,10 +814,11 @@ def _show_comparison(recordings: Sequence[Recording], names: tuple[str, str], al
     from takt.report import compare, write_comparison
 
     comparison = compare(recordings[0], recordings[1], names, align=align)
+    write_comparison(comparison, target)
     for difference in comparison.differing[:DIFFERENCES]:
         print(difference.sentence)
     print(comparison.sentence)
-    print(f"report: {write_comparison(comparison, target)}")
+    print(f"report: {target}")
 
 
 def _show_sweep(result: sweeping.Result) -> int:

@@ -267,6 +267,35 @@ def test_as_a_module(files: Path) -> None:
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
 
 
+@pytest.mark.parametrize("where", ["a pipe without a reader", "an encoding without ²"])
+def test_a_run_does_not_depend_on_its_output(where: str, files: Path) -> None:
+    """PY-06, PY-07: the report is written, and the exit code is that of the run."""
+    failing = SCENARIO.replace('"x", 60.0', '"x", 61.0')
+    (files / "not.py").write_text(failing)
+    reader, writer = os.pipe()
+    if where == "a pipe without a reader":
+        os.close(reader)
+    env = os.environ | {"PYTHONIOENCODING": "ascii" if where.startswith("an encoding") else "utf-8"}
+    for name, code in (("there", 0), ("not", 1)):
+        command = [sys.executable, "-m", "takt", "run", f"{name}.py", "--report", name]
+        ran = subprocess.run(command, cwd=files, stdout=writer, stderr=subprocess.PIPE, text=True, check=False, env=env)
+        assert (ran.returncode, ran.stderr) == (code, "")
+        assert (files / name / "report.html").is_file()
+    os.close(writer)
+    if where != "a pipe without a reader":
+        with os.fdopen(reader, encoding="ascii") as said:
+            assert "acceleration limit of 5000 mm/s?" in said.read()
+
+
+def test_a_report_that_cannot_be_made_leaves_the_verdicts(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """PY-07: they are printed before the mistake of `pictures`."""
+    (files / "there.py").write_text(SCENARIO + "def pictures(recording):\n    return 1 / 0\n")
+    assert main(["run", str(files / "there.py"), "--report", str(files / "report")]) == 2
+    captured = capsys.readouterr()
+    assert "3 passed, 0 failed" in captured.out
+    assert "ZeroDivisionError" in captured.err
+
+
 def test_names_of_files_that_are_no_utf8(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """PY-07, PY-24, CAM-92: every byte that Python cannot decode is shown as U+FFFD."""
     name = os.fsdecode(b"m\xe4")
@@ -274,7 +303,9 @@ def test_names_of_files_that_are_no_utf8(files: Path, capsys: pytest.CaptureFixt
     folder.mkdir()
     machine, scenario, cam = (folder / f"{name}.{ending}" for ending in ("yaml", "py", "csv"))
     machine.write_text(MACHINE)
-    scenario.write_text("def scenario(session, d=1.0):\n    session.run(0.1)\ndef verify(recording):\n    assert False\n")
+    scenario.write_text(
+        "def scenario(session, d=1.0):\n    session.run(0.1)\ndef verify(recording):\n    assert False\n"
+    )
     cam.write_text("x,y\n0,0\n1,1\n2,1\n")
     assert main(["check", str(machine)]) == 0
     report = folder / "report"
