@@ -24,6 +24,7 @@ import yaml
 from takt import _core
 from takt.engine import read_machine
 from takt.names import shown
+from takt.written import write_text
 from takt.yaml_text import legible, to_json
 
 if TYPE_CHECKING:
@@ -304,14 +305,14 @@ class Table:
         else:
             raise ValueError("a cam of segments has no points; say how many the file is to have (count)")
         if file is not None:
-            Path(file).write_text(text, encoding="utf-8")
+            write_text(file, text)
         return text
 
     def to_yaml(self, file: str | os.PathLike[str] | None = None) -> str:
         """The cam as it stands in a machine file, also written to a file where one is named."""
         text = self._core.to_yaml()
         if file is not None:
-            Path(file).write_text(text, encoding="utf-8")
+            write_text(file, text)
         return text
 
     def _repr_png_(self) -> bytes:

@@ -35,10 +35,19 @@ from takt.plant import PlantError
 from takt.recording import Recording, RecordingError
 from takt.remote import connect
 from takt.replay import replay as replay_log
-from takt.scenario import Outcome, load_scenario, run_scenario, settings_of, verify_recording, with_settings
+from takt.scenario import (
+    Outcome,
+    is_of_scenario,
+    load_scenario,
+    run_scenario,
+    settings_of,
+    verify_recording,
+    with_settings,
+)
 from takt.session import Session
 from takt.source import read_run
 from takt.terminal import Output, any_output
+from takt.written import write_text
 
 if TYPE_CHECKING:
     from takt.sweep import sweeping
@@ -46,6 +55,7 @@ if TYPE_CHECKING:
 BAD_INPUT = 2
 FAILED = 1
 
+PACKAGE = Path(__file__).parent
 DIFFERENCES = 10  # between two runs, said on the terminal at most
 
 out = Output()
@@ -121,11 +131,11 @@ def _sentence(error: Exception) -> str:
         return f"{error.filename}: {error.strerror}"
     if isinstance(error, SyntaxError):
         return f"{error.filename}:{error.lineno}: {error.msg}"
-    frames = traceback.extract_tb(error.__traceback__)
-    package = str(Path(__file__).parent)
-    # A scenario's own line says more than one of ours.
-    theirs = [f for f in frames if not f.filename.startswith(package)] or frames
-    place = f" ({os.path.relpath(theirs[-1].filename)}:{theirs[-1].lineno})" if theirs else ""
+    frames = [(Path(frame.filename), frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]
+    # A line of a scenario says more than one of this package, which says more than one of another.
+    places = [frame for frame in frames if is_of_scenario(frame[0])]
+    places = places or [frame for frame in frames if frame[0].is_relative_to(PACKAGE)]
+    place = f" ({os.path.relpath(places[-1][0])}:{places[-1][1]})" if places else ""
     return f"{type(error).__name__}: {error}{place}"
 
 
@@ -163,7 +173,7 @@ def reference(output: Path | None) -> None:
     if output is None:
         print(reference_page(), end="")
     else:
-        output.write_text(reference_page(), encoding="utf-8")
+        write_text(output, reference_page())
         print(output)
 
 

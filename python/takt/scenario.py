@@ -20,6 +20,7 @@ import inspect
 import os
 import re
 import sys
+import sysconfig
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -300,6 +301,13 @@ def modules_of(folder: Path) -> Iterator[None]:
         yield
     finally:
         sys.path.remove(str(folder))
+
+
+def is_of_scenario(file: Path) -> bool:
+    """Whether a file lies in the folder of a scenario that was loaded, and is not an installed one beneath it."""
+    file = file.resolve()
+    installed = {"site-packages", "dist-packages"} & {*file.parts} or file.is_relative_to(sysconfig.get_path("stdlib"))
+    return not installed and any(file.is_relative_to(folder) for folder in _folders)
 
 
 def _root_of(module: Any) -> Path | None:

@@ -15,6 +15,7 @@ from takt.errors import ConfigError
 from takt.names import shown
 from takt.track_drawing import CORNER, DRAWINGS, read_drawing
 from takt.track_layout import TrackLayout
+from takt.written import write_text
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ def run(file: Path, options: Options, out: Console) -> int:
 
         print(f"picture: {picture(layout, options.target, shown(file.name))}")
     if drawing is not None and options.yaml_file is not None:
-        options.yaml_file.write_text(drawing.tracks, encoding="utf-8")
+        write_text(options.yaml_file, drawing.tracks)
         print(f"tracks: {options.yaml_file}")
     return 0
 

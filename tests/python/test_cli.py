@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import resource
+import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import lcm
@@ -339,3 +342,62 @@ def test_a_log_whose_name_is_no_utf8(files: Path) -> None:
     assert main(["replay", str(log)]) == 0
     assert main(["report", str(log)]) == 0
     assert "l\ufffd.log" in log.with_suffix(".html").read_text()
+
+
+@pytest.fixture
+def full_disk() -> Iterator[None]:
+    """Files end at 20 kB."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.mark.parametrize(
+    ("command", "target"),
+    [
+        (["run", "there.py", "--report", "report"], "report/recording.npz"),
+        (["report", "kept.npz", "-o", "page.html"], "page.html"),
+        (["report", "kept.npz", "kept.npz", "-o", "page.html"], "page.html"),
+        (["plot", "kept.npz", "-o", "picture.png"], "picture.png"),
+        (["export", "kept.npz", "--csv", "kept.csv"], "kept.csv"),
+        (["export", "kept.npz", "--mcap", "kept.mcap"], "kept.mcap"),
+        (["export", "kept.npz", "--parquet", "kept.parquet"], "kept.parquet"),
+        (["cam", "cam.csv", "--csv", "points.csv", "--count", "9000"], "points.csv"),
+    ],
+)
+def test_a_full_disk_is_named_and_leaves_no_half_files(
+    command: list[str],
+    target: str,
+    files: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    request: pytest.FixtureRequest,
+) -> None:
+    """PY-07: the file that was there stays as it was."""
+    monkeypatch.chdir(files)
+    assert main(["run", "there.py", "--report", "report"]) == 0
+    shutil.copy("report/recording.npz", "kept.npz")
+    Path("cam.csv").write_text("x,y\n0,0\n1,1\n2,1\n")
+    if target != "report/recording.npz":
+        Path(target).write_text("before")
+    before, listed = Path(target).read_bytes(), sorted(files.rglob("*"))
+    request.getfixturevalue("full_disk")
+    assert main(command) == 2
+    assert capsys.readouterr().err == f"takt: {target}: File too large\n"
+    assert Path(target).read_bytes() == before
+    assert sorted(files.rglob("*")) == listed
+
+
+def test_a_mistake_within_a_library_is_placed_in_the_scenario(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """PY-07: the line of the scenario, also from which its own modules were called."""
+    (files / "helper.py").write_text("import json\ndef read():\n    return json.loads('x')\n")
+    (files / "mistake.py").write_text(
+        "import helper\ndef scenario(session):\n    helper.read()\ndef verify(r):\n    1\n"
+    )
+    assert main(["run", str(files / "mistake.py"), "--machine", str(files / "machine.yaml")]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("takt: JSONDecodeError: ")
+    assert said.endswith("helper.py:3)\n")

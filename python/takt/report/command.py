@@ -12,6 +12,7 @@ from takt.recording import Recording
 from takt.report.kept import keep
 from takt.report.writing import PAGE, Report, render_kept, write_report
 from takt.scenario import Outcome, Scenario
+from takt.written import write_text
 
 
 def write_outcome(outcome: Outcome, scenario: Scenario, directory: Path, engine: Mapping[str, Any]) -> Report:
@@ -54,5 +55,5 @@ def judged(outcome: Outcome, scenario: Scenario) -> Recording:
 
 def write_page(recording: Recording, run: Path, target: Path) -> Path:
     """The page of a recording as it was kept."""
-    target.write_text(render_kept(recording, shown(run.resolve().name)), encoding="utf-8")
+    write_text(target, render_kept(recording, shown(run.resolve().name)))
     return target
