@@ -16,6 +16,7 @@ from takt import cam
 from takt.cam_check import TOUCHING, Check, Limits, check, figure
 from takt.counted import counted
 from takt.engine import read_machine
+from takt.written import refuse_input
 
 FAILED = 1
 NAMES = (("y", ""), ("y'", ""), ("y''", "²"), ("y'''", "³"))
@@ -41,7 +42,7 @@ class Options:
 
 def run(file: Path, name: str | None, options: Options, out: Console) -> int:
     """Reads, checks, says, draws, writes. 1: a limit is exceeded."""
-    _refuse_nonsense(options)
+    _refuse_nonsense(file, options)
     tables = _read(file, name, options)
     writes = options.target or options.csv or options.yaml_file
     if writes and len(tables) > 1:
@@ -62,7 +63,7 @@ def run(file: Path, name: str | None, options: Options, out: Console) -> int:
     return 0 if passed else FAILED
 
 
-def _refuse_nonsense(options: Options) -> None:
+def _refuse_nonsense(file: Path, options: Options) -> None:
     from takt.plot import PICTURES
 
     for value, option in ((options.master_speed, "speed"), (options.master_acceleration, "acceleration")):
@@ -79,6 +80,7 @@ def _refuse_nonsense(options: Options) -> None:
             raise click.UsageError(f"{path}: expected a name that ends in {' or '.join(suffixes)}")
         if not path.parent.is_dir():
             raise click.UsageError(f"{path}: there is no directory {path.parent}")
+        refuse_input(path, file, options.machine)
 
 
 def _read(file: Path, name: str | None, options: Options) -> list[cam.Table]:

@@ -45,7 +45,7 @@ from takt.scenario import (
     with_settings,
 )
 from takt.session import Session
-from takt.source import read_run
+from takt.source import read_run, stem_of
 from takt.terminal import Output, any_output
 from takt.written import write_text
 
@@ -605,7 +605,7 @@ def plot(
     """Draw SIGNALS (x, x.set_position, "*.following_error") of a FILE: a recording (.npz) or an LCM log."""
     from takt import plot as plotting
 
-    target = _writable(output or file.with_suffix(".png"), plotting.PICTURES)
+    target = _writable(output or file.parent / f"{stem_of(file)}.png", plotting.PICTURES)
     recording = _read(file, start_number).between(start, end)
     window = None
     if start is not None or end is not None:

@@ -14,6 +14,7 @@ from rich.table import Table as Grid
 from takt import gcode, toolpath
 from takt.counted import counted
 from takt.names import shown
+from takt.written import refuse_input
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ class Options:
 
 def run(file: Path, options: Options, out: Console) -> int:
     """Reads, says, draws, writes."""
-    _refuse_nonsense(options)
+    _refuse_nonsense(file, options)
     path = toolpath.read(file, options.start, options.tolerance, options.of_gcode())
     _say(file, path, out)
     if options.csv is not None:
@@ -58,7 +59,7 @@ def run(file: Path, options: Options, out: Console) -> int:
     return 0
 
 
-def _refuse_nonsense(options: Options) -> None:
+def _refuse_nonsense(file: Path, options: Options) -> None:
     from takt.plot import PICTURES
 
     if not 0 < options.tolerance <= 1:
@@ -70,6 +71,7 @@ def _refuse_nonsense(options: Options) -> None:
             raise click.UsageError(f"{path}: expected a name that ends in {' or '.join(suffixes)}")
         if not path.parent.is_dir():
             raise click.UsageError(f"{path}: there is no directory {path.parent}")
+        refuse_input(path, file)
 
 
 def _say(file: Path, path: toolpath.Toolpath, out: Console) -> None:

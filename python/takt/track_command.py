@@ -15,7 +15,7 @@ from takt.errors import ConfigError
 from takt.names import shown
 from takt.track_drawing import CORNER, DRAWINGS, read_drawing
 from takt.track_layout import TrackLayout
-from takt.written import write_text
+from takt.written import refuse_input, write_text
 
 
 @dataclass(frozen=True)
@@ -66,6 +66,7 @@ def _refuse_nonsense(file: Path, options: Options) -> None:
             raise click.UsageError(f"{path}: expected a name that ends in {' or '.join(suffixes)}")
         if not path.parent.is_dir():
             raise click.UsageError(f"{path}: there is no directory {path.parent}")
+        refuse_input(path, file)
 
 
 def _say(file: Path, layout: TrackLayout, out: Console) -> None:

@@ -9,6 +9,15 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
+from takt.errors import TaktError
+
+
+def refuse_input(target: Path, *inputs: Path | None) -> None:
+    """Raises TaktError where a file to be written is one of those that are read."""
+    for file in inputs:
+        if file is not None and file.exists() and target.exists() and target.samefile(file):
+            raise TaktError(f"{target}: is a file that is read, so it is not written: give another one")
+
 
 @contextlib.contextmanager
 def naming(path: str | os.PathLike[str]) -> Iterator[None]:

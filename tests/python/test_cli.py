@@ -401,3 +401,40 @@ def test_a_mistake_within_a_library_is_placed_in_the_scenario(files: Path, capsy
     said = capsys.readouterr().err
     assert said.startswith("takt: JSONDecodeError: ")
     assert said.endswith("helper.py:3)\n")
+
+
+def test_names_of_outputs_keep_what_is_no_ending(files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """PY-06, PY-07: runs whose names differ behind the last dot have pages and pictures of their own."""
+    monkeypatch.chdir(files)
+    assert main(["run", "there.py", "--report", "run.v1"]) == 0
+    for name in ("log.00", "log.01", "a.b.npz"):
+        shutil.copy("run.v1/recording.npz", name)
+        assert main(["plot", name, "x"]) == main(["report", name]) == 0
+    assert main(["plot", "run.v1", "x"]) == 0
+    assert main(["report", "log.00", "a.b.npz"]) == 0
+    made = {"log.00", "log.01", "a.b", "log.00_and_a.b", "run.v1"}
+    assert {path.stem for path in files.glob("*.html")} == made - {"run.v1"}
+    assert {path.stem for path in files.glob("*.png")} == made - {"log.00_and_a.b"}
+    monkeypatch.chdir("run.v1")
+    assert main(["plot", ".", "x"]) == 0
+    assert Path("run.v1.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("command", "text"),
+    [
+        (["cam", "own.yaml", "--yaml", "own.yaml"], "points: [{x: 0, y: 0}, {x: 1, y: 1}, {x: 2, y: 1}]\n"),
+        (["cam", "own.csv", "--csv", "./own.csv"], "x,y\n0,0\n1,1\n2,1\n"),
+        (["track", "own.svg", "--plot", "own.svg"], "<svg/>"),
+        (["path", "own.csv", "--csv", "own.csv"], "x,y,z\n1,0,0\n"),
+    ],
+)
+def test_an_input_is_not_written(
+    command: list[str], text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """PY-07: whatever the two are called."""
+    monkeypatch.chdir(tmp_path)
+    Path(command[1]).write_text(text)
+    assert main(command) == 2
+    assert "is a file that is read, so it is not written" in capsys.readouterr().err
+    assert Path(command[1]).read_text() == text

@@ -12,6 +12,7 @@ from takt.recording import Recording
 from takt.report.kept import keep
 from takt.report.writing import PAGE, Report, render_kept, write_report
 from takt.scenario import Outcome, Scenario
+from takt.source import stem_of
 from takt.written import write_text
 
 
@@ -26,13 +27,13 @@ def write_outcome(outcome: Outcome, scenario: Scenario, directory: Path, engine:
 
 def target_of(run: Path) -> Path:
     """Where the page of a run goes unless told: into its directory, or beside its file."""
-    return run / PAGE if run.is_dir() else run.with_suffix(".html")
+    return run / PAGE if run.is_dir() else run.with_name(f"{stem_of(run)}.html")
 
 
 def target_of_two(runs: Sequence[Path]) -> Path:
     """Where the page of two runs goes unless told: beside the first one."""
-    names = [run.resolve().name if run.is_dir() else run.stem for run in runs]
-    return runs[0].parent / f"{names[0]}_and_{names[1]}.html"
+    a, b = map(stem_of, runs)
+    return runs[0].parent / f"{a}_and_{b}.html"
 
 
 def names_of(runs: Sequence[Path]) -> tuple[str, str]:
