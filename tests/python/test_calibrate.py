@@ -91,6 +91,7 @@ def test_points_that_define_no_frame(call: object, sentence: str) -> None:
         ("x,y,z\n0,0,0\n1,5,2,5,3,5\n0,9,0\n", ":3: expected 3 fields as in the head, found 6"),
         ("x,y,z\n\n0,0,0\n\n1,a,0\n0,1,0\n", ":5: y: expected a finite number, found 'a'"),
         ('x,y,z,note\n0,0,0,\n9,0,0,"top\n0,9,0,\n5,5,0,\n', ":5: is no CSV"),
+        ("x,y,z,x\n0,0,0,1\n9,0,0,2\n0,9,0,3\n", ":1: the head has the column x twice"),
         ('x,y,z\n0,0,0\n"9"5,0,0\n0,9,0\n', ":3: is no CSV"),
     ],
 )
