@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import resource
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,6 +21,7 @@ from takt import msgs
 from takt.cli import main
 from takt.figures import quantile
 from takt.tables import is_possible
+from takt.written import write_text
 
 SCENARIO = '''"""Goes and comes back.
 
@@ -389,6 +392,86 @@ def test_a_full_disk_is_named_and_leaves_no_half_files(
     assert capsys.readouterr().err == f"takt: {target}: File too large\n"
     assert Path(target).read_bytes() == before
     assert sorted(files.rglob("*")) == listed
+
+
+@pytest.fixture
+def own_folder() -> Iterator[Path]:
+    """A folder of a user other than root, as which the test runs, too."""
+    with tempfile.TemporaryDirectory() as name:
+        if os.geteuid() != 0:
+            yield Path(name)
+            return
+        os.chown(name, 65534, 65534)
+        os.seteuid(65534)
+        try:
+            yield Path(name)
+        finally:
+            os.seteuid(0)
+
+
+def test_a_write_protected_file_is_not_written(own_folder: Path) -> None:
+    """PY-07: also where its folder takes other files."""
+    target = own_folder / "kept.csv"
+    target.write_text("before")
+    target.chmod(0o444)
+    with pytest.raises(PermissionError, match=r"Permission denied: '.*/kept\.csv'$"):
+        write_text(target, "after")
+    assert target.read_text() == "before"
+    assert [*own_folder.iterdir()] == [target]
+
+
+def test_written_files_keep_their_links_owner_and_group(tmp_path: Path) -> None:
+    """PY-07: the file is the same, with another content."""
+    target, link, symbolic = (tmp_path / name for name in ("a.csv", "b.csv", "c.csv"))
+    target.write_text("before")
+    link.hardlink_to(target)
+    symbolic.symlink_to(target)
+    write_text(symbolic, "after")
+    assert link.read_text() == "after"
+    assert link.samefile(target)
+    assert symbolic.is_symlink()
+    if os.geteuid() == 0:
+        for owner in ((65534, 65534), (0, 65534)):
+            other = tmp_path / f"{owner[0]}.csv"
+            other.write_text("before")
+            os.chown(other, *owner)
+            other.chmod(0o640)
+            write_text(other, "after")
+            status = other.stat()
+            assert (status.st_uid, status.st_gid, status.st_mode & 0o777) == (*owner, 0o640)
+            assert other.read_text() == "after"
+
+
+@pytest.mark.parametrize("number", [errno.EBUSY, errno.EPERM])
+def test_a_file_that_cannot_be_replaced_is_written(
+    number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """PY-07: as one that is mounted by itself into a container."""
+
+    def refused(path: Path, target: Path) -> Path:
+        raise OSError(number, os.strerror(number), str(path), None, str(target))
+
+    monkeypatch.setattr(Path, "replace", refused)
+    target = tmp_path / "mounted.csv"
+    target.write_text("before, and longer")
+    write_text(target, "after")
+    assert target.read_text() == "after"
+    assert [*tmp_path.iterdir()] == [target]
+
+
+def test_errors_of_writing_name_one_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, full_disk: None) -> None:
+    """PY-07: the one that was to be written."""
+    target = tmp_path / "kept.csv"
+    with pytest.raises(OSError, match=r"File too large: '.*/kept\.csv'$"):
+        write_text(target, "x" * 30_000)
+
+    def broken(path: Path, target: Path) -> Path:
+        raise OSError(errno.EIO, os.strerror(errno.EIO), str(path), None, str(target))
+
+    monkeypatch.setattr(Path, "replace", broken)
+    with pytest.raises(OSError, match=r"Input/output error: '.*/kept\.csv'$"):
+        write_text(target, "x")
+    assert not [*tmp_path.iterdir()]
 
 
 def test_a_mistake_within_a_library_is_placed_in_the_scenario(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
