@@ -16,7 +16,7 @@ ENDINGS = (".npz", ".log", ".lcm")
 def stem_of(run: Path) -> str:
     """The name of a run without an ending of ENDINGS, for files that are made of it. Other dots are of the name, as in
     lcmlog-2024-05-01.00."""
-    name = run.resolve().name if run.is_dir() else run.name
+    name = run.resolve().name if run.name in ("", "..") else run.name  # of a link: its own name
     return name[:-4] if name.lower().endswith(ENDINGS) and len(name) > 4 else name
 
 

@@ -503,6 +503,18 @@ def test_names_of_outputs_keep_what_is_no_ending(files: Path, monkeypatch: pytes
     assert Path("run.v1.png").is_file()
 
 
+def test_names_of_outputs_are_those_of_links(files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """PY-06, PY-07: runs that are given as links to folders of one name have pages and pictures of their own."""
+    monkeypatch.chdir(files)
+    for link, number in (("monday", 1), ("tuesday", 2)):
+        assert main(["run", "there.py", "--report", f"{number}/report"]) == 0
+        Path(link).symlink_to(f"{number}/report")
+        assert main(["plot", link, "x"]) == 0
+    assert main(["report", "monday", "tuesday"]) == 0
+    assert {path.name for path in files.glob("*.png")} == {"monday.png", "tuesday.png"}
+    assert [path.name for path in files.glob("*.html")] == ["monday_and_tuesday.html"]
+
+
 @pytest.mark.parametrize(
     ("command", "text"),
     [
