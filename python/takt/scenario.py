@@ -304,7 +304,10 @@ def modules_of(folder: Path) -> Iterator[None]:
 
 
 def is_of_scenario(file: Path) -> bool:
-    """Whether a file lies in the folder of a scenario that was loaded, and is not an installed one beneath it."""
+    """Whether a file lies in the folder of a scenario that was loaded, and is not an installed one beneath it. False
+    for names in tracebacks that are of no file there, as `<frozen importlib._bootstrap>`."""
+    if not file.is_file():
+        return False
     file = file.resolve()
     installed = {"site-packages", "dist-packages"} & {*file.parts} or file.is_relative_to(sysconfig.get_path("stdlib"))
     return not installed and any(file.is_relative_to(folder) for folder in _folders)

@@ -486,6 +486,21 @@ def test_a_mistake_within_a_library_is_placed_in_the_scenario(files: Path, capsy
     assert said.endswith("helper.py:3)\n")
 
 
+@pytest.mark.parametrize("mistake", ["importlib.import_module('no_module')", "numpy.random.default_rng().choice([])"])
+def test_a_mistake_is_not_placed_in_files_that_there_are_not(
+    mistake: str, files: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """PY-07, PY-24: frames of frozen modules and of compiled sources have no absolute name."""
+    monkeypatch.chdir(files)
+    (files / "mistake.py").write_text(
+        f"import importlib, numpy\n\ndef scenario(session, d=1.0):\n    {mistake}\n\ndef verify(recording):\n    1\n"
+    )
+    assert main(["run", "mistake.py"]) == 2
+    assert capsys.readouterr().err.endswith(" (mistake.py:4)\n")
+    assert main(["sweep", "mistake.py", "--grid", "d=1,2", "--workers", "1", "-o", "swept"]) == 1
+    assert " (mistake.py:4)" in Path("swept/runs.csv").read_text()
+
+
 def test_names_of_outputs_keep_what_is_no_ending(files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """PY-06, PY-07: runs whose names differ behind the last dot have pages and pictures of their own."""
     monkeypatch.chdir(files)

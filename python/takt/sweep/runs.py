@@ -110,6 +110,6 @@ def _plain(value: Any) -> Any:
 
 def _place(error: Exception, scenario: Path) -> str:
     folder = scenario.resolve().parent
-    frames = traceback.extract_tb(error.__traceback__)
-    own = [frame for frame in frames if Path(frame.filename).resolve().parent == folder]
-    return f" ({Path(own[-1].filename).name}:{own[-1].lineno})" if own else ""
+    frames = [(Path(frame.filename), frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]
+    own = [(file, line) for file, line in frames if file.is_file() and file.resolve().parent == folder]
+    return f" ({own[-1][0].name}:{own[-1][1]})" if own else ""
