@@ -548,3 +548,27 @@ def test_an_input_is_not_written(
     assert main(command) == 2
     assert "is a file that is read, so it is not written" in capsys.readouterr().err
     assert Path(command[1]).read_text() == text
+
+
+@pytest.mark.parametrize("command", [["cam", "d/machine.yaml"], ["cam", "cam.csv", "--machine", "d/machine.yaml"]])
+@pytest.mark.parametrize("target", ["points.csv", "elements.csv"])
+def test_a_file_that_a_machine_names_is_not_written(
+    target: str, command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """PY-07, CAM-04: the tables of its cams and paths, whose names are relative to its folder."""
+    monkeypatch.chdir(tmp_path)
+    Path("cam.csv").write_text(points := "x,y\n0,0\n1,1\n2,1\n")
+    Path("d").mkdir()
+    Path("d/points.csv").write_text(points)
+    Path("d/elements.csv").write_text(elements := "x,y,z\n1,0,0\n")
+    Path("d/machine.yaml").write_text(
+        f"{MACHINE}paths: [{{name: p, file: elements.csv}}]\n"
+        "cams: [{name: c, x_unit: mm, y_unit: mm, file: points.csv}]\n"
+    )
+    if command[1] == "cam.csv":
+        command = [*command, "--axis", "x"]
+    assert main([*command, "--csv", f"d/{target}"]) == 2
+    assert (
+        capsys.readouterr().err == f"takt: d/{target}: is a file that is read, so it is not written: give another one\n"
+    )
+    assert (Path("d/points.csv").read_text(), Path("d/elements.csv").read_text()) == (points, elements)
