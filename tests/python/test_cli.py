@@ -336,6 +336,24 @@ def test_names_of_files_that_are_no_utf8(files: Path, capsys: pytest.CaptureFixt
     assert "m\ufffd.yaml:1:" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("cam", ["points: [{x: 0, y: 0}, {x: 1, y: 1}]", "file: points.csv"])
+def test_a_run_in_a_folder_whose_name_is_no_utf8(cam: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """PY-07, CAM-04: names that are relative to it are found."""
+    folder = tmp_path / os.fsdecode(b"m\xe4")
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    Path("points.csv").write_text("x,y\n0,0\n1,1\n")
+    Path("machine.yaml").write_text(
+        f"{MACHINE}cams: [{{name: c, {cam}}}]\n"
+        "groups: [{name: g, axes: [x, r], kinematics: {gantry: {axes: [x, c]}},\n"
+        "          path: {velocity: 300, acceleration: 3000, jerk: 60000}}]\n"
+    )
+    Path("there.py").write_text(SCENARIO)
+    assert main(["check", "machine.yaml"]) == 0
+    assert main(["run", "there.py", "--report", "report"]) == 0
+    assert Path("report/report.html").is_file()
+
+
 def test_a_log_whose_name_is_no_utf8(files: Path) -> None:
     """PY-06, PY-07."""
     url = new_url()
