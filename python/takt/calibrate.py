@@ -42,9 +42,15 @@ class Calibration:
 
     @property
     def yaml(self) -> str:
-        """The pose as a machine file has it."""
-        numbers = (f"{key}: {value + 0.0:.6g}" for key, value in zip("xyzabc", self.pose, strict=True))
+        """The pose as a machine file has it, to 1e-6 mm and deg."""
+        numbers = (f"{key}: {_text(value)}" for key, value in zip("xyzabc", self.pose, strict=True))
         return "{" + ", ".join(numbers) + "}"
+
+
+def _text(value: float) -> str:
+    """A number to six places after the point, without trailing zeros."""
+    text = f"{value:.6f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
 
 
 def three_points(

@@ -21,7 +21,7 @@ def lines(kind: str, file: Path) -> Iterator[str]:
     found = _belt(file, rows) if kind == "belt" else _frame(file, rows)
     yield f"origin: {found.yaml}"
     if found.ratio is not None:
-        yield f"ratio: {found.ratio:.6g}"
+        yield f"ratio: {repr(found.ratio).removesuffix('.0')}"
     for number, residual in enumerate(found.residuals, 1):
         yield f"point {number}: {residual:.3f} mm off"
     if len(found.residuals):

@@ -23,6 +23,8 @@ import yaml
 
 from takt import _core
 from takt.engine import read_machine
+from takt.names import shown
+from takt.written import write_text
 from takt.yaml_text import legible, to_json
 
 if TYPE_CHECKING:
@@ -175,8 +177,8 @@ class Table:
         """Points from a file with the columns x, y and perhaps v, a; called like the file unless `name` says
         otherwise."""
         path = Path(file)
-        how = (name or path.stem, interpolation, cyclic, x_unit, y_unit)
-        return cls(*_core.cam_from_csv(path.read_bytes(), str(path), *how))
+        how = (name or shown(path.stem), interpolation, cyclic, x_unit, y_unit)
+        return cls(*_core.cam_from_csv(path.read_bytes(), shown(path), *how))
 
     @classmethod
     def from_file(
@@ -303,14 +305,14 @@ class Table:
         else:
             raise ValueError("a cam of segments has no points; say how many the file is to have (count)")
         if file is not None:
-            Path(file).write_text(text, encoding="utf-8")
+            write_text(file, text)
         return text
 
     def to_yaml(self, file: str | os.PathLike[str] | None = None) -> str:
         """The cam as it stands in a machine file, also written to a file where one is named."""
         text = self._core.to_yaml()
         if file is not None:
-            Path(file).write_text(text, encoding="utf-8")
+            write_text(file, text)
         return text
 
     def _repr_png_(self) -> bytes:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import click
+import yaml
 from rich.console import Console
 from rich.table import Table as Grid
 from rich.text import Text
@@ -16,6 +17,8 @@ from takt import cam
 from takt.cam_check import TOUCHING, Check, Limits, check, figure
 from takt.counted import counted
 from takt.engine import read_machine
+from takt.written import refuse_input
+from takt.yaml_text import load
 
 FAILED = 1
 NAMES = (("y", ""), ("y'", ""), ("y''", "²"), ("y'''", "³"))
@@ -41,7 +44,7 @@ class Options:
 
 def run(file: Path, name: str | None, options: Options, out: Console) -> int:
     """Reads, checks, says, draws, writes. 1: a limit is exceeded."""
-    _refuse_nonsense(options)
+    _refuse_nonsense(file, options)
     tables = _read(file, name, options)
     writes = options.target or options.csv or options.yaml_file
     if writes and len(tables) > 1:
@@ -62,7 +65,7 @@ def run(file: Path, name: str | None, options: Options, out: Console) -> int:
     return 0 if passed else FAILED
 
 
-def _refuse_nonsense(options: Options) -> None:
+def _refuse_nonsense(file: Path, options: Options) -> None:
     from takt.plot import PICTURES
 
     for value, option in ((options.master_speed, "speed"), (options.master_acceleration, "acceleration")):
@@ -79,6 +82,27 @@ def _refuse_nonsense(options: Options) -> None:
             raise click.UsageError(f"{path}: expected a name that ends in {' or '.join(suffixes)}")
         if not path.parent.is_dir():
             raise click.UsageError(f"{path}: there is no directory {path.parent}")
+        refuse_input(path, file, options.machine, *_named_by(file), *_named_by(options.machine))
+
+
+def _named_by(machine: Path | None) -> Iterator[Path]:
+    """The files that a machine file names: of points, elements, kinematics and shapes; none where it cannot be read."""
+    if machine is None or not _is_machine(machine):
+        return
+    try:
+        waiting = [load(read_machine(machine)[0].decode())]
+    except (yaml.YAMLError, ValueError):
+        return
+    seen: set[int] = set()  # aliases lead to the same value again
+    while waiting:
+        value = waiting.pop()
+        if id(value) in seen or not isinstance(value, (dict, list)):
+            continue
+        seen.add(id(value))
+        waiting += value.values() if isinstance(value, dict) else value
+        if isinstance(value, dict):
+            names = (value.get(key) for key in ("file", "urdf"))
+            yield from (machine.parent / name for name in names if isinstance(name, str) and "<" not in name)
 
 
 def _read(file: Path, name: str | None, options: Options) -> list[cam.Table]:

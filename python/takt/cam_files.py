@@ -24,6 +24,7 @@ from typing import Any
 from takt.cam import Interpolation, Table
 from takt.csv_rows import DECIMAL_COMMA, surplus
 from takt.errors import ConfigError
+from takt.names import shown
 
 ERRORS = 20  # of one file, at most
 TURN = 360.0  # deg, the master's range of TwinCAT CNC tables
@@ -79,7 +80,7 @@ def read(
     path = Path(file)
     text = _decoded(path.read_bytes())
     code = _code(text)
-    content = _Content(str(path))
+    content = _Content(shown(path))
     if _CNC.search(text):
         cyclic, law = content.read_cnc(text)
         interpolation = interpolation or law
@@ -89,7 +90,7 @@ def read(
         content.read_columns(text, columns)
     content.tell()
     units = {"x_unit": x_unit or content.units.get("x", "u"), "y_unit": y_unit or content.units.get("y", "u")}
-    head = {"name": name or path.stem, "cyclic": cyclic, **units}
+    head = {"name": name or shown(path.stem), "cyclic": cyclic, **units}
     if any("law" in row for row in content.rows):
         cam = {**head, "segments": content.segments()}
     else:

@@ -28,16 +28,26 @@ from takt.events import Progress as Share
 from takt.figures import in_words
 from takt.lcmlog import open_log, to_recording, write_log
 from takt.missing import all_missing, troubles
+from takt.names import shown
 from takt.network import usual_url
 from takt.opcua.command import opcua, opcua_user
 from takt.plant import PlantError
 from takt.recording import Recording, RecordingError
 from takt.remote import connect
 from takt.replay import replay as replay_log
-from takt.scenario import Outcome, load_scenario, run_scenario, settings_of, verify_recording, with_settings
+from takt.scenario import (
+    Outcome,
+    is_of_scenario,
+    load_scenario,
+    run_scenario,
+    settings_of,
+    verify_recording,
+    with_settings,
+)
 from takt.session import Session
-from takt.source import read_run
-from takt.terminal import Output
+from takt.source import read_run, stem_of
+from takt.terminal import Output, any_output
+from takt.written import write_text
 
 if TYPE_CHECKING:
     from takt.sweep import sweeping
@@ -45,6 +55,7 @@ if TYPE_CHECKING:
 BAD_INPUT = 2
 FAILED = 1
 
+PACKAGE = Path(__file__).parent
 DIFFERENCES = 10  # between two runs, said on the terminal at most
 
 out = Output()
@@ -76,7 +87,13 @@ def cli() -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs the command line. 0: all is well; 1: something checked has failed; 2: bad input, said in one line."""
+    """Runs the command line. 0: all is well; 1: something checked has failed; 2: bad input, said in one line. None of
+    this depends on whether the output can be shown."""
+    with any_output():
+        return _main(arguments)
+
+
+def _main(arguments: Sequence[str] | None) -> int:
     given = list(sys.argv[1:] if arguments is None else arguments)
     show_all = "--traceback" in given
     given = [argument for argument in given if argument != "--traceback"]
@@ -114,11 +131,11 @@ def _sentence(error: Exception) -> str:
         return f"{error.filename}: {error.strerror}"
     if isinstance(error, SyntaxError):
         return f"{error.filename}:{error.lineno}: {error.msg}"
-    frames = traceback.extract_tb(error.__traceback__)
-    package = str(Path(__file__).parent)
-    # A scenario's own line says more than one of ours.
-    theirs = [f for f in frames if not f.filename.startswith(package)] or frames
-    place = f" ({os.path.relpath(theirs[-1].filename)}:{theirs[-1].lineno})" if theirs else ""
+    frames = [(Path(frame.filename), frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]
+    # A line of a scenario says more than one of this package, which says more than one of another.
+    places = [frame for frame in frames if is_of_scenario(frame[0])]
+    places = places or [frame for frame in frames if frame[0].is_relative_to(PACKAGE)]
+    place = f" ({os.path.relpath(places[-1][0])}:{places[-1][1]})" if places else ""
     return f"{type(error).__name__}: {error}{place}"
 
 
@@ -156,7 +173,7 @@ def reference(output: Path | None) -> None:
     if output is None:
         print(reference_page(), end="")
     else:
-        output.write_text(reference_page(), encoding="utf-8")
+        write_text(output, reference_page())
         print(output)
 
 
@@ -193,11 +210,16 @@ def run(
     with session, _watching(session, scenario.title):
         outcome = run_scenario(scenario, session, report)
         figures = session.figures
-    _show(outcome)
-    if report is not None:
-        from takt.report.command import write_outcome
+    page = None
+    try:
+        if report is not None:
+            from takt.report.command import write_outcome
 
-        print(f"report: {write_outcome(outcome, scenario, report, figures).html}")
+            page = write_outcome(outcome, scenario, report, figures).html
+    finally:
+        _show(outcome)
+    if page is not None:
+        print(f"report: {page}")
     return 0 if outcome.passed else FAILED
 
 
@@ -311,9 +333,12 @@ def _demo(
     stays = page is not None and (sys.stdin.isatty() if stay is None else stay)
 
     def judged(outcome: Outcome, figures: Mapping[str, Any]) -> None:
-        _show(outcome)
-        _show_figures(in_words(figures))
-        _say(f"report: {write_outcome(outcome, scenario, report, figures).html}")
+        try:
+            written = write_outcome(outcome, scenario, report, figures).html
+        finally:
+            _show(outcome)
+            _show_figures(in_words(figures))
+        _say(f"report: {written}")
         if page is not None and stays:
             page.stay()
         else:
@@ -439,15 +464,20 @@ def run_twin(
     drawing = picture and _writable(picture, (".png",))
     machine, found = command.find(what, scenario)
     ran = command.run(machine, found, compare=compare, report=report)
-    _show(ran.outcome)
-    out.print(command.table(ran.judged))
+    page = None
+    try:
+        if report is not None:
+            from takt.report.command import write_outcome
+
+            page = write_outcome(ran.outcome, found, report, {}).html
+    finally:
+        _show(ran.outcome)
+        out.print(command.table(ran.judged))
     if speed:
         servo = f"; with simulated servos {ran.servo_cycles_s:,.0f}" if ran.servo_cycles_s else ""
         print(f"{ran.cycles_s:,.0f} cycles a second{servo}")
-    if report is not None:
-        from takt.report.command import write_outcome
-
-        print(f"report: {write_outcome(ran.outcome, found, report, {}).html}")
+    if page is not None:
+        print(f"report: {page}")
     if drawing:
         try:
             print(f"picture: {ran.twin.picture(drawing)}")
@@ -575,15 +605,16 @@ def plot(
     """Draw SIGNALS (x, x.set_position, "*.following_error") of a FILE: a recording (.npz) or an LCM log."""
     from takt import plot as plotting
 
-    target = _writable(output or file.with_suffix(".png"), plotting.PICTURES)
+    target = _writable(output or file.parent / f"{stem_of(file)}.png", plotting.PICTURES)
     recording = _read(file, start_number).between(start, end)
     window = None
     if start is not None or end is not None:
         window = (recording.start_s if start is None else start, recording.end_s if end is None else end)
-    figure = plotting.draw(recording, *signals, title=title or file.name, window=window)
+    figure = plotting.draw(recording, *signals, title=title or shown(file.name), window=window)
+    plotting.save(figure, target)
     for sentence in troubles(recording):
         print(sentence)
-    print(plotting.save(figure, target))
+    print(target)
 
 
 @cli.command()
@@ -793,10 +824,11 @@ def _show_comparison(recordings: Sequence[Recording], names: tuple[str, str], al
     from takt.report import compare, write_comparison
 
     comparison = compare(recordings[0], recordings[1], names, align=align)
+    write_comparison(comparison, target)
     for difference in comparison.differing[:DIFFERENCES]:
         print(difference.sentence)
     print(comparison.sentence)
-    print(f"report: {write_comparison(comparison, target)}")
+    print(f"report: {target}")
 
 
 def _show_sweep(result: sweeping.Result) -> int:

@@ -17,6 +17,7 @@ from takt.component import Component
 from takt.counted import counted
 from takt.errors import CommandError, TaktError
 from takt.feedback import Feedback, Place
+from takt.names import shown
 from takt.recording import Recording
 from takt.verdict import Lane, Trace, Verdict, seconds
 
@@ -42,7 +43,7 @@ class Complaint:
         stack = traceback.extract_tb(error.__traceback__)
         frames = [frame for frame in stack if Path(frame.filename).name == path.name]
         said = str(error) or (frames[-1].line if frames else "") or "an assertion failed"
-        where = f" ({path.name}:{frames[-1].lineno})" if frames else ""
+        where = f" ({shown(path.name)}:{frames[-1].lineno})" if frames else ""
         line = stack[-1].line or "" if stack else ""
         *_, (last, _) = traceback.walk_tb(error.__traceback__)
         words = frozenset(re.findall(r"\w+", line))
@@ -118,7 +119,7 @@ def _where(places: Iterable[Place], path: Path) -> str:
     """The line in the scenario's folder that did it, and the lines there that called that one."""
     folder = path.resolve().parent
     own = [(Path(file).resolve(), line) for file, line in places if not file.startswith("<")]
-    lines = [f"{file.relative_to(folder)}:{line}" for file, line in own if file.is_relative_to(folder)]
+    lines = [f"{shown(file.relative_to(folder))}:{line}" for file, line in own if file.is_relative_to(folder)]
     if not lines:
         return ""
     return f" ({lines[0]}, called from {', '.join(lines[1:])})" if len(lines) > 1 else f" ({lines[0]})"

@@ -6,11 +6,12 @@ import csv
 import io
 import os
 import re
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from takt.errors import TaktError
+from takt.errors import TaktError, shortened
 
 Fields = dict[str, str | None]
 
@@ -46,8 +47,8 @@ def surplus(fields: Sequence[str], expected: int) -> str:
 
 def read_rows(file: str | os.PathLike[str], error: type[TaktError]) -> Rows:
     """Reads the file: commas between the fields or, where the head has none, semicolons or tabulators; numbers between
-    these may have a decimal comma. Raises `error` where it is no CSV in UTF-8 or a row has more fields than the head,
-    OSError where it cannot be read."""
+    these may have a decimal comma. Raises `error` where it is no CSV in UTF-8, the head has a column twice or a
+    row has more fields than the head, OSError where it cannot be read."""
     with Path(file).open(encoding="utf-8-sig", newline="") as source:
         try:
             text = io.StringIO(source.read(), newline="")
@@ -55,6 +56,9 @@ def read_rows(file: str | os.PathLike[str], error: type[TaktError]) -> Rows:
             text.seek(0)
             table = csv.DictReader(text, restkey="", delimiter=delimiter, skipinitialspace=True, strict=True)
             head, rows = table.fieldnames or (), []
+            for title, count in Counter(head).items():
+                if title and count > 1:
+                    raise error(f"{os.fspath(file)}:{table.line_num}: the head has the column {shortened(title)} twice")
             for row in table:
                 more: Any = row.get("")  # text where the head ends in a comma
                 if isinstance(more, list) and (sentence := surplus([*head, *more], len(head))):

@@ -26,6 +26,7 @@ from takt.feedback import Feedback
 from takt.forecast import Forecast
 from takt.keys import KeyFile, read_key
 from takt.mover import Mover
+from takt.names import shown
 from takt.network import network_of
 from takt.plant import Plant, axes_of
 from takt.recording import Recording
@@ -70,7 +71,7 @@ def read_machine(machine: Machine | _Text) -> tuple[bytes, str]:
     path = Path(machine)
     try:
         with path.open("rb") as file:
-            return file.read(MOST_BYTES), str(path)
+            return file.read(MOST_BYTES), shown(path)
     except OSError as error:
         raise ConfigError([f"{path}: cannot be read: {error.strerror}"]) from None
 
@@ -184,8 +185,10 @@ class Engine(Session):
 
     def close(self) -> None:
         """Ends the session, and what external drives hear of it; what was recorded stays readable."""
-        super().close()
-        self._core.leave_network()
+        try:
+            super().close()
+        finally:
+            self._core.leave_network()
 
     def take_journal(self) -> list[JournalEntry]:
         """Commands applied since the last call: (cycle, ticket, lease in s, target, verb, arguments)."""

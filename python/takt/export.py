@@ -16,6 +16,7 @@ from takt.errors import TaktError
 from takt.missing import troubles
 from takt.recording import Array, Recording
 from takt.scene.foxglove import EVENTS, topic_of
+from takt.written import written
 
 LATEST_S = 2**63 / 1e9  # s; log times count ns from 0 up
 LEVELS = {"error": 4, "mark": 2}  # of foxglove.Log: ERROR, INFO; all others are DEBUG
@@ -90,7 +91,7 @@ def to_mcap(recording: Recording, path: Path, scene: bool = True) -> int:
     except ImportError:
         raise ExportError("writing MCAP needs the package mcap: pip install mcap") from None
     _check_times(recording)
-    with path.open("wb") as file:
+    with written(path) as beside, beside.open("wb") as file:
         writer: Any = Writer(file)
         writer.start(profile="", library="takt")
         streams = [_component(writer, recording, name) for name in recording]

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from takt.engine import Engine, Machine
-from takt.errors import TaktError
+from takt.errors import CommandError, TaktError
 from takt.names import names_in
 
 try:
@@ -34,11 +34,13 @@ class ReachEnv(gymnasium.Env[Floats, Floats]):
 
     An action says where each axis is to go until the next one, as a share of its range from -1 to 1. Observed are, for
     each axis, its position and the place to be reached as such shares, and its velocity as a share of its limit. The
-    reward of a step is minus the mean distance, in shares; an episode ends when all are there at rest.
+    reward of a step is minus the mean distance, in shares; an episode ends when all are there at rest. A move that is
+    refused or fails raises CommandError.
 
     machine: as takt.Engine takes it.
     axes: names.
-    ranges: by axis, lowest and highest position; unset: the SW limits of the axis.
+    ranges: by axis, lowest and highest position, within its SW limits; of a rotary axis from 0 to below its modulus;
+        unset: the SW limits of the axis.
     step_s: s of engine time from one action to the next.
     episode_s: s of engine time after which an episode is broken off.
     within: share of the range at which a place is reached.
@@ -72,10 +74,12 @@ class ReachEnv(gymnasium.Env[Floats, Floats]):
         self._within = within
         low, high, speed = [], [], []
         for name in self._names:
-            limits = self._engine.axis(name).parameters["limits"]
+            axis = self._engine.axis(name).parameters
+            limits = axis["limits"]
             lower, upper = (ranges or {}).get(name, (limits.get("lower"), limits.get("upper")))
             if lower is None or upper is None or not -np.inf < lower < upper < np.inf:
                 raise TaktError(f"axis {name}: no range: give ranges={{'{name}': (LOWEST, HIGHEST)}}, or SW limits")
+            _refuse_unreachable(axis, lower, upper)
             low.append(lower)
             high.append(upper)
             speed.append(limits["velocity"])
@@ -108,9 +112,14 @@ class ReachEnv(gymnasium.Env[Floats, Floats]):
         if told.shape != self.action_space.shape or not np.isfinite(told).all():
             raise ValueError(f"expected an action of {len(self._names)} numbers from -1 to 1, found {action!r}")
         told = np.clip(told, -1, 1)
-        for name, position in zip(self._names, self._middle + self._half * told, strict=True):
+        moves = [
             self._engine.axis(name).move_absolute(position=float(position))
+            for name, position in zip(self._names, self._middle + self._half * told, strict=True)
+        ]
         self._engine.step(self._cycles)
+        for move in moves:
+            if move.error:
+                raise CommandError(move)
         self._steps += 1
         at, velocity = self._state()
         off = np.abs(at - self._goal)
@@ -129,3 +138,14 @@ class ReachEnv(gymnasium.Env[Floats, Floats]):
     def _observed(self) -> Floats:
         seen = np.concatenate([*self._state(), self._goal])
         return np.asarray(np.clip(seen, -MOST, MOST), np.float32)
+
+
+def _refuse_unreachable(axis: Mapping[str, Any], lower: float, upper: float) -> None:
+    """Raises TaktError where a range is not within the SW limits of an axis, or, of a rotary axis, not within 0 to
+    below its modulus."""
+    limits, found = axis["limits"], f"found {lower:g} to {upper:g}"
+    least, most = limits.get("lower", -np.inf), limits.get("upper", np.inf)
+    if axis["kind"] == "rotary" and not 0 <= lower < upper < axis["modulus"]:
+        raise TaktError(f"ranges: axis {axis['name']}: expected 0 to below {axis['modulus']:g} {axis['unit']}, {found}")
+    if not least <= lower < upper <= most:
+        raise TaktError(f"ranges: axis {axis['name']}: expected {least:g} to {most:g} {axis['unit']}, {found}")

@@ -24,6 +24,7 @@ import numpy.typing as npt
 
 from takt import _core
 from takt.errors import TaktError
+from takt.names import shown
 from takt.yaml_text import to_json
 
 Array = npt.NDArray[np.float64]
@@ -97,7 +98,7 @@ class Kinematics:
         params: dict[str, Any] = dict(mechanism)
         if joints:
             params["joints"] = [dict(joint) for joint in joints]
-        self._core = _core.Mechanism(to_json(params), str(folder))
+        self._core = _core.Mechanism(to_json(params), shown(folder))
 
     @property
     def axes(self) -> int:

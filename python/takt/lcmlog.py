@@ -23,6 +23,7 @@ from takt.events import Event, EventLog, LogError, Progress
 from takt.figures import DROPPED, figures_of
 from takt.lying import Lying, objects_of
 from takt.made_cams import is_kept
+from takt.names import shown
 from takt.network import open_network, roomy, usual_url
 from takt.recording import Array, Recording
 from takt.sequences import OBJECTS, Sequences
@@ -341,7 +342,7 @@ def to_recording(log: Log, run: int = -1) -> Recording:
     text, period, version = _description(one)
     if not 0 < period < 1:
         raise LogError(f"{log.path}: the period of the machine that it describes is {period:g} s")
-    machine = json.loads(_core.load_machine(text.encode(), str(log.path), files=False))
+    machine = json.loads(_core.load_machine(text.encode(), shown(log.path), files=False))
     tables: dict[str, dict[str, Array]] = {}
     components = components_of(machine)
     wrong = sum(len(states) for name, states in one.states.items() if name not in components)
@@ -351,7 +352,7 @@ def to_recording(log: Log, run: int = -1) -> Recording:
             wrong += left_out
     silent, late = _unheard(machine, tables, one, period)
     meta = {
-        "source": str(log.path),
+        "source": shown(log.path),
         "period_s": period,
         "version": version,
         "losses": one.sequences.lost(),

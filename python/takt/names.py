@@ -1,8 +1,18 @@
-"""Lists of names, as arguments take them."""
+"""Lists of names, as arguments take them, and names of files, as people see them."""
 
 from __future__ import annotations
 
+import os
+import re
 from collections.abc import Iterable
+
+_LONE = re.compile("[\ud800-\udfff]")
+
+
+def shown(path: str | os.PathLike[str]) -> str:
+    """Returns the name of a file as a text that UTF-8 can hold: bytes that Python could not decode become U+FFFD. The
+    engine, YAML, JSON and pages take no others."""
+    return _LONE.sub("\ufffd", os.fspath(path))
 
 
 def names_in(given: object, argument: str, what: str, listed: str = "names") -> tuple[str, ...]:

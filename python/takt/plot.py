@@ -32,6 +32,7 @@ from takt.missing import holes
 from takt.names import names_in
 from takt.recording import Array, Event, FloatArray, Recording, RecordingError
 from takt.verdict import Bound, Interval, Lane, Verdict
+from takt.written import written
 
 WIDTH_IN = 14.0  # 1400 pixels at 100 dpi
 DPI = 100
@@ -187,7 +188,8 @@ def save(figure: Figure, path: str | PathLike[str]) -> Path:
     if target.suffix not in PICTURES:
         raise ValueError(f"{target}: expected a name that ends in {', '.join(PICTURES)}")
     target.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(target, format=target.suffix[1:], dpi=DPI)
+    with written(target) as file:
+        figure.savefig(file, format=target.suffix[1:], dpi=DPI)
     return target
 
 

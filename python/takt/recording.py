@@ -28,6 +28,7 @@ import numpy.typing as npt
 
 from takt.counted import counted
 from takt.errors import TaktError, shortened
+from takt.written import written
 
 Array = npt.NDArray[Any]
 FloatArray = npt.NDArray[np.float64]
@@ -327,7 +328,7 @@ class Recording:
         arrays = {f"component{i}": a for i, a in enumerate(self._data.values())}
         arrays |= {f"meta{i}": a for i, a in enumerate(kept.values())}
         target.parent.mkdir(parents=True, exist_ok=True)
-        with target.open("wb") as file:
+        with written(target) as beside, beside.open("wb") as file:
             np.savez_compressed(file, header=np.array(text), **arrays)  # type: ignore[arg-type]
         return target
 
@@ -379,7 +380,7 @@ class Recording:
                 column[row] = value
             columns.append(column)
         target.parent.mkdir(parents=True, exist_ok=True)
-        with target.open("w", newline="", encoding="utf-8") as file:
+        with written(target) as beside, beside.open("w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(header)
             writer.writerows(zip(*columns, strict=True))
@@ -420,7 +421,8 @@ class Recording:
             fields.append(arrow.field(f"{component}.{field}", columns[-1].type, metadata={"unit": unit}))
         target = Path(path)
         target.parent.mkdir(parents=True, exist_ok=True)
-        parquet.write_table(arrow.Table.from_arrays(columns, schema=arrow.schema(fields)), target)
+        with written(target) as beside, beside.open("wb") as file:
+            parquet.write_table(arrow.Table.from_arrays(columns, schema=arrow.schema(fields)), file)
         return target
 
     def _part(self, signals: Sequence[str]) -> Recording:

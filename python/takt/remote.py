@@ -176,11 +176,13 @@ class RemoteSession(Session):
             self._news.wait_for(
                 lambda: self._trouble or all(f._release_is_settled for f in self._held), self._dead_man_s
             )
-        super().close()
-        self._stop.set()
-        self._beat_now.set()
-        self._beater.join()
-        self._leave()
+        try:
+            super().close()
+        finally:
+            self._stop.set()
+            self._beat_now.set()
+            self._beater.join()
+            self._leave()
 
     def _leave(self) -> None:
         """Unsubscribes; else LCM would queue messages for as long as the session object is referenced."""

@@ -14,6 +14,7 @@ from takt import _core, msgs
 from takt.counted import counted
 from takt.events import LogError, Progress
 from takt.lcmlog import Run, open_log, run_of
+from takt.names import shown
 from takt.replay_comparison import Comparison, StateDifference
 from takt.tables import components_of
 
@@ -99,7 +100,7 @@ def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | N
         missing = f"the log is not whole: {'; '.join([*content.reasons, *([missing] if missing else [])])}"
     comparable = _in_a_row(cycles)
     text = one.start.text.encode()
-    engine = _core.Engine(text, str(content.path), journal=True, period_s=one.start.period_s, checks=False)
+    engine = _core.Engine(text, shown(content.path), journal=True, period_s=one.start.period_s, checks=False)
     strange = sorted(one.states.keys() - components_of(json.loads(engine.machine_json)).keys())
     if strange:
         missing = missing or f"the log has states of '{strange[0]}', which the machine does not have"

@@ -20,6 +20,7 @@ import inspect
 import os
 import re
 import sys
+import sysconfig
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -34,6 +35,7 @@ from takt.changes import text_of, value_of
 from takt.complaint import VERIFY, Complaint
 from takt.errors import CommandError, TaktError, TimeoutError
 from takt.judging import asserts
+from takt.names import shown
 from takt.recording import Recording
 from takt.routing import RoutingError
 from takt.session import Session
@@ -242,7 +244,7 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
     if takes_s is not None and (not isinstance(takes_s, (int, float)) or not 0 < takes_s < float("inf")):
         raise ScenarioError(f"{file}: TAKES_S must be a number of seconds above 0, found {takes_s!r}")
     lines = (module.__doc__ or "").strip().splitlines()
-    title = lines[0].rstrip(".") if lines else file.stem
+    title = lines[0].rstrip(".") if lines else shown(file.stem)
     view = _address(file, module)
     return Scenario(file, title, scenario, verify, pictures, every, takes_s, results, view=view)
 
@@ -299,6 +301,16 @@ def modules_of(folder: Path) -> Iterator[None]:
         yield
     finally:
         sys.path.remove(str(folder))
+
+
+def is_of_scenario(file: Path) -> bool:
+    """Whether a file lies in the folder of a scenario that was loaded, and is not an installed one beneath it. False
+    for names in tracebacks that are of no file there, as `<frozen importlib._bootstrap>`."""
+    if not file.is_file():
+        return False
+    file = file.resolve()
+    installed = {"site-packages", "dist-packages"} & {*file.parts} or file.is_relative_to(sysconfig.get_path("stdlib"))
+    return not installed and any(file.is_relative_to(folder) for folder in _folders)
 
 
 def _root_of(module: Any) -> Path | None:
@@ -382,10 +394,11 @@ def _judge(scenario: Scenario, recording: Recording, verdicts: Sequence[Verdict]
     if scenario.verify is None:
         if asserts(scenario.scenario, folder):
             return None
-        return Complaint(f"nothing was judged: {scenario.path.name} has no verify(recording)", None, name=VERIFY)
+        return Complaint(f"nothing was judged: {shown(scenario.path.name)} has no verify(recording)", None, name=VERIFY)
     answer = scenario.judge(recording)
     code = getattr(scenario.verify, "__code__", None)
-    where = f"{scenario.path.name}:{code.co_firstlineno}" if code else scenario.path.name
+    name = shown(scenario.path.name)
+    where = f"{name}:{code.co_firstlineno}" if code else name
     if isinstance(answer, bool | np.bool_):
         return None if answer else Complaint(f"verify returned False ({where})", None, name=VERIFY)
     if verdicts or asserts(scenario.verify, folder):

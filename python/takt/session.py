@@ -94,31 +94,38 @@ class Recorder:
         self.lying = Lying()  # on these
 
     def __repr__(self) -> str:
-        said = "in progress" if self._recording is None else repr(self._recording)
+        ended = "lost" if self._recording is None else repr(self._recording)
+        said = "in progress" if self.running else ended
         return f"<Recorder of {', '.join(self.components)}: {said}>"
 
     @property
     def running(self) -> bool:
-        return self._recording is None
+        return self in self._session._recorders
 
     @property
     def recording(self) -> Recording:
-        if self._recording is None:
+        if self.running:
             raise TaktError("the recording is still in progress: stop it first")
-        return self._recording
+        return self._ended()
 
     def stop(self) -> Recording:
         """Ends the recording, and again: returns it."""
-        if self._recording is None:
+        if self.running:
+            self._session._recorders.remove(self)  # first: an end that was interrupted is not tried again
             self._recording = self._session._finish(self)
-            self._session._recorders.remove(self)
+        return self._ended()
+
+    def _ended(self) -> Recording:
+        if self._recording is None:
+            raise TaktError("the recording is lost: its end was interrupted, or failed for lack of memory")
         return self._recording
 
     def __enter__(self) -> Recorder:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.stop()
+        if self.running:
+            self.stop()
 
 
 class Session(SessionWithCams):
@@ -578,9 +585,11 @@ class Session(SessionWithCams):
 
     def close(self) -> None:
         """Ends the session; what was recorded stays readable."""
-        for recorder in list(self._recorders):
-            recorder.stop()
-        self._closed = True
+        try:
+            for recorder in list(self._recorders):
+                recorder.stop()
+        finally:
+            self._closed = True
 
     def __enter__(self) -> Self:
         self._check_open()

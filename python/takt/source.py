@@ -10,6 +10,14 @@ from takt.lcmlog import read_log
 from takt.recording import Recording, RecordingError
 
 IN_DIRECTORY = "recording.npz"
+ENDINGS = (".npz", ".log", ".lcm")
+
+
+def stem_of(run: Path) -> str:
+    """The name of a run without an ending of ENDINGS, for files that are made of it. Other dots are of the name, as in
+    lcmlog-2024-05-01.00."""
+    name = run.resolve().name if run.name in ("", "..") else run.name  # of a link: its own name
+    return name[:-4] if name.lower().endswith(ENDINGS) and len(name) > 4 else name
 
 
 def recording_of(run: Path) -> Path:

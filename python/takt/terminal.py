@@ -3,7 +3,13 @@ padded, with two blanks between the cells of tables that are not empty."""
 
 from __future__ import annotations
 
-from typing import Any
+import contextlib
+import io
+import os
+import stat
+import sys
+from collections.abc import Iterator
+from typing import Any, TextIO
 
 from rich.console import Console
 from rich.table import Table
@@ -23,6 +29,53 @@ class Output(Console):
         for one in objects:
             for line in _rows(one) if isinstance(one, Table) else [_plain(one)]:
                 print(line, file=self.file)
+
+
+class _Pipe(io.FileIO):
+    """A pipe to write to. What is written after its reader has ended is dropped."""
+
+    def write(self, data: Any) -> int:
+        try:
+            return super().write(data)
+        except BrokenPipeError:
+            return memoryview(data).nbytes
+
+
+@contextlib.contextmanager
+def any_output() -> Iterator[None]:
+    """While it is entered, printing fails neither where the encoding of an output lacks a character, which becomes a
+    question mark, nor where the reader of a pipe has ended."""
+    before = sys.stdout, sys.stderr
+    within = sys.stdout, sys.stderr = _tolerant(sys.stdout), _tolerant(sys.stderr)
+    try:
+        yield
+    finally:
+        sys.stdout, sys.stderr = before
+        for stream in within:
+            if stream not in before:
+                stream.flush()
+
+
+def _tolerant(stream: TextIO) -> TextIO:
+    if not isinstance(stream, io.TextIOWrapper):
+        return stream
+    if stream.errors == "strict":
+        stream.reconfigure(errors="replace")
+    try:
+        kind = os.fstat(stream.fileno()).st_mode
+    except (OSError, ValueError):
+        return stream
+    if not (stat.S_ISFIFO(kind) or stat.S_ISSOCK(kind)):
+        return stream
+    stream.flush()
+    pipe = _Pipe(stream.fileno(), "wb", closefd=False)
+    return io.TextIOWrapper(
+        pipe if isinstance(stream.buffer, io.RawIOBase) else io.BufferedWriter(pipe),
+        encoding=stream.encoding,
+        errors=stream.errors,
+        line_buffering=stream.line_buffering,
+        write_through=stream.write_through,
+    )
 
 
 def _rows(table: Table) -> list[str]:

@@ -24,6 +24,7 @@ import numpy.typing as npt
 
 from takt.csv_rows import read_rows
 from takt.errors import TaktError, shortened
+from takt.written import written
 
 if TYPE_CHECKING:
     from takt.gcode import Options
@@ -252,7 +253,7 @@ class Toolpath:
     def to_csv(self, path: str | PathLike[str]) -> Path:
         """Writes the elements as the `file` of a path in a machine file. It does not say where the path starts."""
         target = Path(path)
-        with target.open("w", newline="", encoding="utf-8") as file:
+        with written(target) as beside, beside.open("w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(COLUMNS)
             for one in self.elements:

@@ -13,6 +13,8 @@ from rich.table import Table as Grid
 
 from takt import gcode, toolpath
 from takt.counted import counted
+from takt.names import shown
+from takt.written import refuse_input
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ class Options:
 
 def run(file: Path, options: Options, out: Console) -> int:
     """Reads, says, draws, writes."""
-    _refuse_nonsense(options)
+    _refuse_nonsense(file, options)
     path = toolpath.read(file, options.start, options.tolerance, options.of_gcode())
     _say(file, path, out)
     if options.csv is not None:
@@ -53,11 +55,11 @@ def run(file: Path, options: Options, out: Console) -> int:
     if options.target is not None:
         from takt.toolpath_picture import picture
 
-        print(f"picture: {picture(path, options.target, file.name)}")
+        print(f"picture: {picture(path, options.target, shown(file.name))}")
     return 0
 
 
-def _refuse_nonsense(options: Options) -> None:
+def _refuse_nonsense(file: Path, options: Options) -> None:
     from takt.plot import PICTURES
 
     if not 0 < options.tolerance <= 1:
@@ -69,6 +71,7 @@ def _refuse_nonsense(options: Options) -> None:
             raise click.UsageError(f"{path}: expected a name that ends in {' or '.join(suffixes)}")
         if not path.parent.is_dir():
             raise click.UsageError(f"{path}: there is no directory {path.parent}")
+        refuse_input(path, file)
 
 
 def _say(file: Path, path: toolpath.Toolpath, out: Console) -> None:

@@ -12,8 +12,10 @@ from rich.table import Table as Grid
 
 from takt.counted import counted
 from takt.errors import ConfigError
+from takt.names import shown
 from takt.track_drawing import CORNER, DRAWINGS, read_drawing
 from takt.track_layout import TrackLayout
+from takt.written import refuse_input, write_text
 
 
 @dataclass(frozen=True)
@@ -43,9 +45,9 @@ def run(file: Path, options: Options, out: Console) -> int:
     if options.target is not None:
         from takt.track_picture import picture
 
-        print(f"picture: {picture(layout, options.target, file.name)}")
+        print(f"picture: {picture(layout, options.target, shown(file.name))}")
     if drawing is not None and options.yaml_file is not None:
-        options.yaml_file.write_text(drawing.tracks, encoding="utf-8")
+        write_text(options.yaml_file, drawing.tracks)
         print(f"tracks: {options.yaml_file}")
     return 0
 
@@ -64,6 +66,7 @@ def _refuse_nonsense(file: Path, options: Options) -> None:
             raise click.UsageError(f"{path}: expected a name that ends in {' or '.join(suffixes)}")
         if not path.parent.is_dir():
             raise click.UsageError(f"{path}: there is no directory {path.parent}")
+        refuse_input(path, file)
 
 
 def _say(file: Path, layout: TrackLayout, out: Console) -> None:

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from takt.errors import TaktError
+from takt.names import shown
 
 if TYPE_CHECKING:
     from takt.track_dxf import Run
@@ -90,7 +91,7 @@ class Drawing(NamedTuple):
 
     def placed(self, file: Path, problem: str) -> str:
         """What is wrong with a track, with the element of the drawing instead of a line of `tracks`."""
-        sentence = re.sub(r"^:\d+:\d+: ", "", problem.removeprefix(str(file)))
+        sentence = re.sub(r"^:\d+:\d+: ", "", problem.removeprefix(shown(file)))
         match = _FINDING.fullmatch(sentence)
         if not match:
             return f"{file}: {sentence}"

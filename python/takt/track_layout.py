@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from takt import _core
 from takt.engine import read_machine
+from takt.names import shown
 
 Array = npt.NDArray[np.float64]
 STEP = 2.0  # mm between points of a curve, at most
@@ -56,7 +57,7 @@ class TrackLayout:
         for key, line in LACKING.items():
             if not whole and not re.search(rf"^{key}\s*:".encode(), text, re.MULTILINE):
                 text += f"\n{line}".encode()
-        self._core = _core.TrackLayout(text + b"\n", name or found)
+        self._core = _core.TrackLayout(text + b"\n", shown(name or found))
 
     def place_parts(self, indices: Sequence[int]) -> None:
         """Links the tracks as with each part at this position, by its index from 1. Requires: `tracks` was not read."""

@@ -91,6 +91,7 @@ def test_points_that_define_no_frame(call: object, sentence: str) -> None:
         ("x,y,z\n0,0,0\n1,5,2,5,3,5\n0,9,0\n", ":3: expected 3 fields as in the head, found 6"),
         ("x,y,z\n\n0,0,0\n\n1,a,0\n0,1,0\n", ":5: y: expected a finite number, found 'a'"),
         ('x,y,z,note\n0,0,0,\n9,0,0,"top\n0,9,0,\n5,5,0,\n', ":5: is no CSV"),
+        ("x,y,z,x\n0,0,0,1\n9,0,0,2\n0,9,0,3\n", ":1: the head has the column x twice"),
         ('x,y,z\n0,0,0\n"9"5,0,0\n0,9,0\n', ":3: is no CSV"),
     ],
 )
@@ -136,6 +137,18 @@ def test_a_table_from_a_pipe(tmp_path: Path) -> None:
     writer.start()
     assert main(["calibrate", "frame", str(pipe)]) == 0
     writer.join()
+
+
+def test_values_are_printed_as_precisely_as_they_are_used(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """GR-46: positions and angles to 1e-6 mm and deg, whatever their size, rounding noise as 0, the ratio exactly."""
+    table = tmp_path / "table.csv"
+    table.write_text("position,x,y,z\n0,12345.678,0.1,0\n1000000,12468.456789,0.1,0\n,12345.678,50,0\n")
+    assert main(["calibrate", "belt", str(table)]) == 0
+    origin, ratio = capsys.readouterr().out.splitlines()[:2]
+    assert origin == "origin: {x: 12345.678, y: 0.1, z: 0, a: 0, b: 0, c: 0}"
+    assert float(ratio.removeprefix("ratio: ")) == pytest.approx(122.778789 / 1e6, rel=1e-12)
+    found = calibrate.Calibration(np.array([-3.55e-15, 1e8 / 3, -0.5, 0, 1.0000004, -1.2e-7]), np.empty(0))
+    assert found.yaml == "{x: 0, y: 33333333.333333, z: -0.5, a: 0, b: 1, c: 0}"
 
 
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -130,10 +130,52 @@ def test_a_rotary_axis_has_no_own_position_limits() -> None:
 
 def test_limits_nobody_knows() -> None:
     rec = Recording({"x": one_axis()["x"]})
-    with pytest.raises(ValueError, match="no limit is given"):
+    with pytest.raises(ValueError, match="no finite limit is given"):
         checks.within_limits(rec, "x")
     with pytest.raises(ValueError, match="not a positive number"):
         checks.within_limits(rec, "x", velocity=math.nan)
+
+
+def test_an_infinite_limit_leaves_the_others_checked() -> None:
+    """PY-05: also in `continuous`; without a finite limit there is nothing to check."""
+    verdict = checks.within_limits(one_axis(), "x", velocity=math.inf, acceleration=10)
+    assert "its acceleration limit" in verdict.sentence
+    assert not verdict.passed
+    verdict = checks.within_limits(one_axis(), "x", velocity=math.inf)
+    assert verdict.passed
+    assert "velocity" not in verdict.sentence
+    assert not checks.continuous(one_axis(), "x", velocity=math.inf, acceleration=10).passed
+    assert checks.continuous(one_axis(), "x", velocity=math.inf).passed
+    unlimited = dict.fromkeys(("velocity", "acceleration", "jerk"), math.inf)
+    with pytest.raises(ValueError, match="within_limits: no finite"):
+        checks.within_limits(one_axis(), "x", position=(-math.inf, math.inf), **unlimited)
+    with pytest.raises(ValueError, match="continuous: no finite"):
+        checks.continuous(one_axis(), "x", **unlimited)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        {"check": "in_sync", "tolerance": 1.0},
+        {"check": "in_sync", "tolerance": 1.0, "ratio": 1.0},
+        {"check": "in_sync", "tolerance": 1.0, "offset": 1.0},
+        {"check": "keeps_distance", "minimum": 1.0},
+        {"check": "keeps_distance", "minimum": 1.0, "tolerance": 1.0},
+        {"check": "keeps_distance", "minimum": 1.0, "modulus": 1.0},
+        {"check": "continuous", "step": 1.0},
+        {"check": "continuous", "slack": 1.0},
+        {"check": "within_limits", "tolerance": 1.0},
+        {"check": "within_limits", "jerk_tolerance": 1.0},
+    ],
+)
+def test_arguments_that_are_no_numbers_are_refused(arguments: dict[str, Any], value: float) -> None:
+    """PY-05: the sentence names the check and its argument."""
+    name, last = arguments["check"], list(arguments)[-1]
+    given = {key: one for key, one in arguments.items() if key != "check"} | {last: value}
+    components = ("x", "x") if name in ("in_sync", "keeps_distance") else ("x",)
+    with pytest.raises(ValueError, match=f"^{name}: {last} is {value}, not "):
+        getattr(checks, name)(one_axis(), *components, **given)
 
 
 def test_deceleration_counts_and_jerk_zero_is_no_limit() -> None:

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
+import resource
+import shutil
 import subprocess
 import sys
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import lcm
@@ -15,6 +21,7 @@ from takt import msgs
 from takt.cli import main
 from takt.figures import quantile
 from takt.tables import is_possible
+from takt.written import write_text
 
 SCENARIO = '''"""Goes and comes back.
 
@@ -264,3 +271,322 @@ def test_as_a_module(files: Path) -> None:
         assert f"  {command} " in done.stdout
     done = subprocess.run([*run, "check", str(files / "none.yaml")], capture_output=True, text=True)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+
+
+@pytest.mark.parametrize("where", ["a pipe without a reader", "an encoding without ²"])
+def test_a_run_does_not_depend_on_its_output(where: str, files: Path) -> None:
+    """PY-06, PY-07: the report is written, and the exit code is that of the run."""
+    failing = SCENARIO.replace('"x", 60.0', '"x", 61.0')
+    (files / "not.py").write_text(failing)
+    reader, writer = os.pipe()
+    if where == "a pipe without a reader":
+        os.close(reader)
+    env = os.environ | {"PYTHONIOENCODING": "ascii" if where.startswith("an encoding") else "utf-8"}
+    for name, code in (("there", 0), ("not", 1)):
+        command = [sys.executable, "-m", "takt", "run", f"{name}.py", "--report", name]
+        ran = subprocess.run(command, cwd=files, stdout=writer, stderr=subprocess.PIPE, text=True, check=False, env=env)
+        assert (ran.returncode, ran.stderr) == (code, "")
+        assert (files / name / "report.html").is_file()
+    os.close(writer)
+    if where != "a pipe without a reader":
+        with os.fdopen(reader, encoding="ascii") as said:
+            assert "acceleration limit of 5000 mm/s?" in said.read()
+
+
+def test_a_report_that_cannot_be_made_leaves_the_verdicts(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """PY-07: they are printed before the mistake of `pictures`."""
+    (files / "there.py").write_text(SCENARIO + "def pictures(recording):\n    return 1 / 0\n")
+    assert main(["run", str(files / "there.py"), "--report", str(files / "report")]) == 2
+    captured = capsys.readouterr()
+    assert "3 passed, 0 failed" in captured.out
+    assert "ZeroDivisionError" in captured.err
+
+
+def test_names_of_files_that_are_no_utf8(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """PY-07, PY-24, CAM-92: every byte that Python cannot decode is shown as U+FFFD."""
+    name = os.fsdecode(b"m\xe4")
+    folder = files / name
+    folder.mkdir()
+    machine, scenario, cam = (folder / f"{name}.{ending}" for ending in ("yaml", "py", "csv"))
+    machine.write_text(MACHINE)
+    scenario.write_text(
+        "def scenario(session, d=1.0):\n    session.run(0.1)\ndef verify(recording):\n    assert False\n"
+    )
+    cam.write_text("x,y\n0,0\n1,1\n2,1\n")
+    assert main(["check", str(machine)]) == 0
+    report = folder / "report"
+    assert main(["run", str(scenario), "--machine", str(machine), "--report", str(report)]) == 1
+    assert "assert False (m\ufffd.py:4)" in (report / "report.html").read_text()
+    (folder / "recording.npz").write_bytes((report / "recording.npz").read_bytes())
+    for command, file in (
+        (["report", str(report / "recording.npz")], report / "recording.html"),
+        (["report", str(report), str(folder)], None),
+        (["plot", str(report / "recording.npz"), "x", "-o", str(folder / f"{name}.png")], folder / f"{name}.png"),
+        (["export", str(report), "--parquet", str(folder / f"{name}.parquet")], folder / f"{name}.parquet"),
+        (["cam", str(cam), "--yaml", str(folder / "cam.yaml")], folder / "cam.yaml"),
+    ):
+        assert main(command) == 0, capsys.readouterr().err
+        assert file is None or file.is_file()
+    assert 'name: "m\ufffd"' in (folder / "cam.yaml").read_text()
+    sweep = ["sweep", str(scenario), "--machine", str(machine), "--grid", "d=1,2", "-o", str(folder / name)]
+    assert main([*sweep, "--workers", "1"]) == 1
+    assert "m\ufffd.py" in (folder / name / "sweep.html").read_text()
+    machine.write_text("name: [")
+    assert main(["check", str(machine)]) == 2
+    assert "m\ufffd.yaml:1:" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("cam", ["points: [{x: 0, y: 0}, {x: 1, y: 1}]", "file: points.csv"])
+def test_a_run_in_a_folder_whose_name_is_no_utf8(cam: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """PY-07, CAM-04: names that are relative to it are found."""
+    folder = tmp_path / os.fsdecode(b"m\xe4")
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    Path("points.csv").write_text("x,y\n0,0\n1,1\n")
+    Path("machine.yaml").write_text(
+        f"{MACHINE}cams: [{{name: c, {cam}}}]\n"
+        "groups: [{name: g, axes: [x, r], kinematics: {gantry: {axes: [x, c]}},\n"
+        "          path: {velocity: 300, acceleration: 3000, jerk: 60000}}]\n"
+    )
+    Path("there.py").write_text(SCENARIO)
+    assert main(["check", "machine.yaml"]) == 0
+    assert main(["run", "there.py", "--report", "report"]) == 0
+    assert Path("report/report.html").is_file()
+
+
+def test_a_log_whose_name_is_no_utf8(files: Path) -> None:
+    """PY-06, PY-07."""
+    url = new_url()
+    log = files / os.fsdecode(b"l\xe4.log")
+    with running(files, url, "--log", str(log)), takt.connect(url) as session:
+        session.axis("x").power().wait()
+    assert main(["replay", str(log)]) == 0
+    assert main(["report", str(log)]) == 0
+    assert "l\ufffd.log" in log.with_suffix(".html").read_text()
+
+
+@pytest.fixture
+def full_disk() -> Iterator[None]:
+    """Files end at 20 kB."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.mark.parametrize(
+    ("command", "target"),
+    [
+        (["run", "there.py", "--report", "report"], "report/recording.npz"),
+        (["report", "kept.npz", "-o", "page.html"], "page.html"),
+        (["report", "kept.npz", "kept.npz", "-o", "page.html"], "page.html"),
+        (["plot", "kept.npz", "-o", "picture.png"], "picture.png"),
+        (["export", "kept.npz", "--csv", "kept.csv"], "kept.csv"),
+        (["export", "kept.npz", "--mcap", "kept.mcap"], "kept.mcap"),
+        (["export", "kept.npz", "--parquet", "kept.parquet"], "kept.parquet"),
+        (["cam", "cam.csv", "--csv", "points.csv", "--count", "9000"], "points.csv"),
+    ],
+)
+def test_a_full_disk_is_named_and_leaves_no_half_files(
+    command: list[str],
+    target: str,
+    files: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    request: pytest.FixtureRequest,
+) -> None:
+    """PY-07: the file that was there stays as it was."""
+    monkeypatch.chdir(files)
+    assert main(["run", "there.py", "--report", "report"]) == 0
+    shutil.copy("report/recording.npz", "kept.npz")
+    Path("cam.csv").write_text("x,y\n0,0\n1,1\n2,1\n")
+    if target != "report/recording.npz":
+        Path(target).write_text("before")
+    before, listed = Path(target).read_bytes(), sorted(files.rglob("*"))
+    request.getfixturevalue("full_disk")
+    assert main(command) == 2
+    assert capsys.readouterr().err == f"takt: {target}: File too large\n"
+    assert Path(target).read_bytes() == before
+    assert sorted(files.rglob("*")) == listed
+
+
+@pytest.fixture
+def own_folder() -> Iterator[Path]:
+    """A folder of a user other than root, as which the test runs, too."""
+    with tempfile.TemporaryDirectory() as name:
+        if os.geteuid() != 0:
+            yield Path(name)
+            return
+        os.chown(name, 65534, 65534)
+        os.seteuid(65534)
+        try:
+            yield Path(name)
+        finally:
+            os.seteuid(0)
+
+
+def test_a_write_protected_file_is_not_written(own_folder: Path) -> None:
+    """PY-07: also where its folder takes other files."""
+    target = own_folder / "kept.csv"
+    target.write_text("before")
+    target.chmod(0o444)
+    with pytest.raises(PermissionError, match=r"Permission denied: '.*/kept\.csv'$"):
+        write_text(target, "after")
+    assert target.read_text() == "before"
+    assert [*own_folder.iterdir()] == [target]
+
+
+def test_written_files_keep_their_links_owner_and_group(tmp_path: Path) -> None:
+    """PY-07: the file is the same, with another content."""
+    target, link, symbolic = (tmp_path / name for name in ("a.csv", "b.csv", "c.csv"))
+    target.write_text("before")
+    link.hardlink_to(target)
+    symbolic.symlink_to(target)
+    write_text(symbolic, "after")
+    assert link.read_text() == "after"
+    assert link.samefile(target)
+    assert symbolic.is_symlink()
+    if os.geteuid() == 0:
+        for owner in ((65534, 65534), (0, 65534)):
+            other = tmp_path / f"{owner[0]}.csv"
+            other.write_text("before")
+            os.chown(other, *owner)
+            other.chmod(0o640)
+            write_text(other, "after")
+            status = other.stat()
+            assert (status.st_uid, status.st_gid, status.st_mode & 0o777) == (*owner, 0o640)
+            assert other.read_text() == "after"
+
+
+@pytest.mark.parametrize("number", [errno.EBUSY, errno.EPERM])
+def test_a_file_that_cannot_be_replaced_is_written(
+    number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """PY-07: as one that is mounted by itself into a container."""
+
+    def refused(path: Path, target: Path) -> Path:
+        raise OSError(number, os.strerror(number), str(path), None, str(target))
+
+    monkeypatch.setattr(Path, "replace", refused)
+    target = tmp_path / "mounted.csv"
+    target.write_text("before, and longer")
+    write_text(target, "after")
+    assert target.read_text() == "after"
+    assert [*tmp_path.iterdir()] == [target]
+
+
+def test_errors_of_writing_name_one_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, full_disk: None) -> None:
+    """PY-07: the one that was to be written."""
+    target = tmp_path / "kept.csv"
+    with pytest.raises(OSError, match=r"File too large: '.*/kept\.csv'$"):
+        write_text(target, "x" * 30_000)
+
+    def broken(path: Path, target: Path) -> Path:
+        raise OSError(errno.EIO, os.strerror(errno.EIO), str(path), None, str(target))
+
+    monkeypatch.setattr(Path, "replace", broken)
+    with pytest.raises(OSError, match=r"Input/output error: '.*/kept\.csv'$"):
+        write_text(target, "x")
+    assert not [*tmp_path.iterdir()]
+
+
+def test_a_mistake_within_a_library_is_placed_in_the_scenario(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """PY-07: the line of the scenario, also from which its own modules were called."""
+    (files / "helper.py").write_text("import json\ndef read():\n    return json.loads('x')\n")
+    (files / "mistake.py").write_text(
+        "import helper\ndef scenario(session):\n    helper.read()\ndef verify(r):\n    1\n"
+    )
+    assert main(["run", str(files / "mistake.py"), "--machine", str(files / "machine.yaml")]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("takt: JSONDecodeError: ")
+    assert said.endswith("helper.py:3)\n")
+
+
+@pytest.mark.parametrize("mistake", ["importlib.import_module('no_module')", "numpy.random.default_rng().choice([])"])
+def test_a_mistake_is_not_placed_in_files_that_there_are_not(
+    mistake: str, files: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """PY-07, PY-24: frames of frozen modules and of compiled sources have no absolute name."""
+    monkeypatch.chdir(files)
+    (files / "mistake.py").write_text(
+        f"import importlib, numpy\n\ndef scenario(session, d=1.0):\n    {mistake}\n\ndef verify(recording):\n    1\n"
+    )
+    assert main(["run", "mistake.py"]) == 2
+    assert capsys.readouterr().err.endswith(" (mistake.py:4)\n")
+    assert main(["sweep", "mistake.py", "--grid", "d=1,2", "--workers", "1", "-o", "swept"]) == 1
+    assert " (mistake.py:4)" in Path("swept/runs.csv").read_text()
+
+
+def test_names_of_outputs_keep_what_is_no_ending(files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """PY-06, PY-07: runs whose names differ behind the last dot have pages and pictures of their own."""
+    monkeypatch.chdir(files)
+    assert main(["run", "there.py", "--report", "run.v1"]) == 0
+    for name in ("log.00", "log.01", "a.b.npz"):
+        shutil.copy("run.v1/recording.npz", name)
+        assert main(["plot", name, "x"]) == main(["report", name]) == 0
+    assert main(["plot", "run.v1", "x"]) == 0
+    assert main(["report", "log.00", "a.b.npz"]) == 0
+    made = {"log.00", "log.01", "a.b", "log.00_and_a.b", "run.v1"}
+    assert {path.stem for path in files.glob("*.html")} == made - {"run.v1"}
+    assert {path.stem for path in files.glob("*.png")} == made - {"log.00_and_a.b"}
+    monkeypatch.chdir("run.v1")
+    assert main(["plot", ".", "x"]) == 0
+    assert Path("run.v1.png").is_file()
+
+
+def test_names_of_outputs_are_those_of_links(files: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """PY-06, PY-07: runs that are given as links to folders of one name have pages and pictures of their own."""
+    monkeypatch.chdir(files)
+    for link, number in (("monday", 1), ("tuesday", 2)):
+        assert main(["run", "there.py", "--report", f"{number}/report"]) == 0
+        Path(link).symlink_to(f"{number}/report")
+        assert main(["plot", link, "x"]) == 0
+    assert main(["report", "monday", "tuesday"]) == 0
+    assert {path.name for path in files.glob("*.png")} == {"monday.png", "tuesday.png"}
+    assert [path.name for path in files.glob("*.html")] == ["monday_and_tuesday.html"]
+
+
+@pytest.mark.parametrize(
+    ("command", "text"),
+    [
+        (["cam", "own.yaml", "--yaml", "own.yaml"], "points: [{x: 0, y: 0}, {x: 1, y: 1}, {x: 2, y: 1}]\n"),
+        (["cam", "own.csv", "--csv", "./own.csv"], "x,y\n0,0\n1,1\n2,1\n"),
+        (["track", "own.svg", "--plot", "own.svg"], "<svg/>"),
+        (["path", "own.csv", "--csv", "own.csv"], "x,y,z\n1,0,0\n"),
+    ],
+)
+def test_an_input_is_not_written(
+    command: list[str], text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """PY-07: whatever the two are called."""
+    monkeypatch.chdir(tmp_path)
+    Path(command[1]).write_text(text)
+    assert main(command) == 2
+    assert "is a file that is read, so it is not written" in capsys.readouterr().err
+    assert Path(command[1]).read_text() == text
+
+
+@pytest.mark.parametrize("command", [["cam", "d/machine.yaml"], ["cam", "cam.csv", "--machine", "d/machine.yaml"]])
+@pytest.mark.parametrize("target", ["points.csv", "elements.csv"])
+def test_a_file_that_a_machine_names_is_not_written(
+    target: str, command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """PY-07, CAM-04: the tables of its cams and paths, whose names are relative to its folder."""
+    monkeypatch.chdir(tmp_path)
+    Path("cam.csv").write_text(points := "x,y\n0,0\n1,1\n2,1\n")
+    Path("d").mkdir()
+    Path("d/points.csv").write_text(points)
+    Path("d/elements.csv").write_text(elements := "x,y,z\n1,0,0\n")
+    Path("d/machine.yaml").write_text(
+        f"{MACHINE}paths: [{{name: p, file: elements.csv}}]\n"
+        "cams: [{name: c, x_unit: mm, y_unit: mm, file: points.csv}]\n"
+    )
+    if command[1] == "cam.csv":
+        command = [*command, "--axis", "x"]
+    assert main([*command, "--csv", f"d/{target}"]) == 2
+    assert (
+        capsys.readouterr().err == f"takt: d/{target}: is a file that is read, so it is not written: give another one\n"
+    )
+    assert (Path("d/points.csv").read_text(), Path("d/elements.csv").read_text()) == (points, elements)

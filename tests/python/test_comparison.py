@@ -90,6 +90,22 @@ def test_rotary_positions_go_the_short_way_round() -> None:
     assert found.largest == pytest.approx(2.0)
 
 
+def test_samples_of_the_same_times_differ_unless_they_are_equal() -> None:
+    """PY-26: rotary positions by the last bit, whole numbers beyond 2^53."""
+    info = {"x": {"modulus": 360.0}}
+    values = np.array([10.0, 1e-15, 359.0])
+    for row in range(3):
+        other = values.copy()
+        other[row] = np.nextafter(other[row], 400.0)
+        (found,) = compare(curve(values, unit="deg", info=info), curve(other, unit="deg", info=info)).signals
+        assert (found.differs, found.first_s) == (True, pytest.approx(0.01 * row))
+        assert found.largest == other[row] - values[row]
+    counts = {"time_s": [0.0, 0.1], "cycle": [0, 1]}
+    one, other = (Recording({"x": {**counts, "count": np.array([n, 5], np.uint64)}}) for n in (2**63, 2**63 + 1))
+    assert compare(one, other).differing[0].first_s == 0.0
+    assert compare(one, one).same
+
+
 def test_numbers_that_one_run_has_not() -> None:
     (found,) = compare(curve([1, np.nan, 2, np.nan]), curve([1, np.nan, np.nan, np.nan])).signals
     assert (found.largest, found.first_s) == (0.0, pytest.approx(0.02))

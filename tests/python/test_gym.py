@@ -15,6 +15,7 @@ MACHINE = """name: two
 axes:
   - {name: x, unit: mm, limits: {velocity: 300, acceleration: 3000, jerk: 60000, lower: -100, upper: 100}}
   - {name: y, unit: mm, limits: {velocity: 300, acceleration: 3000, jerk: 60000}}
+  - {name: r, unit: deg, kind: rotary, modulus: 360, limits: {velocity: 300, acceleration: 3000, jerk: 60000}}
 """
 
 
@@ -77,6 +78,10 @@ def test_an_episode_lasts_as_long_as_it_should() -> None:
         (["x"], {"within": -1}, "within: expected a number above 0, found -1"),
         (["x"], {"ranges": {"z": (0, 5)}}, "ranges: expected axes of the environment, found z"),
         (["x"], {"ranges": {"x": (0, float("inf"))}}, "axis x: no range"),
+        (["x"], {"ranges": {"x": (-1000, 50)}}, "ranges: axis x: expected -100 to 100 mm, found -1000 to 50"),
+        (["x"], {"ranges": {"x": (0, 101)}}, "ranges: axis x: expected -100 to 100 mm, found 0 to 101"),
+        (["r"], {"ranges": {"r": (-90, 90)}}, "ranges: axis r: expected 0 to below 360 deg, found -90 to 90"),
+        (["r"], {"ranges": {"r": (0, 360)}}, "ranges: axis r: expected 0 to below 360 deg, found 0 to 360"),
     ],
 )
 def test_what_no_environment_is_made_of(axes: list[str], options: dict[str, Any], said: str) -> None:
@@ -86,6 +91,20 @@ def test_what_no_environment_is_made_of(axes: list[str], options: dict[str, Any]
 
     with pytest.raises(takt.TaktError, match=said):
         ReachEnv(MACHINE, axes, **options)
+
+
+def test_refused_moves_are_raised() -> None:
+    """PY-23: an axis that is off does not end an episode as one that was too slow."""
+    pytest.importorskip("gymnasium")
+    from takt.gym import ReachEnv
+
+    env = ReachEnv(MACHINE, ["x", "r"], ranges={"r": (0, 359)})
+    env.reset(seed=1)
+    env.step([0.5, 1.0])
+    env.engine.axis("r").power(enable=False).wait_final()
+    with pytest.raises(takt.CommandError, match=r"r\.move_absolute"):
+        env.step([0.5, 0.5])
+    env.close()
 
 
 def test_without_gymnasium() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 import re
 from collections.abc import Callable
@@ -89,6 +90,18 @@ def test_it_uses_what_it_has(recording: Recording) -> None:
     )
     assert over, verdict.sentence
     assert 9.9 < float(over[1]) <= 10.001
+
+
+def test_an_infinite_limit_leaves_the_others_checked(recording: Recording) -> None:
+    """PL-82: and a limit that is not a number is refused."""
+    verdict = checks.within_limits(recording, "one", velocity=math.inf, acceleration=8000 * 0.999)
+    assert "its acceleration limit" in verdict.sentence
+    assert not verdict.passed
+    verdict = checks.within_limits(recording, "one", jerk=math.inf)
+    assert verdict.passed
+    assert "jerk limit" not in verdict.sentence
+    with pytest.raises(ValueError, match="the velocity limit nan is not a positive number"):
+        checks.within_limits(recording, "one", velocity=math.nan)
 
 
 def changed(recording: Recording, field: str, change: Callable[[np.ndarray], object]) -> Recording:

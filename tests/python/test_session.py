@@ -225,6 +225,30 @@ def test_every_cycle_is_recorded(engine: takt.Engine) -> None:
         engine.record("x1")
 
 
+@pytest.mark.parametrize("error", [KeyboardInterrupt, MemoryError])
+def test_an_interrupted_end_of_a_recording_is_not_tried_again(
+    error: type[BaseException], engine: takt.Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """PY-04: the cause comes through `close`, other recordings are ended, and the lost one says that it is lost."""
+    other = engine.record("r")
+    engine.run(0.1)
+
+    def interrupted(*_: object) -> None:
+        raise error
+
+    with monkeypatch.context() as patch:
+        patch.setattr("takt.engine.make_recording", interrupted)
+        with pytest.raises(error), engine.record("x") as recorder:
+            recorder.stop()
+    assert not recorder.running
+    engine.close()
+    assert len(other.recording["r"]) == 100
+    for ended in (recorder.stop, lambda: recorder.recording):
+        with pytest.raises(takt.TaktError, match="the recording is lost"):
+            ended()
+    assert repr(recorder) == "<Recorder of x: lost>"
+
+
 def test_where_loads_really_are_is_known_of_simulated_servos() -> None:
     """EN-11: beside what encoders make of it: play, counts, turns."""
     text = """

@@ -140,6 +140,8 @@ def test_drawn_numbers_stay_what_they_are() -> None:
         ([], ["velocity=integers:0.5:1:3"], "the ends must be whole numbers"),
         ([], ["velocity=choice:,:3"], "nothing to choose from"),
         ([], ["velocity=uniform:1:2:3", "most=uniform:1:2:4"], "found 3 of velocity, 4 of most"),
+        (["run=1,2"], [], "'run' is a column that every table has: give the parameter another name"),
+        ([], ["engine_s=uniform:1:2:3"], "'engine_s' is a column that every table has"),
         (["velocty=1,2"], [], "has no parameter 'velocty'; did you mean 'velocity'?"),
         (["axes.rum.unit=1,2"], [], "axes: has no element 'rum'"),
     ],
@@ -204,6 +206,20 @@ def test_results_whatever_verify_says(judges: str, passed: str) -> None:
     assert (first["passed"], first["mean"], second["passed"], second["mean"]) == (passed, "nan", "0", "")
     assert float(first["time"]) > 0.1
     assert result.repeats
+
+
+def test_results_named_like_other_columns() -> None:
+    """PY-24: no column replaces another one, and a name is one line."""
+    head, _ = SCENARIO.split("def results")
+    given = {"run": 5, "command": 6, "velocity": 7, "line\nbreak": 8, "line break": 9, "stays(ram)": 10}
+    Path("scenario.py").write_text(f"{head}def results(recording):\n    return {given!r}\n")
+    sweep("scenario.py", ["velocity=100,200"], directory="d", workers=1)
+    first, second = rows("d")
+    assert (first["run"], second["run"], second["velocity"]) == ("0", "1", "200")
+    assert first["command"].startswith("takt run scenario.py")
+    assert list(first.values())[-6:] == [str(value) for value in given.values()]
+    names = ["run (result)", "command (result)", "velocity (result)", "line break", "line break (result)"]
+    assert list(first)[-6:] == [*names, "stays(ram) (result)"]
 
 
 def test_what_fails_is_a_row() -> None:

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from takt.checks.measured import EPS, Measured, against, in_range, jerk_against, judge
+from takt.checks.measured import EPS, Measured, against, bounded, in_range, jerk_against, judge
 from takt.checks.movers import of_mover
-from takt.checks.series import Check, Mask, decided, sibling, wrap
+from takt.checks.series import Check, Mask, decided, sibling, sound, wrap
 from takt.recording import FloatArray, Recording
 from takt.verdict import Interval, Verdict
 
@@ -41,9 +41,10 @@ def within_limits(
     """Position, velocity, acceleration and jerk stay within limits.
 
     position: (lower, upper); the others are largest absolute values. What is not given is taken from the
-        component's `limits`; what is not known there either is not checked. Of a planar mover they are the lengths
-        of the vectors of X and Y, in the plane and on tracks; `lateral_acceleration` in curves of tracks, and Z, A,
-        B and C, are held against its own limits. Jerk is not checked of set points from outside.
+        component's `limits`; what is not known there either, and what is infinite, is not checked. Of a planar
+        mover they are the lengths of the vectors of X and Y, in the plane and on tracks; `lateral_acceleration` in
+        curves of tracks, and Z, A, B and C, are held against its own limits. Jerk is not checked of set points from
+        outside.
     tolerance: relative to the limit, for rounding.
     jerk_tolerance: relative. Jerk is not recorded; it is the difference of two accelerations over the time
         between them, which is the mean jerk of that stretch. The mean of a jerk that keeps its limit keeps it
@@ -52,6 +53,7 @@ def within_limits(
         the largest; it is added by itself. Where the loop opens there is no jerk: the set point becomes what is
         measured.
     """
+    sound("within_limits", tolerance=tolerance, jerk_tolerance=jerk_tolerance)
     check = Check("within_limits", recording, (component,), window)
     if signal == "set_position" and "xy" in (recording.info(component).get("limits") or {}):
         if position is not None:
@@ -78,7 +80,7 @@ def within_limits(
                 jerk_against("jerk", s, np.where(own, np.diff(s.values), 0), limits.jerk, jerk_tolerance, label)
             )
     if not found:
-        raise ValueError(f"within_limits: no limit is given, and the recording knows none of '{component}'")
+        raise ValueError(f"within_limits: no finite limit is given, and the recording knows none of '{component}'")
     return judge(check, component, found, f"stayed within its {', '.join(m.says for m in found)}", "left")
 
 
@@ -115,6 +117,7 @@ def continuous(
     tolerance: relative to the bound.
     slack: added to it, in u, u/s and u/s²: the accuracy with which a planned move ends.
     """
+    sound("continuous", step=step if step is not None else 0.0, tolerance=tolerance, slack=slack)
     check = Check("continuous", recording, (component,), window)
     p = check.series(component, signal)
     if len(p.values) < 2:
@@ -171,7 +174,7 @@ def continuous(
         unit_a = recording.unit(component, sibling(signal, "acceleration"))
         add("step of acceleration", unit_a, np.diff(a), j_max * dt, a, j_max)
     if not found:
-        raise ValueError(f"continuous: no bound is given, and the recording knows no limits of '{component}'")
+        raise ValueError(f"continuous: no finite bound is given, and the recording knows no limits of '{component}'")
     return judge(check, component, found, "made no step", "went beyond", (p.lane(),))
 
 
@@ -195,8 +198,8 @@ def _limits(
     acceleration: float | None,
     jerk: float | None,
 ) -> _Limits:
-    """Given limits, else the component's own. A jerk of 0 means unlimited, as in commands. An own limit of
-    deceleration counts with that of acceleration: the larger of both bounds the absolute value."""
+    """Given limits, else the component's own; None where infinite. A jerk of 0 means unlimited, as in commands. An own
+    limit of deceleration counts with that of acceleration: the larger of both bounds the absolute value."""
     own: dict[str, Any] = dict(recording.info(component).get("limits") or {})
     if own.get("acceleration") is not None and own.get("deceleration") is not None:
         own["acceleration"] = max(own["acceleration"], own["deceleration"])
@@ -207,10 +210,7 @@ def _limits(
         raise ValueError(f"position limits are (lower, upper), not {position!r}")
 
     def pick(name: str, given: float | None) -> float | None:
-        limit = given if given is not None else own.get(name)
-        if limit is not None and not limit >= 0:
-            raise ValueError(f"the {name} limit {limit} is not a positive number")
-        return None if limit is None else float(limit)
+        return bounded(name, given if given is not None else own.get(name))
 
     return _Limits(
         (float(position[0]), float(position[1])) if position is not None else None,

@@ -91,6 +91,13 @@ def against(
     return Measured(what, unit, time_s, values, excess, max(typical, _TINY), bounds, label, says)
 
 
+def bounded(name: str, limit: float | None) -> float | None:
+    """Returns the limit; None where there is none or it is infinite. Raises ValueError where it is NaN or negative."""
+    if limit is not None and not limit >= 0:
+        raise ValueError(f"the {name} limit {limit} is not a positive number")
+    return None if limit is None or math.isinf(limit) else float(limit)
+
+
 def judge(
     check: Check,
     component: str,
@@ -99,7 +106,7 @@ def judge(
     broke: str,
     lanes: Sequence[Lane] = (),
 ) -> Verdict:
-    worst = max(found, key=lambda m: float(np.max(m.excess)) / m.scale)
+    worst = max(found, key=lambda m: (bool(m.broken.any()), float(np.max(m.excess)) / m.scale))
     at = int(np.argmax(worst.excess))
     amount, when = float(worst.excess[at]), float(worst.time_s[at])
     if amount <= 0:

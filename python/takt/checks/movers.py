@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from takt.checks.measured import Measured, against, in_range, jerk_against, judge
+from takt.checks.measured import Measured, against, bounded, in_range, jerk_against, judge
 from takt.checks.series import Check, Mask
 from takt.recording import FloatArray
 from takt.verdict import Verdict
@@ -28,7 +28,8 @@ def of_mover(
     # A recording of a mover that decelerates harder than it accelerates: one length is held against both.
     limits["acceleration"] = max(limits["acceleration"], limits.get("deceleration") or 0.0)
     limits |= {what: limit for what, limit in given.items() if limit is not None}
-    found = _in_plane(check, mover, limits, tolerance, jerk_tolerance)
+    in_plane = {what: limit for what in limits if (limit := bounded(what, limits[what])) is not None}
+    found = _in_plane(check, mover, in_plane, tolerance, jerk_tolerance)
     found += _across(check, mover, own["lateral_acceleration"], max(tolerance, CURVATURE))
     says = ", ".join(one.says for one in found)
     others = []
@@ -39,6 +40,8 @@ def of_mover(
             found += moves
             others.append(name.upper())
     says += f", those of {' and '.join(others)}" if others else ""
+    if not found:
+        raise ValueError(f"within_limits: no finite limit is given, and the mover {mover} is not in a curve of a track")
     return judge(check, mover, found, f"stayed within its {says}", "left")
 
 
@@ -60,8 +63,9 @@ def _in_plane(
             ("velocity", speed, np.hypot(*v), tolerance),
             ("acceleration", along, push, on_tracks),
         )
+        if what in limits
     ]
-    if len(push) > 1:
+    if len(push) > 1 and "jerk" in limits:
         steps = np.hypot(*(np.diff(one) for one in a))
         steps[_pushed(_given(check, mover) | added)] = 0
         label = f"{mover}: jerk (by differences)"

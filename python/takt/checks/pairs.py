@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
-from takt.checks.series import LAST_PLACES, Check, Series, beyond, decided, extent, nearest, unwrapped, wrap
+from takt.checks.series import LAST_PLACES, Check, Series, beyond, decided, extent, nearest, sound, unwrapped, wrap
 from takt.recording import Recording
 from takt.verdict import Bound, Interval, Lane, Trace, Verdict, number, seconds
 
@@ -31,6 +32,7 @@ def in_sync(
     from the first sample, so that only staying in step is asked. `signal` is the slave's, and the master's
     unless `master_signal` says otherwise.
     """
+    sound("in_sync", ratio=ratio, offset=offset or 0.0, tolerance=tolerance)
     check = Check("in_sync", recording, (master, slave), window)
     m = check.series(master, master_signal or signal)
     s = check.series(slave, signal)
@@ -87,6 +89,9 @@ def keeps_distance(
     On a closed track of length `modulus` (known where both components have the same) the shorter way round
     counts. tolerance: relative, for rounding.
     """
+    sound("keeps_distance", minimum=minimum, tolerance=tolerance)
+    if modulus is not None and not 0 < modulus < math.inf:
+        raise ValueError(f"keeps_distance: modulus is {modulus}, not a length above 0")
     check = Check("keeps_distance", recording, (a, b), window)
     fields = [signal] if isinstance(signal, str) else list(signal)
     squares: list[np.ndarray[tuple[int], np.dtype[np.float64]]] = []

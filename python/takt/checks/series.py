@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ParamSpec
@@ -23,6 +24,8 @@ NEAR_ZERO = 1e-3  # to numbers smaller than that it is relative to that: 1e-12, 
 LAST_PLACES = 16 * float(np.finfo(np.float64).eps)  # relative: what rounding of two numbers leaves in their difference
 
 SHARE_IN_COMMON = 0.9  # of the samples of two components; the rest may have got lost
+
+NOT_NEGATIVE = ("tolerance", "jerk_tolerance", "slack", "step", "within", "hold")
 
 CAM_AXES = ("x", "y")  # in units of their own
 TOOL = {**dict.fromkeys("xyz", "position"), **dict.fromkeys("abc", "orientation")}
@@ -48,6 +51,16 @@ def decided(check: Callable[P, Verdict]) -> Callable[P, Verdict]:
             return undecided.verdict
 
     return wrapper
+
+
+def sound(name: str, **numbers: float) -> None:
+    """Raises ValueError where an argument of the check `name` is infinite or NaN, or where one that is a width or a
+    duration is negative."""
+    for what, value in numbers.items():
+        if not math.isfinite(value):
+            raise ValueError(f"{name}: {what} is {value}, not a number")
+        if what in NOT_NEGATIVE and value < 0:
+            raise ValueError(f"{name}: {what} is negative")
 
 
 @dataclass(frozen=True)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
 
-from takt.checks.series import Check, Series, UndecidedError, beyond, decided, runs
+from takt.checks.series import Check, Series, UndecidedError, beyond, decided, runs, sound
 from takt.recording import FloatArray, Recording
 from takt.verdict import Bound, Lane, Verdict, number, seconds
 
@@ -25,7 +24,7 @@ def reaches(
 ) -> Verdict:
     """A sample within `tolerance` of `position` comes no later than `by` (time_s of the recording), and not
     before `start`."""
-    _sound("reaches", position=position, tolerance=tolerance, by=by)
+    sound("reaches", position=position, tolerance=tolerance, by=by)
     whole = recording[component]["time_s"]
     begin = start if start is not None else (float(whole[0]) if len(whole) else by)
     if begin > by:
@@ -81,7 +80,7 @@ def settles(
     """From `start` (the beginning, unless given) it takes at most `within` seconds until the signal is within
     `tolerance` of `position` and stays there for `hold` seconds (to the end of the recording, unless
     given)."""
-    _sound("settles", position=position, tolerance=tolerance, within=within, hold=hold or 0.0)
+    sound("settles", position=position, tolerance=tolerance, within=within, hold=hold or 0.0)
     whole = recording[component]["time_s"]
     begin = start if start is not None else (float(whole[0]) if len(whole) else 0.0)
     deadline = begin + within
@@ -171,11 +170,3 @@ def _lane(s: Series, position: float, tolerance: float) -> Lane:
             Bound.level("", position - tolerance, s.span, "none"),
         )
     )
-
-
-def _sound(name: str, **numbers: float) -> None:
-    for what, value in numbers.items():
-        if not math.isfinite(value):
-            raise ValueError(f"{name}: {what} is {value}, not a number")
-        if what in ("tolerance", "within", "hold") and value < 0:
-            raise ValueError(f"{name}: {what} is negative")

@@ -6,11 +6,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from takt.names import shown
 from takt.plot import png
 from takt.recording import Recording
 from takt.report.kept import keep
 from takt.report.writing import PAGE, Report, render_kept, write_report
 from takt.scenario import Outcome, Scenario
+from takt.source import stem_of
+from takt.written import write_text
 
 
 def write_outcome(outcome: Outcome, scenario: Scenario, directory: Path, engine: Mapping[str, Any]) -> Report:
@@ -24,20 +27,20 @@ def write_outcome(outcome: Outcome, scenario: Scenario, directory: Path, engine:
 
 def target_of(run: Path) -> Path:
     """Where the page of a run goes unless told: into its directory, or beside its file."""
-    return run / PAGE if run.is_dir() else run.with_suffix(".html")
+    return run / PAGE if run.is_dir() else run.with_name(f"{stem_of(run)}.html")
 
 
 def target_of_two(runs: Sequence[Path]) -> Path:
     """Where the page of two runs goes unless told: beside the first one."""
-    names = [run.resolve().name if run.is_dir() else run.stem for run in runs]
-    return runs[0].parent / f"{names[0]}_and_{names[1]}.html"
+    a, b = map(stem_of, runs)
+    return runs[0].parent / f"{a}_and_{b}.html"
 
 
 def names_of(runs: Sequence[Path]) -> tuple[str, str]:
     """What two runs are called: as short as they can be told apart."""
     whole = [run.resolve() for run in runs]
     for parts in range(1, max(len(run.parts) for run in whole)):
-        a, b = ("/".join(run.parts[-parts:]) for run in whole)
+        a, b = (shown("/".join(run.parts[-parts:])) for run in whole)
         if a != b:
             return a, b
     return "A", "B"
@@ -53,5 +56,5 @@ def judged(outcome: Outcome, scenario: Scenario) -> Recording:
 
 def write_page(recording: Recording, run: Path, target: Path) -> Path:
     """The page of a recording as it was kept."""
-    target.write_text(render_kept(recording, run.resolve().name), encoding="utf-8")
+    write_text(target, render_kept(recording, shown(run.resolve().name)))
     return target

@@ -180,7 +180,8 @@ def _why_not(a: Recording, b: Recording, names: tuple[str, str], component: str,
 
 
 def _difference(a: Recording, b: Recording, component: str, signal: str) -> Difference:
-    columns = [_numbers(run, component, signal, a.names(component, signal)) for run in (a, b)]
+    kept = [_values(run, component, signal, a.names(component, signal)) for run in (a, b)]
+    columns = [column.astype(np.float64) for column in kept]
     times = [run[component]["time_s"] for run in (a, b)]
     states = bool(a.names(component, signal)) or all(r.column(component, signal).dtype.kind == "b" for r in (a, b))
     held = states or any(run.column(component, signal).dtype.kind != "f" for run in (a, b))
@@ -198,15 +199,20 @@ def _difference(a: Recording, b: Recording, component: str, signal: str) -> Diff
             inside &= (time_s <= gap.time_s + SAME_TIME_S) | (time_s >= gap.until_s - SAME_TIME_S)
         rows = np.flatnonzero(inside)
     time_s, values = time_s[rows], columns[asks][rows]
-    found, sampled = _at(time_s, other_time, other, held, modulus)
+    nearest, sampled = _nearest(time_s, other_time)
+    found = other[nearest] if sampled else _between(time_s, other_time, other, nearest, held, modulus)
     with np.errstate(invalid="ignore", over="ignore"):
-        delta = wrap(found - values if asks == 0 else values - found, modulus)
-    one_has_none = np.isnan(found) != np.isnan(values)
+        delta = found - values if asks == 0 else values - found
+        if modulus is not None:  # only where it changes something, as it rounds
+            delta = np.where(np.abs(delta) > modulus / 2, wrap(delta, modulus), delta)
     good = np.concatenate((values, found))
     good = good[np.isfinite(good)]
     extent = float(np.ptp(good)) if len(good) else 0.0
-    limit = 0.0 if sampled or held else TOLERANCE * extent
-    differs = one_has_none | (np.abs(np.nan_to_num(delta, nan=0.0)) > limit)
+    if sampled:  # the values themselves: numbers above 2^53 and whole turns would be lost in the difference
+        differs = (kept[asks][rows] != kept[1 - asks][nearest]) & ~(np.isnan(found) & np.isnan(values))
+    else:
+        limit = 0.0 if held else TOLERANCE * extent
+        differs = (np.isnan(found) != np.isnan(values)) | (np.abs(np.nan_to_num(delta, nan=0.0)) > limit)
     amounts = np.abs(delta[np.isfinite(delta)])
     share = float(np.mean(differs)) if len(differs) else 0.0
     numbered = held and unit == ""  # of commands, errors: how far apart they are says nothing
@@ -231,33 +237,38 @@ def _difference(a: Recording, b: Recording, component: str, signal: str) -> Diff
     )
 
 
-def _numbers(run: Recording, component: str, signal: str, names: Mapping[int, str]) -> FloatArray:
-    """A column as numbers; states of both runs by the numbers that they have in the first one."""
+def _values(run: Recording, component: str, signal: str, names: Mapping[int, str]) -> Array:
+    """A column; states of both runs by the numbers that they have in the first one."""
     column = run.column(component, signal)
     own = run.names(component, signal)
     if own and own != names:
         known = {text: value for value, text in names.items()}
         translated = {value: known.get(text, 1000 + value) for value, text in own.items()}
-        return np.array([translated.get(int(v), int(v)) for v in column], dtype=np.float64)
-    return column.astype(np.float64)
+        return np.array([translated.get(int(v), int(v)) for v in column], dtype=np.int64)
+    return column
 
 
-def _at(
-    time_s: FloatArray, other_time: FloatArray, other: FloatArray, held: bool, modulus: float | None
-) -> tuple[Array, bool]:
-    """The values of another time base at these times, and whether all of them are samples of it."""
+def _nearest(time_s: FloatArray, other_time: FloatArray) -> tuple[Array, bool]:
+    """The samples of another time base that are nearest to these times, and whether all of them are of these times."""
     if not len(time_s):
-        return np.empty(0), True
+        return np.empty(0, np.int64), True
     behind = np.clip(np.searchsorted(other_time, time_s), 0, len(other_time) - 1)
     before = np.maximum(behind - 1, 0)
     nearest = np.where(np.abs(other_time[behind] - time_s) <= np.abs(other_time[before] - time_s), behind, before)
+    return nearest, bool(np.all(np.abs(other_time[nearest] - time_s) <= SAME_TIME_S))
+
+
+def _between(
+    time_s: FloatArray, other_time: FloatArray, other: FloatArray, nearest: Array, held: bool, modulus: float | None
+) -> FloatArray:
+    """The values of another time base at these times."""
+    behind = np.clip(np.searchsorted(other_time, time_s), 0, len(other_time) - 1)
+    before = np.maximum(behind - 1, 0)
     sampled = np.abs(other_time[nearest] - time_s) <= SAME_TIME_S
-    if np.all(sampled):
-        return other[nearest], True
     if held:
-        return np.where(sampled, other[nearest], other[before]), False
+        return np.where(sampled, other[nearest], other[before])
     line = np.unwrap(other, period=modulus) if modulus and np.all(np.isfinite(other)) else other
     width = np.where(behind > before, other_time[behind] - other_time[before], 1.0)
     part = (time_s - other_time[before]) / width
     between = line[before] + part * (line[behind] - line[before])
-    return np.where(sampled, other[nearest], between), False
+    return np.where(sampled, other[nearest], between)

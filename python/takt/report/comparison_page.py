@@ -21,6 +21,7 @@ from takt.report.comparison import Comparison, Difference
 from takt.report.kept import extremes, kept, plain
 from takt.report.writing import columns_of, facts_of, filled
 from takt.verdict import number, seconds
+from takt.written import write_text
 
 POINTS = 20_000  # of a curve of differences; longer ones are the least and the greatest value of each stretch
 LINES = 400  # of the difference of the machine files
@@ -29,7 +30,7 @@ LINES = 400  # of the difference of the machine files
 def write_comparison(comparison: Comparison, path: str | PathLike[str]) -> Path:
     """Writes the page."""
     target = Path(path)
-    target.write_text(render_comparison(comparison), encoding="utf-8")
+    write_text(target, render_comparison(comparison))
     return target
 
 

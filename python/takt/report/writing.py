@@ -29,6 +29,7 @@ from takt.report.scene import cams_of, machine_of, scene_of
 from takt.source import IN_DIRECTORY
 from takt.tables import short_name
 from takt.verdict import Verdict
+from takt.written import write_text
 
 # What says where a component is, the best first: its own measured position, or the Y of a cam module.
 POSITIONS = ("actual_position", "position", "set_position", "set_y_position")
@@ -94,7 +95,7 @@ def write_report(
     whole = keep(recording, title, verdicts, assertion, meta, {name: path.read_bytes() for name, path in shown.items()})
     whole.save(directory / IN_DIRECTORY)
     page = directory / PAGE
-    page.write_text(render_kept(whole, title), encoding="utf-8")
+    write_text(page, render_kept(whole, title))
     return Report(page, (*pictures, *shown.values()))
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from takt import _core
 from takt.kinematics import Kinematics
+from takt.names import shown
 from takt.recording import Array
 from takt.scene.solids import Solid, ball, box, capsule, cylinder, from_file
 
@@ -47,7 +48,7 @@ def _given(group: Mapping[str, Any], mechanism: Kinematics, folder: Path | None)
 
 def _of_urdf(mechanism: Kinematics, serial: Mapping[str, Any], folder: Path | None, *, visual: bool) -> Solids:
     """The shapes that a URDF gives links to be seen, or for collisions; none of files that cannot be read."""
-    told = _core.urdf_solids(serial["urdf"], serial["base"], serial["tip"], str((folder or Path()).resolve()), visual)
+    told = _core.urdf_solids(serial["urdf"], serial["base"], serial["tip"], shown((folder or Path()).resolve()), visual)
     return _placed(mechanism, [json.loads(one) for one in told], folder)
 
 

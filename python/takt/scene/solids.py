@@ -11,6 +11,7 @@ import numpy as np
 
 from takt import _core
 from takt.kinematics import pose_to_matrix
+from takt.names import shown
 from takt.recording import Array
 
 Solid = dict[str, Any]
@@ -62,7 +63,7 @@ def from_file(
             return {**placed, "kind": "capsule", "size": [given["radius"], given["length"]]}
         return {**capsule(given["radius"], (0, 0, 0), span, colour), **more}
     mesh = solid.get("mesh")
-    surface = _core.surface_of_stl(str(folder / mesh["file"]), mesh["scale"]) if mesh and folder else None
+    surface = _core.surface_of_stl(shown(folder / mesh["file"]), mesh["scale"]) if mesh and folder else None
     if surface is None:
         return None
     vertices, triangles = thinned(*surface)

@@ -21,6 +21,7 @@ from takt.changes import Value, value_of
 from takt.errors import TaktError
 from takt.names import names_in
 
+COLUMNS = ("run", "passed", "failed", "engine_s", "hash", "command")  # that every row of the table has
 BLOCK = 1024  # draws that are made at once
 LAWS = {  # of samples: what stands behind them
     "uniform": "uniform:LOW:HIGH:COUNT",
@@ -140,6 +141,8 @@ class Design:
         for key in keys:
             if keys.count(key) > 1:
                 raise SweepError(f"'{key}' is varied twice")
+            if key in COLUMNS:
+                raise SweepError(f"'{key}' is a column that every table has: give the parameter another name")
         varied: list[Grid | Sample] = [*design.grids, *design.samples]
         for one in varied:
             if not one.count:

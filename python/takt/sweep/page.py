@@ -15,6 +15,7 @@ from takt.recording import FloatArray
 from takt.report.inlined import asset
 from takt.report.writing import STYLES
 from takt.sweep.summary import Column, Summary
+from takt.written import write_text
 
 BINS = 40  # of a distribution
 STEPS = 24  # of a key with more values than that
@@ -36,7 +37,7 @@ td.number { font-variant-numeric: tabular-nums; white-space: nowrap; }
 def write_page(summary: Summary, directory: Path, title: str, about: Path) -> Path:
     """Writes sweep.html."""
     target = directory / "sweep.html"
-    target.write_text(render(summary, title, json.loads(about.read_text(encoding="utf-8"))), encoding="utf-8")
+    write_text(target, render(summary, title, json.loads(about.read_text(encoding="utf-8"))))
     return target
 
 

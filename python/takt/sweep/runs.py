@@ -13,7 +13,9 @@ from typing import Any
 from takt.changes import Value, text_of
 from takt.engine import Engine
 from takt.errors import ConfigError
+from takt.names import shown
 from takt.scenario import Outcome, Played, load_scenario, run_scenario, with_settings
+from takt.sweep.design import COLUMNS
 
 Row = dict[str, Any]
 TEXT = 300  # letters of a sentence
@@ -32,7 +34,7 @@ class Job:
         words += ["--machine", self.machine] if self.machine else []
         for key, value in point.items():
             words += ["--set", f"{key}={text_of(value)}"]
-        return shlex.join(words)
+        return shown(shlex.join(words))
 
     def run(self, number: int, point: Mapping[str, Value]) -> Row:
         """Makes a run. Whatever goes wrong in it is said in its row."""
@@ -49,7 +51,7 @@ class Job:
 
     def row(self, number: int, point: Mapping[str, Value], failed: str, found: Row, more: Row) -> Row:
         """The columns of all rows first, then what this one has besides."""
-        said = " ".join(failed.split())
+        said = " ".join(shown(failed).split())
         head = {"run": number, **point, "passed": int(not failed), "failed": said[:TEXT]}
         return {**head, "engine_s": "", "hash": "", **found, "command": self.command(point), **more}
 
@@ -63,9 +65,11 @@ class Job:
                 found |= {"engine_s": round(session.now, 9), "hash": f"{session.state_hash:016x}"}
         more = _margins(outcome)
         if Played.of(outcome.recording).broken_off is None:
-            taken = {*found, *point, "run", "passed", "failed", "command", *more}
-            for name, value in scenario.numbers(outcome.recording).items():
-                more[f"{name} (result)" if name in taken else name] = _plain(value)
+            for given, value in scenario.numbers(outcome.recording).items():
+                name = " ".join(given.split())
+                while name in (*COLUMNS, *point, *more):
+                    name += " (result)"
+                more[name] = _plain(value)
         return _why(outcome), more
 
 
@@ -106,6 +110,6 @@ def _plain(value: Any) -> Any:
 
 def _place(error: Exception, scenario: Path) -> str:
     folder = scenario.resolve().parent
-    frames = traceback.extract_tb(error.__traceback__)
-    own = [frame for frame in frames if Path(frame.filename).resolve().parent == folder]
-    return f" ({Path(own[-1].filename).name}:{own[-1].lineno})" if own else ""
+    frames = [(Path(frame.filename), frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]
+    own = [(file, line) for file, line in frames if file.is_file() and file.resolve().parent == folder]
+    return f" ({own[-1][0].name}:{own[-1][1]})" if own else ""

@@ -13,13 +13,13 @@ import numpy as np
 
 from takt.counted import counted
 from takt.recording import FloatArray
-from takt.sweep.design import Design
+from takt.sweep.design import COLUMNS, Design
 
 KEPT = 100_000  # rows whose numbers are kept for distributions, evenly chosen
 WORST = 10  # rows kept of each number, at either end
 REASONS = 1000  # kept of failures
 FIGURE = re.compile(r"(?<![\w.])-?\d[\d.]*(e[+-]?\d+)?(?![\w.])")
-FIXED = ("run", "passed", "failed", "hash", "command")
+FIXED = {*COLUMNS} - {"engine_s"}
 
 
 @dataclass

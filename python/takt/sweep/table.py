@@ -14,8 +14,10 @@ from pathlib import Path
 from typing import IO, Any
 
 from takt import _core
+from takt.names import shown
 from takt.sweep.design import Design, SweepError
 from takt.sweep.runs import Job, Row
+from takt.written import naming, write_text, written
 
 FORMAT = 1
 TABLE, ABOUT, LOCK = "runs.csv", "sweep.json", ".lock"
@@ -28,9 +30,9 @@ def about(job: Job, design: Design) -> dict[str, Any]:
     return {
         "takt_sweep": FORMAT,
         "version": _core.__version__,
-        "scenario": job.scenario,
+        "scenario": shown(job.scenario),
         "scenario_sha256": _hash(scenario),
-        "machine": job.machine,
+        "machine": shown(job.machine),
         "machine_sha256": _hash(machine),
         "grid": [one.text for one in design.grids],
         "sample": [one.text for one in design.samples],
@@ -71,7 +73,7 @@ class Table:
                 self._check(facts)
             else:
                 self.path.unlink(missing_ok=True)
-            self._about.write_text(json.dumps(facts, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+            write_text(self._about, json.dumps(facts, indent=2, ensure_ascii=False) + "\n")
             if self.path.exists():
                 self._take_up()
         except BaseException:
@@ -81,17 +83,22 @@ class Table:
 
     def append(self, row: Row) -> None:
         new = [name for name in row if name not in self.columns]
-        if new:
-            self._widen(new)
-        self._file.write(_line([row.get(name, "") for name in self.columns]))
+        with naming(self.path):
+            if new:
+                self._widen(new)
+            self._file.write(_line([row.get(name, "") for name in self.columns]))
         self.count += 1
 
     def flush(self) -> None:
-        self._file.flush()
+        with naming(self.path):
+            self._file.flush()
 
     def close(self) -> None:
-        self._file.close()
-        self._lock.close()
+        try:
+            with naming(self.path):
+                self._file.close()
+        finally:
+            self._lock.close()
 
     def _check(self, facts: Mapping[str, Any]) -> None:
         """Refuses to add to a table that other runs made."""
@@ -139,13 +146,15 @@ class Table:
             self._file.write(_line(self.columns))
             return
         self._file.close()
-        other = self.path.with_suffix(".new")
-        with other.open("w", newline="", encoding="utf-8") as file, self.path.open(encoding="utf-8") as before:
+        with (
+            written(self.path) as beside,
+            beside.open("w", newline="", encoding="utf-8") as file,
+            self.path.open(encoding="utf-8") as before,
+        ):
             next(before)
             file.write(_line(self.columns))
             for line in before:
                 file.write(line.rstrip("\n") + "," * len(new) + "\n")
-        other.replace(self.path)
         self._file = self.path.open("a", newline="", encoding="utf-8")
 
 
@@ -172,10 +181,11 @@ def to_parquet(path: Path, texts: set[str]) -> Path:
     types = {name: arrow.string() if name in texts else arrow.float64() for name in columns}
     types |= dict.fromkeys(whole, arrow.int64())
     options = arrow_csv.ConvertOptions(column_types=types, strings_can_be_null=True)
-    reader = arrow_csv.open_csv(path, convert_options=options)
-    with reader, parquet.ParquetWriter(target, reader.schema) as writer:
-        for batch in reader:
-            writer.write_batch(batch)
+    with path.open("rb") as rows, written(target) as beside, beside.open("wb") as file:
+        reader = arrow_csv.open_csv(rows, convert_options=options)
+        with reader, parquet.ParquetWriter(file, reader.schema) as writer:
+            for batch in reader:
+                writer.write_batch(batch)
     return target
 
 

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from takt import _core
 from takt.errors import ConfigError
 from takt.kinematics import Kinematics, KinematicsError
+from takt.names import shown
 from takt.twin import made
 from takt.twin.places import Problems, mujoco_missing, near
 from takt.urdf_files import urdf_folders
@@ -400,8 +401,8 @@ class _Builder:
         own = folder / spec.compiler.meshdir
         spec.strippath = False
         for mesh in spec.meshes:
-            file = _core.urdf_mesh_file(mesh.file, str(folder))
-            mesh.file = file if Path(file).is_file() else _core.urdf_mesh_file(mesh.file, str(own))
+            file = _core.urdf_mesh_file(mesh.file, shown(folder))
+            mesh.file = file if Path(file).is_file() else _core.urdf_mesh_file(mesh.file, shown(own))
         return spec
 
     # --- given ---

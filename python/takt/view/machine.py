@@ -18,6 +18,7 @@ from takt.engine import read_machine
 from takt.errors import ConfigError, TaktError
 from takt.figures import COUNTS
 from takt.kinematics import Kinematics, pose_to_matrix
+from takt.names import shown
 from takt.recording import Array
 from takt.scene import link_poses, make_scene
 from takt.style import PALETTE, STATES, USUAL_FIELDS, is_set_point
@@ -65,7 +66,7 @@ class Machine:
         self.folder = folder or Path()
         self._drawn_from = (self.text, folder)
         self.parameters: dict[str, Any] = json.loads(
-            _core.load_machine(self.text.encode(), str(self.folder / "machine"), files=folder is not None)
+            _core.load_machine(self.text.encode(), shown(self.folder / "machine"), files=folder is not None)
         )
         if file is not None and folder is None and self.parameters == _loaded(file):
             self._drawn_from = (file.read_text(encoding="utf-8"), file.parent)
@@ -198,7 +199,7 @@ class Machine:
         if not self.parameters["cams"]:
             return []
         try:
-            tables = _core.cams_of_machine(self.text.encode(), str(self.folder / "machine"))
+            tables = _core.cams_of_machine(self.text.encode(), shown(self.folder / "machine"))
         except ConfigError:
             return []
         return [drawn(table) for table, _ in tables]
