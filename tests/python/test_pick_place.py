@@ -408,3 +408,40 @@ def test_rules_of_settings_are_named(engine: takt.Engine) -> None:
     ):
         with pytest.raises(takt.CommandError, match=rule):
             command(**arguments).wait()
+
+
+@pytest.mark.parametrize(("factor", "slower"), [(0, 2), (0.01, 4)])
+def test_a_profile_begun_at_a_low_override_does_not_crawl_afterwards(factor: float, slower: float) -> None:
+    """PP-21: behind a hold it keeps its accelerations, behind a low override a tenth of them at least."""
+
+    def takes_s(override_factor: float) -> float:
+        engine = started()
+        picker = engine.pick_place("picker")
+        picker.control(override_factor=override_factor).wait()
+        going = picker.execute()
+        engine.run(0.3 if override_factor < 1 else 0)
+        picker.control(override_factor=1).wait()
+        begin = engine.now
+        going.wait()
+        return engine.now - begin
+
+    assert takes_s(factor) < slower * takes_s(1)
+
+
+def test_profiles_given_behind_an_override_have_their_own_accelerations(engine: takt.Engine) -> None:
+    """PP-21: the profiles that wait begin with those of the override at their begin; it scales accelerations, too."""
+    picker = engine.pick_place("picker")
+    picker.configure(blending_radius=0, z_start_distance=0, z_target_distance=0).wait()  # straight along X
+    picker.control(override_factor=0.5).wait()
+    targets = []
+    for x_target in (50, 200, 20):
+        picker.configure(x_target=x_target).wait()
+        targets.append(picker.execute())
+    record = engine.record("x")
+    targets[0].wait()
+    assert np.abs(record.stop()["x"]["set_acceleration"]).max() <= 0.5 * 8000 * 1.001
+    picker.control(override_factor=1).wait()
+    targets[1].wait()
+    record = engine.record("x")
+    targets[2].wait()
+    assert np.abs(record.stop()["x"]["set_acceleration"]).max() > 0.6 * 8000

@@ -12,6 +12,8 @@ namespace {
 
 using group::GroupState;
 
+constexpr double kLeastRamps = 0.1;  // least factor of accelerations and jerks by an override
+
 // Something that stops harder than what is there.
 bool StopRises(const State& s) {
   return Rises(s.inputs.stop_all, s.before.stop_all) || Rises(s.inputs.path_stop, s.before.path_stop);
@@ -109,9 +111,9 @@ void SwitchPower(const Context& c, group::State& g, State& s) {
 void SetOverride(const Context& c, group::State& g, State& s) {
   const double factor = s.inputs.override_factor;
   if (factor == s.override_given) return;
-  // Accelerations and jerks cannot be 0.
-  const double ramps = std::max(factor, 1e-3);
-  Tell(c, group::SetOverride{factor, ramps, ramps}, g);
+  // Moves keep the accelerations and jerks with which they were given. A hold (0) leaves these factors as they are.
+  const auto ramps = [&](double given) { return factor > 0 ? std::max(factor, kLeastRamps) : given; };
+  Tell(c, group::SetOverride{factor, ramps(g.acceleration_factor), ramps(g.jerk_factor)}, g);
   s.override_given = factor;
 }
 

@@ -350,7 +350,9 @@ void StepOrder(const Context& c, group::State& g, State& s) {
 }
 
 // Static targets behind one another are given as early as may be: their profiles join without a pause.
+// Under an override each begins behind the one before: its accelerations are those of the override at its begin.
 void GiveAhead(const Context& c, group::State& g, State& s) {
+  if (s.inputs.override_factor < 1) return;
   for (std::uint32_t i = 1; i < s.order_count && s.state != PickPlaceState::kError; ++i) {
     const Order& before = s.orders[i - 1];
     if (before.phase != Phase::kGoing || !IsStatic(before) || !IsStatic(s.orders[i])) return;
