@@ -445,3 +445,29 @@ def test_profiles_given_behind_an_override_have_their_own_accelerations(engine: 
     record = engine.record("x")
     targets[2].wait()
     assert np.abs(record.stop()["x"]["set_acceleration"]).max() > 0.6 * 8000
+
+
+@pytest.mark.parametrize("off_s", [0.001, 0.03])
+def test_power_asked_for_while_the_tool_brakes_is_given_at_rest(engine: takt.Engine, off_s: float) -> None:
+    """PP-02: the rising edge of regulator_on counts while the axes are still being switched off."""
+    picker = engine.pick_place("picker")
+    picker.execute()
+    engine.run(0.1)
+    picker.control(regulator_on=False).wait()
+    engine.run(off_s)
+    assert engine.group("portal").state is takt.GroupState.GROUP_MOVING
+    picker.control(regulator_on=True).wait()
+    engine.run(1)
+    assert (picker.axes_enabled, picker.axes_group_enabled) == (True, True)
+    picker.execute().wait()
+
+
+def test_power_withdrawn_while_the_tool_brakes_is_not_given(engine: takt.Engine) -> None:
+    """PP-02: the level of regulator_on counts once the axes are off."""
+    picker = engine.pick_place("picker")
+    picker.execute()
+    engine.run(0.1)
+    for level in (False, True, False):
+        picker.control(regulator_on=level).wait()
+    engine.run(1)
+    assert not picker.axes_enabled

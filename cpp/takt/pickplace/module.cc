@@ -86,13 +86,26 @@ void Leave(const Context& c, FeedbackState feedback, ErrorId error, group::State
   if (moves) HaltGroup(c, g, s);
 }
 
+// The group or a member is being switched off: it brakes, or its brake closes, and refuses power until then.
+bool SwitchesOff(const Context& c, const group::State& g) {
+  if (g.task == group::Task::kPower && !g.power_on) return true;
+  return !group::AllMembers(c.group, g, [](const axis::State& m) {
+    return m.active.kind != axis::RequestKind::kPower || m.active.enable;
+  });
+}
+
 void SwitchPower(const Context& c, group::State& g, State& s) {
   const bool rises = s.inputs.enable && s.inputs.regulator_on && (!s.before.regulator_on || !s.before.enable);
   const bool falls = !s.inputs.regulator_on && s.before.regulator_on;
   if (IsOn(c, g)) s.enables = false;  // enabled, by any command: a `disable` given later holds
-  if (rises && !IsOn(c, g)) {
-    Tell(c, group::Power{.enable = true}, g);
-    s.enables = true;
+  if (rises) s.powers = true;
+  if (!s.inputs.enable || !s.inputs.regulator_on) s.powers = false;
+  if (s.powers && !SwitchesOff(c, g)) {
+    if (!IsOn(c, g)) {
+      Tell(c, group::Power{.enable = true}, g);
+      s.enables = true;
+    }
+    s.powers = false;
   }
   if (falls) {
     ForgetAll(c, FeedbackState::kAborted, ErrorId::kPowerOff, g, s);
@@ -408,7 +421,7 @@ void Fail(const Context& c, ErrorId error, group::State& g, State& s) noexcept {
 }
 
 void EmergencyStop(const Context& c, group::State& g, State& s) noexcept {
-  s.enables = false;
+  s.enables = s.powers = false;
   if (IsBusy(s) || s.order_count > 0 || s.loop.active || s.lifting) return Fail(c, ErrorId::kEmergencyStop, g, s);
   EndJog(c, FeedbackState::kAborted, ErrorId::kEmergencyStop, s);
 }

@@ -111,6 +111,7 @@ void describe(Description<State>& d) {
   d.internal<&State::done>("What was asked for last.");
   d.internal<&State::halting>("The group comes to rest because of the module.");
   d.internal<&State::enables>("The group, once its axes stand.");
+  d.internal<&State::powers>("The group, once it is no longer being switched off.");
   d.internal<&State::orders>("The first one is gone.");
   d.internal<&State::order_count>("How many.");
   d.internal<&State::loop>("A tracking mode.");

@@ -120,6 +120,7 @@ struct State {
   bool done = false;
   bool halting = false;               // the group comes to rest because the module told it to
   bool enables = false;               // the group, as soon as its axes are on and stand
+  bool powers = false;                // the group, as soon as it is no longer being switched off
   std::array<Order, kOrders> orders;  // [0] is the one that is gone
   std::uint32_t order_count = 0;
   Loop loop;
