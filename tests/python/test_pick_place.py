@@ -471,3 +471,52 @@ def test_power_withdrawn_while_the_tool_brakes_is_not_given(engine: takt.Engine)
         picker.control(regulator_on=level).wait()
     engine.run(1)
     assert not picker.axes_enabled
+
+
+@pytest.mark.parametrize(
+    ("setting", "then"),
+    [
+        ({"target_coordinate_system": "pcs", "target_pcs": 15}, {"target_pcs": 14}),
+        ({"target_coordinate_system": "pcs", "target_pcs": 3, "workpiece_pcs2": 3}, {"workpiece_pcs2": 4}),
+    ],
+)
+def test_a_target_in_a_system_of_workpieces_is_refused(
+    engine: takt.Engine, setting: dict[str, str | int], then: dict[str, int]
+) -> None:
+    """PP-14: in the file and at run time, whichever is changed; each pick would move the target onto its belt."""
+    wrong = "target_pcs must be another one than workpiece_pcs1 and workpiece_pcs2"
+    text = ", ".join(f"{name}: {value}" for name, value in setting.items())
+    with pytest.raises(takt.ConfigError, match=wrong):
+        takt.Engine(MACHINE.replace("{path_velocity", f"{{{text}, path_velocity"))
+    picker = engine.pick_place("picker")
+    feedback = picker.configure(**setting).wait_final()
+    assert (feedback.error_id, wrong in str(feedback.sentence)) == (5, True)
+    picker.configure(**setting | then).wait()
+    for name, value in setting.items():
+        if name != "target_coordinate_system":
+            taken = picker.configure(**{name: value}).wait_final().error_id
+            assert taken == (5 if then.get(name, value) != value else 0)
+    picker.configure(target_coordinate_system="mcs").wait()
+    picker.configure(**{name: value for name, value in setting.items() if name != "target_coordinate_system"}).wait()
+    assert picker.configure(target_coordinate_system="pcs").wait_final().error_id == 5
+
+
+def test_a_system_of_a_waiting_target_is_not_given_to_workpieces(engine: takt.Engine) -> None:
+    """PP-16: later settings do not change a profile that was accepted."""
+    picker = engine.pick_place("picker")
+    picker.configure(target_coordinate_system="pcs", target_pcs=3).wait()
+    going = picker.execute()
+    picker.configure(target_coordinate_system="mcs").wait()
+    assert picker.configure(workpiece_pcs1=3).wait_final().error_id == 5
+    going.wait()
+    engine.run(0.01)
+    picker.configure(workpiece_pcs1=3).wait()
+
+
+def test_a_target_in_acs_is_refused(engine: takt.Engine) -> None:
+    """PP-14: in the file and at run time."""
+    wrong = "target_coordinate_system must not be acs"
+    with pytest.raises(takt.ConfigError, match="target_coordinate_system: must not be acs"):
+        takt.Engine(MACHINE.replace("{path_velocity", "{target_coordinate_system: acs, path_velocity"))
+    feedback = engine.pick_place("picker").configure(target_coordinate_system="acs").wait_final()
+    assert (feedback.error_id, wrong in str(feedback.sentence)) == (5, True)

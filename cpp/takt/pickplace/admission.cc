@@ -90,10 +90,24 @@ void CarryOut(const Context& c, Ticket ticket, double lease_s, const Jog& comman
   if (!held && !Jogs(s)) EndJog(c, FeedbackState::kDone, ErrorId::kNone, s);
 }
 
+// Static targets that were accepted do not lie in product coordinate systems that workpieces get.
+bool WaitingTargetsFit(const State& s) {
+  Settings settings = s.settings;
+  for (std::uint32_t i = 0; i < s.order_count; ++i) {
+    settings.target_coordinate_system = s.orders[i].target.system;
+    settings.target_pcs = s.orders[i].target.pcs;
+    if (s.orders[i].belt == 0 && !TargetSystemFits(settings)) return false;
+  }
+  return true;
+}
+
 void CarryOut(const Context& c, Ticket ticket, double, const Configure& command, group::State&, State& s) {
   const Settings was = s.settings;
   TakeGiven(command, s.settings);
-  if (s.settings.workpiece_pcs1 == s.settings.workpiece_pcs2) {  // where it lifts from would be forgotten
+  // Workpieces in one system: where it lifts from would be forgotten.
+  const bool fits = TargetFits(s.settings) && WorkpieceSystemsFit(s.settings) &&
+                    (c.params.belts.empty() || (TargetSystemFits(s.settings) && WaitingTargetsFit(s)));
+  if (!fits) {
     s.settings = was;
     return Refuse(c, ticket, ErrorId::kParameter, s);
   }

@@ -56,7 +56,10 @@ void describe(Description<PickPlaceParams>& d) {
   d.defaulted<&P::settings>("Settings at the start.");
   d.defaulted<&P::homing>("Homing of axes other than they do by themselves.");
   d.rule<&P::settings>("workpiece_pcs1 and workpiece_pcs2 must be different: places on two belts are seen from them",
-                       [](const P& p) { return p.settings.workpiece_pcs1 != p.settings.workpiece_pcs2; });
+                       [](const P& p) { return WorkpieceSystemsFit(p.settings); });
+  d.rule<&P::settings>(
+      "target_pcs must be another one than workpiece_pcs1 and workpiece_pcs2: the target would lie on a workpiece",
+      [](const P& p) { return p.belts.empty() || TargetSystemFits(p.settings); });
   d.rule<&P::belts>("must be no more than 16", [](const P& p) { return p.belts.size() <= kBelts; });
 }
 

@@ -84,7 +84,7 @@ void DescribeSettings(Description<SettingsOf<Of>>& d) {
   d.template defaulted<&S::target_coordinate_system>(
       "What the static target is seen from; not acs. T&P: eTargetCoordSystem.");
   d.template defaulted<&S::target_pcs>(between(1, group::kProductSystems),
-                                       "Which product coordinate system; with pcs.");
+                                       "Which product coordinate system, with pcs; none that workpieces get.");
   d.template defaulted<&S::z_start_distance>(unit::mm, kFromZero, "A profile first lifts by this. T&P: lrZStartDist.");
   d.template defaulted<&S::z_target_distance>(unit::mm, kFromZero,
                                               "And lowers by this at its end. T&P: lrZTargetDist.");
@@ -176,6 +176,19 @@ void DescribeBelt(Description<BeltSettingsOf<Of>>& d) {
 
 }  // namespace
 
+bool WorkpieceSystemsFit(const Settings& s) noexcept {
+  return s.workpiece_pcs1 != s.workpiece_pcs2;
+}
+
+bool TargetSystemFits(const Settings& s) noexcept {
+  const bool in_pcs = s.target_coordinate_system == group::CoordinateSystem::kPcs;
+  return !in_pcs || (s.target_pcs != s.workpiece_pcs1 && s.target_pcs != s.workpiece_pcs2);
+}
+
+bool TargetFits(const Settings& s) noexcept {
+  return s.target_coordinate_system != group::CoordinateSystem::kAcs;
+}
+
 bool TurnsFit(const BeltSettings& s) noexcept {
   return s.turn <= s.every && s.turns <= s.every - s.turn + 1;
 }
@@ -198,6 +211,8 @@ void describe(Description<Settings>& d) {
   d.named("PickPlaceSettings");
   d.about("What is set of a pick and place module.");
   DescribeSettings(d);
+  d.rule<&Settings::target_coordinate_system>("must not be acs: targets are places of the tool",
+                                              [](const Settings& s) { return TargetFits(s); });
 }
 
 void describe(Description<Configure>& d) {

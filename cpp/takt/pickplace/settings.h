@@ -148,6 +148,12 @@ using BeltSettings = BeltSettingsOf<Plain>;
 // The command that changes what is given of them.
 using ConfigureBelt = BeltSettingsOf<std::optional>;
 
+// workpiece_pcs1 and workpiece_pcs2 differ.
+bool WorkpieceSystemsFit(const Settings& settings) noexcept;
+// The static target does not lie in a product coordinate system that workpieces get.
+bool TargetSystemFits(const Settings& settings) noexcept;
+// The static target is not seen from the axes.
+bool TargetFits(const Settings& settings) noexcept;
 // The workpieces that a module takes in turn are among those of a round.
 bool TurnsFit(const BeltSettings& settings) noexcept;
 // It has a work range of its own; else that of the belt alone counts.
