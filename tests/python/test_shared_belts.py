@@ -91,3 +91,23 @@ def test_bad_shares_are_named(bad: str) -> None:
         given = {key: int(value) for key, value in (one.split(": ") for one in bad.split(", "))}
         assert picker.configure_belt(**given).wait_final().error_id == 5
         assert picker.configure_belt(every=3, turn=2, turns=2).wait().done
+
+
+@pytest.mark.parametrize("of_each", [("sync_time: 0.1", "sync_time: 0.1"), ("every: 2", "every: 2, turn: 2")])
+def test_a_product_that_was_seen_twice_is_fetched_once(of_each: tuple[str, str]) -> None:
+    """PP-66: the second module takes another one, where its range begins at that of the first."""
+    text = sharing(*of_each).replace("lower_limit: 350, upper_limit: 550", "lower_limit: 50, upper_limit: 250")
+    with takt.Engine(text) as session:
+        belt, pickers = session.belt("belt"), list(session.pick_places.values())
+        belt.axis.power().wait()
+        for picker in pickers:
+            picker.control(regulator_on=True).wait()
+        session.wait(lambda: all(p.axes_enabled and p.axes_group_enabled for p in pickers), 5)
+        belt.axis.move_velocity(velocity=60).wait(until="reached")
+        for x in (100, 101):
+            belt.detect(x=x)
+        for picker in pickers:
+            picker.execute()
+        session.run(3)
+        assert sum(picker.picked for picker in pickers) == 1
+        assert (belt.object_count, sum(picker.missed for picker in pickers)) == (0, 0)

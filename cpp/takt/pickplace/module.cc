@@ -89,9 +89,8 @@ void Leave(const Context& c, FeedbackState feedback, ErrorId error, group::State
 // The group or a member is being switched off: it brakes, or its brake closes, and refuses power until then.
 bool SwitchesOff(const Context& c, const group::State& g) {
   if (g.task == group::Task::kPower && !g.power_on) return true;
-  return !group::AllMembers(c.group, g, [](const axis::State& m) {
-    return m.active.kind != axis::RequestKind::kPower || m.active.enable;
-  });
+  return !group::AllMembers(
+      c.group, g, [](const axis::State& m) { return m.active.kind != axis::RequestKind::kPower || m.active.enable; });
 }
 
 void SwitchPower(const Context& c, group::State& g, State& s) {

@@ -119,6 +119,18 @@ bool IsSafe(const Context& c, const group::State& g, const Order& order, double 
   return IsInside(belt, own, place - back) && IsInside(belt, own, place + ahead);
 }
 
+double Apart(const Belt& belt, const Object& object, const Object& other) {
+  const auto place = [&](const Object& of) { return conveyor::PoseOf(*belt.params, *belt.state, of).GetFrame().p; };
+  return (place(object) - place(other)).Norm();
+}
+
+// PP-66: it is a workpiece that was taken, seen twice.
+bool IsTaken(const Belt& belt, const BeltSettings& own, const Object& object) {
+  return own.same_within > 0 && std::ranges::any_of(conveyor::ObjectsOf(*belt.state), [&](const Object& other) {
+           return other.state == conveyor::ObjectState::kTaken && Apart(belt, object, other) <= own.same_within;
+         });
+}
+
 // The tool can be there, and over there.
 bool CanBeAt(const Context& c, const group::State& g, const BeltSettings& own, const Frame& object, const State& s) {
   const group::End present = group::Present(c.group, g);
@@ -226,7 +238,8 @@ const Object* ChooseWorkpiece(const Context& c, const group::State& g, const Ord
         continue;
       if (IsInside(own, conveyor::PlaceOf(*belt.params, *belt.state, object))) best = i;
     }
-    const bool found = best < objects.size() && IsReachable(c, g, order, objects[best], s);
+    const bool found =
+        best < objects.size() && !IsTaken(belt, own, objects[best]) && IsReachable(c, g, order, objects[best], s);
     s.searched = best == objects.size() || found ? 0 : objects[best].number;
     if (found) return &objects[best];
     if (s.searched == 0) return nullptr;
@@ -285,12 +298,11 @@ void RemoveWorkpiece(const Context& c, Order& order) noexcept {
   if (order.workpiece == 0) return;
   const Belt& belt = BeltOf(c, order);
   if (const Object* object = conveyor::Find(*belt.state, order.workpiece)) {
-    const KDL::Vector place = conveyor::PoseOf(*belt.params, *belt.state, *object).GetFrame().p;
+    const Object fetched = *object;
     for (std::uint32_t i = belt.state->count; i-- > 0 && order.own.same_within > 0;) {
       const Object& other = belt.state->objects[i];
-      if (other.state != conveyor::ObjectState::kVisible) continue;
-      const double apart = (conveyor::PoseOf(*belt.params, *belt.state, other).GetFrame().p - place).Norm();
-      if (apart <= order.own.same_within) conveyor::Remove(other.number, *belt.state);
+      if (other.state == conveyor::ObjectState::kDetected) continue;
+      if (Apart(belt, fetched, other) <= order.own.same_within) conveyor::Remove(other.number, *belt.state);
     }
     conveyor::Remove(order.workpiece, *belt.state);
   }
