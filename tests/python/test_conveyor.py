@@ -578,3 +578,33 @@ def test_a_system_of_which_nothing_is_known() -> None:
             assert [move.error_id for move in moves] == [3035] * 3
             assert "is not known" in moves[0].sentence
         assert gantry.pose == pytest.approx(place)
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "angle", "place"),
+    [
+        (190, 260, 185, 185),
+        (190, 260, 200, 200),
+        (190, 260, 280, -80),
+        (150, 210, 190, 190),
+        (-200, -100, 155, -205),
+        (0, 90, 100, -260),
+        (0, 90, 80, 80),
+        (0, 720, 10, 10),
+    ],
+)
+def test_objects_on_a_table_reach_its_range_within_a_turn(
+    lower: float, upper: float, angle: float, place: float
+) -> None:
+    """CV-22: also a range beyond 180 deg, and an object just behind the range."""
+    text = f"""
+name: table
+axes: [{{name: disc, unit: deg, kind: rotary, limits: {{velocity: 360, acceleration: 3600, jerk: 72000}}}}]
+belts: [{{name: table, kind: turning, axis: disc, lower_limit: {lower}, upper_limit: {upper}}}]
+"""
+    engine = takt.Engine(text)
+    table = engine.belt("table")
+    table.detect(x=200 * math.cos(math.radians(angle)), y=200 * math.sin(math.radians(angle))).wait()
+    engine.step(2)
+    assert table.objects[0].place == pytest.approx(place)
+    assert table.objects[0].in_range == (lower <= place <= upper)

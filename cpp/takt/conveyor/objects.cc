@@ -14,9 +14,13 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// Along the belt, where the object lay when it was detected.
+// On a table, from -180 to 180 if that is within the range, or if there is no upper limit; else in the last turn that
+// does not lie beyond the upper limit: the object reaches the range within a turn of positive travel.
 double InitialPlace(const BeltParams& p, const Object& object) {
-  return p.kind == BeltKind::kTurning ? maths::Atan2(object.pose.y, object.pose.x) / kDegree : object.pose.x;
+  if (p.kind != BeltKind::kTurning) return object.pose.x;
+  const double angle = maths::Atan2(object.pose.y, object.pose.x) / kDegree;
+  if (!p.upper_limit || IsWithin(p, angle)) return angle;
+  return angle + 360 * std::floor((*p.upper_limit - angle) / 360);
 }
 
 template <typename Objects>
