@@ -520,3 +520,25 @@ def test_a_target_in_acs_is_refused(engine: takt.Engine) -> None:
         takt.Engine(MACHINE.replace("{path_velocity", "{target_coordinate_system: acs, path_velocity"))
     feedback = engine.pick_place("picker").configure(target_coordinate_system="acs").wait_final()
     assert (feedback.error_id, wrong in str(feedback.sentence)) == (5, True)
+
+
+@pytest.mark.parametrize("waits", [False, True])
+@pytest.mark.parametrize("change", [{"z": -50}, {"c": 30}])
+def test_a_tool_that_is_set_anew_parks_again(engine: takt.Engine, change: dict[str, float], waits: bool) -> None:
+    """PP-42: the parking position is one of the tool."""
+    picker, group = engine.pick_place("picker"), engine.group("portal")
+    engine.axis("drive").move_velocity(velocity=100).wait(until="reached")
+    if not waits:
+        engine.belt("infeed").detect(x=50).wait()
+    picker.execute(1)
+    engine.wait(lambda: picker.in_park_position, 5)
+    engine.run(0.5)
+    assert picker.in_park_position
+    group.set_tool(**change).wait()
+    if not waits:
+        engine.run(0.01)
+        assert not picker.in_park_position
+        picker.execute(1)
+    engine.run(1)
+    assert picker.in_park_position
+    assert picker.position[:3] == pytest.approx((300, 200, 20), abs=0.01)

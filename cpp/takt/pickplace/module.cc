@@ -391,6 +391,12 @@ bool MovesOn(const Context& c, const group::State& g) {
   return g.begun ? g.pace.now.velocity > 0 : !group::AllMembers(c.group, g, axis::AtRest);
 }
 
+// The tool is not at a place of the MCS any more: its frame, or the position of an axis, was set anew.
+bool IsElsewhere(const Context& c, const group::State& g, const Place& place) {
+  constexpr double kSamePlace = 0.01;  // mm, rad
+  return !KDL::Equal(kinematics::ToFrame(PresentPlace(c, g).pose), kinematics::ToFrame(place.pose), kSamePlace);
+}
+
 void WatchWindow(const Context& c, State& s) {
   const double cycles = s.settings.position_window_ms / 1000 / c.group.cycle.period_s;
   if (c.path_error > s.settings.position_window) {
@@ -434,10 +440,9 @@ State MakeState(const PickPlaceParams& params) noexcept {
 
 void Step(const Context& c, group::State& g, State& s) noexcept {
   s.pulse = false;
-  if (MovesOn(c, g)) {
-    s.in_target = false;
-    if (!s.parking && s.parked_at != 0) ForgetPlace(s);  // a motion of others
-  }
+  const bool moves = MovesOn(c, g);
+  if (moves) s.in_target = false;
+  if (s.parked_at != 0 && !s.parking && (moves || IsElsewhere(c, g, s.at))) ForgetPlace(s);  // by other commands
   SwitchPower(c, g, s);
   SetOverride(c, g, s);
   CloseDirections(c, g, s);

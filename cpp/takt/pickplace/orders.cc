@@ -186,6 +186,13 @@ void Park(const Context& c, std::uint32_t belt, group::State& g, State& s) {
   s.parking_over = profile.legs[0].to;
 }
 
+// From where the tool is now, which mechanisms without a wrist turn otherwise than the parking position.
+void EndParking(const Context& c, const group::State& g, State& s) {
+  s.parking = false;
+  s.at = PresentPlace(c, g);
+  s.at.parks = true;
+}
+
 // Its moves are given; or it waits for a workpiece, where such wait.
 void Begin(const Context& c, group::State& g, Order& order, State& s) {
   s.in_target = false;
@@ -275,7 +282,7 @@ bool IsOnWorkpiece(const Context& c, const group::State& g, const State& s) noex
 }
 
 bool Arrive(const Context& c, const group::State& g, State& s) noexcept {
-  if (s.parking && g.done > s.parking_move && g.failed < s.parking_move) s.parking = false;
+  if (s.parking && g.done > s.parking_move && g.failed < s.parking_move) EndParking(c, g, s);
   if (g.ends || g.reason != kinematics::Reason::kNone) return false;
   if (s.order_count == 0 || !HasArrived(g, s.orders[0])) return false;
   Order& order = s.orders[0];
@@ -549,7 +556,7 @@ void RunOrders(const Context& c, group::State& g, State& s) noexcept {
     s.error_axes |= AxesOf(c, g, g.refused);
     return Fail(c, TroubleOf(g), g, s);
   }
-  if (s.parking && g.done > s.parking_move) s.parking = false;
+  if (s.parking && g.done > s.parking_move) EndParking(c, g, s);
   StepLoop(c, s);
   if (s.order_count > 0) StepOrder(c, g, s);
   if (s.state == PickPlaceState::kError) return;
