@@ -542,3 +542,16 @@ def test_a_tool_that_is_set_anew_parks_again(engine: takt.Engine, change: dict[s
     engine.run(1)
     assert picker.in_park_position
     assert picker.position[:3] == pytest.approx((300, 200, 20), abs=0.01)
+
+
+def test_a_waiting_profile_keeps_its_workpiece_rule(engine: takt.Engine) -> None:
+    """PP-16: later settings do not change a profile that was accepted."""
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    belt.axis.move_velocity(velocity=5).wait(until="reached")
+    picker.execute(1)
+    engine.wait(lambda: picker.in_park_position, 5)
+    picker.configure(workpiece_rule="latest").wait()
+    for x in (100, 200):
+        belt.detect(x=x)
+    engine.run(0.01)
+    assert picker.workpiece == 2  # the one that leaves the range first

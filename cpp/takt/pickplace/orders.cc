@@ -51,6 +51,7 @@ Order MakeOrder(std::uint32_t belt, bool picks, const State& s) {
   if (belt != 0) order.own = s.belts[belt - 1];
   if (belt != 0) order.shape.target_distance = order.own.z_distance;
   order.ramps = RampsOf(p);
+  order.rule = p.workpiece_rule;
   const bool opens = p.tracking_mode != TrackingMode::kProgram && !picks;
   order.gripper_time = opens ? p.gripper_open_time : p.gripper_closing_time;
   return order;

@@ -24,6 +24,7 @@ void describe(Description<Order>& d) {
   d.internal<&Order::shape>("How its profile runs.");
   d.internal<&Order::own>("Of the belt.");
   d.internal<&Order::ramps>("Limits along it.");
+  d.internal<&Order::rule>("Which workpiece.");
   d.internal<&Order::gripper_time>("Before its end.");
   d.internal<&Order::phase>("Where it has got to.");
   d.internal<&Order::profile>("Its moves.");

@@ -42,6 +42,7 @@ struct Order {
   Shape shape;
   BeltSettings own;  // of the belt, as it was accepted
   PathRamps ramps;
+  WorkpieceRule rule = WorkpieceRule::kFirst;
   double gripper_time = 0;  // s
   Phase phase = Phase::kNew;
   Profile profile;

@@ -132,13 +132,14 @@ bool IsTaken(const Belt& belt, const BeltSettings& own, const Object& object) {
 }
 
 // The tool can be there, and over there.
-bool CanBeAt(const Context& c, const group::State& g, const BeltSettings& own, const Frame& object, const State& s) {
+bool CanBeAt(const Context& c, const group::State& g, const Order& order, const Frame& object) {
+  const BeltSettings& own = order.own;
   const group::End present = group::Present(c.group, g);
   kinematics::Pose grip = GripOn(own);
   for (const double height : {0.0, own.z_distance}) {
     grip.z = own.grip_z + height;
     Frame at = object * kinematics::ToFrame(grip);
-    if (s.settings.keep_orientation) {
+    if (order.shape.keep_orientation) {
       at.M = present.tool.M;
     } else {
       at = kinematics::ToFrame(Levelled(c, g, {.pose = kinematics::ToPose(at)}).pose);
@@ -184,8 +185,8 @@ bool IsReachableAt(double speed, const Context& c, const group::State& g, const 
   if (meeting.error != ErrorId::kNone) return false;
   const double travel = speed * (LongerBy(g, s) * meeting.time_s + own.sync_time + TimeUp(c, g, order, own));
   const double end = conveyor::PlaceOf(*belt.params, *belt.state, object) + travel;
-  return IsSafe(c, g, order, end, speed) && CanBeAt(c, g, own, meeting.object, s) &&
-         CanBeAt(c, g, own, ObjectAfter(c, belt, object, travel), s);
+  return IsSafe(c, g, order, end, speed) && CanBeAt(c, g, order, meeting.object) &&
+         CanBeAt(c, g, order, ObjectAfter(c, belt, object, travel));
 }
 
 // Wherever the belt may have come to meanwhile lies between where its two speeds take it.
@@ -209,7 +210,7 @@ const Object* ChooseWorkpiece(const Context& c, const group::State& g, const Ord
   const KDL::Vector tool = group::Present(c.group, g).tool.p;
   const auto rank = [&](const Object& object) {
     const double place = belt.state->sense * conveyor::PlaceOf(*belt.params, *belt.state, object);
-    switch (s.settings.workpiece_rule) {
+    switch (order.rule) {
       case WorkpieceRule::kFirst:
         return place;
       case WorkpieceRule::kLatest:
