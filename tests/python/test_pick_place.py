@@ -555,3 +555,34 @@ def test_a_waiting_profile_keeps_its_workpiece_rule(engine: takt.Engine) -> None
         belt.detect(x=x)
     engine.run(0.01)
     assert picker.workpiece == 2  # the one that leaves the range first
+
+
+def test_a_workpiece_that_is_deleted_under_the_tool_keeps_its_attributes() -> None:
+    """PP-66: it is picked, as the tool stands on it; attributes travel with it to its place."""
+    engine = started(LOW)
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    belt.axis.move_velocity(velocity=60).wait(until="reached")
+    belt.detect(x=50, kind=7, colour=3, quality=0.5).wait()
+    picking = picker.execute(1)
+    engine.wait(lambda: picker.in_target, 5)
+    engine.run(0.1)
+    belt.remove(number=1).wait()
+    picking.wait()
+    assert (picker.picked, picker.held) == (1, 1)
+    assert (picker.held_kind, picker.held_colour, picker.held_quality) == (7, 3, 0.5)
+
+
+def test_more_products_are_held_than_attributes_are_known() -> None:
+    """PP-66: all count; those from the ninth on have no attributes."""
+    engine = started(MACHINE.replace("sync_time: 0.05", "sync_time: 0"))
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    belt.axis.move_velocity(velocity=10).wait(until="reached")
+    for kind in range(1, 11):
+        belt.detect(x=100, kind=kind).wait()
+        picker.execute(1).wait()
+    held = []
+    for _ in range(10):
+        held.append((picker.held, picker.held_kind))
+        picker.execute().wait()
+    assert held == [(10 - i, i + 1 if i < 8 else 0) for i in range(10)]
+    assert picker.held == 0

@@ -259,12 +259,14 @@ void BeginAgain(const Context& c, group::State& g, Order& order, State& s) {
 void CountPick(const Context& c, const Order& order, State& s) {
   if (!order.picks) {
     ++s.counters.placed;
-    if (s.held_count > 0) std::shift_left(s.held.begin(), s.held.begin() + s.held_count--, 1);
+    if (s.held_count == 0) return;
+    std::shift_left(s.held.begin(), s.held.end(), 1);
+    s.held.back() = {};
+    --s.held_count;
     return;
   }
-  const conveyor::Object* object =
-      order.belt != 0 ? conveyor::Find(*c.belts[order.belt - 1].state, order.workpiece) : nullptr;
-  if (s.held_count < kHeld) s.held[s.held_count++] = object ? object->attributes : conveyor::Attributes{};
+  if (s.held_count < kHeld) s.held[s.held_count] = order.attributes;
+  ++s.held_count;
   ++s.counters.picked;
   s.pick_cycles[s.pick_count % kPickTimes] = c.group.cycle.count;
   ++s.pick_count;

@@ -32,6 +32,7 @@ void describe(Description<Order>& d) {
   d.internal<&Order::first>("Number of its first move.");
   d.internal<&Order::last>("Number of its last one.");
   d.internal<&Order::workpiece>("That is taken; 0: none.");
+  d.internal<&Order::attributes>("Of it.");
   d.internal<&Order::left>("That a stop left; 0: none.");
   d.internal<&Order::from_belt>("It began on a workpiece, or low over a belt.");
   d.internal<&Order::begin_cycle>("When it began.");

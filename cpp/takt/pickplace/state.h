@@ -46,12 +46,13 @@ struct Order {
   double gripper_time = 0;  // s
   Phase phase = Phase::kNew;
   Profile profile;
-  std::uint32_t next_leg = 0;   // the first one given
-  std::uint64_t first = 0;      // number of its first move ...
-  std::uint64_t last = 0;       // ... and of its last one, in the group
-  std::uint32_t workpiece = 0;  // its number; 0: none is taken
-  std::uint32_t left = 0;       // number of the one that a stop left; 0: none, or it is known what became of it
-  bool from_belt = false;       // it began on a workpiece, or low over a belt
+  std::uint32_t next_leg = 0;       // the first one given
+  std::uint64_t first = 0;          // number of its first move ...
+  std::uint64_t last = 0;           // ... and of its last one, in the group
+  std::uint32_t workpiece = 0;      // its number; 0: none is taken
+  conveyor::Attributes attributes;  // of it, as it was taken
+  std::uint32_t left = 0;           // number of the one that a stop left; 0: none, or it is known what became of it
+  bool from_belt = false;           // it began on a workpiece, or low over a belt
   std::uint64_t begin_cycle = 0;
   std::uint64_t stay_cycle = 0;  // when it arrived
   double expected_s = 0;         // the way was thought to take
@@ -163,8 +164,8 @@ struct State {
   std::uint32_t out_of_window = 0;  // cycles since the measured tool was too far away: counts down
   bool in_target = false;
   Counters counters;
-  std::array<conveyor::Attributes, kHeld> held{};  // of what was picked and is not placed yet, the oldest first
-  std::uint32_t held_count = 0;
+  std::array<conveyor::Attributes, kHeld> held{};       // of what was picked and is not placed yet, the oldest first
+  std::uint32_t held_count = 0;                         // all that is held; may be more than kHeld
   std::uint32_t warning_belt = 0;                       // that the warning is about, from 1; 0: none
   std::array<std::uint32_t, kBelts> counted_before{};   // of those that belts will lose
   std::array<std::uint32_t, kBelts> refused_before{};   // of the belts

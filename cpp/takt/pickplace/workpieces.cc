@@ -282,6 +282,7 @@ ErrorId BindWorkpiece(const Context& c, const Object& object, group::State& g, O
                                          .c = on.c};
   if (const ErrorId error = Tell(c, bind, g); error != ErrorId::kNone) return error;
   const std::uint32_t number = object.number;
+  order.attributes = object.attributes;
   if (const Status taken = conveyor::Take(number, *belt.state); taken.failed()) return taken.error;
   order.workpiece = number;
   s.taken_cycle[order.belt - 1] = c.group.cycle.count;
