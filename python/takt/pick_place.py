@@ -35,6 +35,8 @@ def why_refused(error_id: int, verb: str, arguments: str) -> str:
             "upper_limit must lie above lower_limit, and both must overlap the work range of the belt, or both must be "
             "0: the range of the belt alone"
         )
+    if verb == "configure_belt" and asked.keys() & (LIMITS | {"leave"}):
+        rules.append("leave must be 0 without lower_limit and upper_limit: it counts workpieces behind that range")
     if verb == "configure_belt" and asked.keys() & TURNS:
         rules.append("turns must not lead beyond every: turn + turns - 1 is at most every")
     if verb == "jog" and asked.get("positive") and asked.get("negative"):

@@ -608,3 +608,20 @@ belts: [{{name: table, kind: turning, axis: disc, lower_limit: {lower}, upper_li
     engine.step(2)
     assert table.objects[0].place == pytest.approx(place)
     assert table.objects[0].in_range == (lower <= place <= upper)
+
+
+@pytest.mark.parametrize(("speed", "first"), [(60, 2), (-60, 1)])
+def test_the_object_that_leaves_the_range_first(speed: float, first: int) -> None:
+    """CV-43: in the sense in which the belt moves."""
+    engine = takt.Engine("""
+name: belt
+axes: [{name: drive, limits: {velocity: 500, acceleration: 5000, jerk: 100000}}]
+belts: [{name: infeed, axis: drive, lower_limit: 0, upper_limit: 600}]
+""")
+    belt = engine.belt("infeed")
+    belt.axis.power().wait()
+    belt.axis.move_absolute(position=math.copysign(1, speed)).wait()
+    for x in (200, 400):
+        belt.detect(x=x).wait()
+    engine.step()
+    assert (belt.first_number, belt.first_place) == (first, pytest.approx(200 * first))

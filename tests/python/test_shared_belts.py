@@ -111,3 +111,18 @@ def test_a_product_that_was_seen_twice_is_fetched_once(of_each: tuple[str, str])
         session.run(3)
         assert sum(picker.picked for picker in pickers) == 1
         assert (belt.object_count, sum(picker.missed for picker in pickers)) == (0, 0)
+
+
+def test_leave_needs_a_range() -> None:
+    """PP-67: without one nothing lies behind it; refused in the file and at run time, whichever is changed."""
+    wrong = "leave must be 0 without lower_limit and upper_limit"
+    text = sharing("leave: 2").replace("lower_limit: 50, upper_limit: 250, ", "")
+    with pytest.raises(takt.ConfigError, match="leave: must be 0 without lower_limit and upper_limit"):
+        takt.Engine(text)
+    with takt.Engine(text.replace("leave: 2", "leave: 0")) as session:
+        picker = session.pick_place("left_picker")
+        feedback = picker.configure_belt(leave=2).wait_final()
+        assert (feedback.error_id, wrong in str(feedback.sentence)) == (5, True)
+        picker.configure_belt(leave=2, lower_limit=50, upper_limit=250).wait()
+        feedback = picker.configure_belt(lower_limit=0, upper_limit=0).wait_final()
+        assert (feedback.error_id, wrong in str(feedback.sentence)) == (5, True)

@@ -92,10 +92,10 @@ const Object* FirstFree(const BeltParams& p, const State& s) noexcept {
   double furthest = 0;
   for (const Object& object : ObjectsOf(s)) {
     if (object.state != ObjectState::kVisible) continue;
-    const double place = PlaceOf(p, s, object);
-    if (!IsWithin(p, place) || (first && place <= furthest)) continue;
+    const double place = PlaceOf(p, s, object), along = s.sense * place;
+    if (!IsWithin(p, place) || (first && along <= furthest)) continue;
     first = &object;
-    furthest = place;
+    furthest = along;
   }
   return first;
 }

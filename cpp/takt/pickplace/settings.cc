@@ -156,7 +156,8 @@ void DescribeBelt(Description<BeltSettingsOf<Of>>& d) {
                                             "It takes no more workpieces a minute than this, evenly; 0: any number.");
   d.template defaulted<&S::leave>(
       at_most(conveyor::kObjects),
-      "It takes one only while so many free ones lie behind its range, for modules further on; 0: it does not look.");
+      "It takes one only while so many free ones lie behind its range, for modules further on; 0: it does not look. "
+      "With lower_limit and upper_limit.");
   d.template defaulted<&S::same_within>(
       unit::mm, kFromZero,
       "What lies so near to a workpiece that was fetched is the same one, seen twice, as where pictures of a camera "
@@ -201,6 +202,10 @@ bool RangeFits(const BeltSettings& s) noexcept {
   return !HasRange(s) || s.lower_limit < s.upper_limit;
 }
 
+bool LeaveFits(const BeltSettings& s) noexcept {
+  return s.leave == 0 || HasRange(s);
+}
+
 bool RangeMeets(const BeltSettings& s, const conveyor::BeltParams& belt) noexcept {
   if (!HasRange(s) || !RangeFits(s)) return true;
   return !(belt.lower_limit && s.upper_limit < *belt.lower_limit) &&
@@ -231,6 +236,8 @@ void describe(Description<BeltSettings>& d) {
                                [](const BeltSettings& s) { return TurnsFit(s); });
   d.rule<&BeltSettings::upper_limit>("must lie above lower_limit, or both must be 0: the range of the belt alone",
                                      [](const BeltSettings& s) { return RangeFits(s); });
+  d.rule<&BeltSettings::leave>("must be 0 without lower_limit and upper_limit: it counts workpieces behind that range",
+                               [](const BeltSettings& s) { return LeaveFits(s); });
 }
 
 void describe(Description<ConfigureBelt>& d) {

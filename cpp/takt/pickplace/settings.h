@@ -160,6 +160,8 @@ bool TurnsFit(const BeltSettings& settings) noexcept;
 bool HasRange(const BeltSettings& settings) noexcept;
 // It has none, or lower_limit lies below upper_limit.
 bool RangeFits(const BeltSettings& settings) noexcept;
+// It counts free workpieces behind its range and has a range of its own, or does not count them.
+bool LeaveFits(const BeltSettings& settings) noexcept;
 // It has none that fits, or one that overlaps the belt's own.
 bool RangeMeets(const BeltSettings& settings, const conveyor::BeltParams& belt) noexcept;
 

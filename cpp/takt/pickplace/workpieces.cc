@@ -1,7 +1,6 @@
 // Which workpiece is next, and whether it can be reached in time (PP-44).
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "takt/core/angle.h"
 #include "takt/group/systems.h"
@@ -53,8 +52,7 @@ bool MayTake(const Context& c, const Order& order, const State& s) {
   if (own.most_per_minute > 0 && last != 0 && since_s * own.most_per_minute < 60) return false;
   if (own.leave == 0) return true;
   const int sense = belt.state->sense;
-  const double end =
-      HasRange(own) ? (sense > 0 ? own.upper_limit : own.lower_limit) : std::numeric_limits<double>::infinity();
+  const double end = sense > 0 ? own.upper_limit : own.lower_limit;
   const auto lies_behind = [&](const Object& object) {
     return object.state == conveyor::ObjectState::kVisible &&
            sense * (conveyor::PlaceOf(*belt.params, *belt.state, object) - end) > 0;
