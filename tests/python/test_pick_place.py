@@ -586,3 +586,72 @@ def test_more_products_are_held_than_attributes_are_known() -> None:
         picker.execute().wait()
     assert held == [(10 - i, i + 1 if i < 8 else 0) for i in range(10)]
     assert picker.held == 0
+
+
+def test_a_workpiece_without_a_path_is_missed_once_when_it_is_lost() -> None:
+    """PP-44: each refusal leaves it on the belt, where it may still be picked."""
+    switch = [axis == 8 for axis in range(13)]  # A3
+
+    def refused(engine: takt.Engine) -> None:
+        picker = engine.pick_place("picker")
+        picker.control(enable_hw_limit=True, hw_limit_negative=switch).wait()
+        for _ in range(3):
+            engine.run(0.2)
+            picker.control(reset_error=False).wait()
+            picker.control(reset_error=True).wait()
+            engine.run(0.3)
+            assert picker.execute(1).wait_final().error_id == 20501
+            assert picker.missed == 0
+        picker.control(hw_limit_negative=[False] * 13, reset_error=False).wait()
+        picker.control(reset_error=True).wait()
+        engine.run(0.3)
+
+    for lost in (False, True):
+        engine = started()
+        picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+        belt.axis.move_velocity(velocity=5).wait(until="reached")
+        belt.detect(x=200).wait()
+        refused(engine)
+        if lost:
+            belt.axis.move_velocity(velocity=400)
+            engine.wait(lambda belt=belt: belt.lost_count == 1, 5)
+            engine.run(0.01)
+        else:
+            picker.execute(1).wait()
+        assert (picker.picked, picker.missed, picker.missed_refused) == ((0, 1, 1) if lost else (1, 0, 0))
+
+
+def test_what_a_module_does_not_take_is_not_missed() -> None:
+    """PP-63, PP-66, PP-67: of another kind, or of the turn of another module."""
+    for own, missed in (("kind: 1", 1), ("every: 2", 2), ("sync_time: 0", 3)):
+        engine = started(MACHINE.replace("sync_time: 0.05", own))
+        picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+        belt.axis.move_velocity(velocity=100).wait(until="reached")
+        picker.execute(1)
+        engine.run(0.5)
+        for kind in (1, 2, 2):
+            belt.detect(x=595, kind=kind)
+        engine.run(0.5)
+        assert (belt.lost_count, picker.missed, picker.missed_too_late) == (3, missed, missed)
+
+
+def test_a_workpiece_that_a_stop_left_and_others_fetch_is_counted_by_its_number(engine: takt.Engine) -> None:
+    """PP-63: the next one that is lost is missed, too."""
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    picker.configure_belt(lower_limit=10, upper_limit=400).wait()
+    belt.axis.move_velocity(velocity=100).wait(until="reached")
+    belt.detect(x=220).wait()
+    picker.execute(1)
+    engine.run(0.05)
+    assert picker.workpiece == 1
+    picker.control(stop_all=True)
+    engine.run(2)
+    assert (picker.missed_interrupted, belt.object_count) == (1, 1)
+    belt.remove(number=1).wait()
+    picker.control(stop_all=False)
+    engine.run(0.3)
+    picker.execute(1)
+    engine.run(0.5)
+    belt.detect(x=550)
+    engine.run(1)
+    assert (picker.missed, picker.missed_interrupted, picker.missed_too_late) == (2, 1, 1)

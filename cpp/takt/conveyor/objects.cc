@@ -140,4 +140,11 @@ Status Remove(std::uint32_t number, State& s) noexcept {
   return Status::Ok();
 }
 
+Status Lose(std::uint32_t number, State& s) noexcept {
+  const Object* object = Find(s, number);
+  if (!object) return Status::Failed(ErrorId::kNoWorkpiece);
+  s.last_lost[s.lost++ % kObjects] = {number, object->attributes};
+  return Remove(number, s);
+}
+
 }  // namespace takt::conveyor

@@ -60,5 +60,7 @@ Status Take(std::uint32_t number, State& state) noexcept;
 Status GiveBack(std::uint32_t number, State& state) noexcept;
 // Whatever its state. kNoWorkpiece: there is none.
 Status Remove(std::uint32_t number, State& state) noexcept;
+// The same, and it counts as lost.
+Status Lose(std::uint32_t number, State& state) noexcept;
 
 }  // namespace takt::conveyor

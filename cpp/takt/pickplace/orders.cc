@@ -197,8 +197,6 @@ void EndParking(const Context& c, const group::State& g, State& s) {
 // Its moves are given; or it waits for a workpiece, where such wait.
 void Begin(const Context& c, group::State& g, Order& order, State& s) {
   s.in_target = false;
-  CountLeft(c, order, s);
-  order.left = 0;
   Place target = order.target;
   if (!IsStatic(order)) {
     const conveyor::Object* object = s.parking ? nullptr : ChooseWorkpiece(c, g, order, s);
@@ -224,7 +222,7 @@ void Begin(const Context& c, group::State& g, Order& order, State& s) {
   if (&order == &s.orders[0]) s.profile_time = 0;  // not known yet
   const Given given = GiveLegs(c, order.profile, 0, order.ramps, order.shape.keep_orientation, g, s);
   if (given.error != ErrorId::kNone) {
-    if (order.workpiece != 0) ++s.counters.missed, ++s.counters.refused;
+    NoteLeft(order, true, s);
     return Fail(c, given.error, g, s);
   }
   order.first = given.first;
@@ -522,7 +520,7 @@ void LosePath(const Context& c, bool kept, State& s) noexcept {
       continue;
     }
     if (i == 0 && kept && order.phase == Phase::kHeld) continue;
-    if (order.workpiece != 0 && order.phase != Phase::kStaying) order.left = order.workpiece;
+    if (order.phase != Phase::kStaying) NoteLeft(order, false, s);
     LetGoOfWorkpiece(c, order, s);
     order.phase = Phase::kNew;
   }
