@@ -655,3 +655,23 @@ def test_a_workpiece_that_a_stop_left_and_others_fetch_is_counted_by_its_number(
     belt.detect(x=550)
     engine.run(1)
     assert (picker.missed, picker.missed_interrupted, picker.missed_too_late) == (2, 1, 1)
+
+
+def test_profiles_given_on_the_way_to_the_parking_position_begin_where_those_before_end(engine: takt.Engine) -> None:
+    """PP-10, PP-42: the last one rises from the target before."""
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    picker.configure(path_velocity=200, blending_radius=0).wait()
+    belt.axis.move_velocity(velocity=100).wait(until="reached")
+    belt.detect(x=50).wait()
+    picker.execute(1).wait()
+    engine.run(0.1)
+    assert picker.target == 0
+    assert not picker.in_park_position
+    going = picker.execute()
+    engine.wait(lambda: picker.profile_point_passed == 1, 10)
+    picker.configure(x_target=200).wait()
+    then = picker.execute()
+    going.wait()
+    record = engine.record("portal")
+    then.wait()
+    assert record.stop()["portal"]["z"].max() == pytest.approx(30, abs=0.1)

@@ -190,6 +190,7 @@ void Park(const Context& c, std::uint32_t belt, group::State& g, State& s) {
 // From where the tool is now, which mechanisms without a wrist turn otherwise than the parking position.
 void EndParking(const Context& c, const group::State& g, State& s) {
   s.parking = false;
+  if (s.parked_at == 0) return;  // moves behind it were given
   s.at = PresentPlace(c, g);
   s.at.parks = true;
 }
