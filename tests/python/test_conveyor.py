@@ -591,23 +591,31 @@ def test_a_system_of_which_nothing_is_known() -> None:
         (0, 90, 100, -260),
         (0, 90, 80, 80),
         (0, 720, 10, 10),
+        (0, 720, -10, -10),
+        (0, 360, -10, -10),
+        (-60, 265, -100, -100),
+        (185, 545, 182, 182),
+        (None, 90, 100, -260),
+        (10, None, -170, -170),
     ],
 )
 def test_objects_on_a_table_reach_its_range_within_a_turn(
-    lower: float, upper: float, angle: float, place: float
+    lower: float | None, upper: float | None, angle: float, place: float
 ) -> None:
-    """CV-22: also a range beyond 180 deg, and an object just behind the range."""
+    """CV-22: also ranges beyond 180 deg and of a turn, and objects just before and just behind the range."""
+    limits = {"lower_limit": lower, "upper_limit": upper}
+    given = ", ".join(f"{name}: {limit}" for name, limit in limits.items() if limit is not None)
     text = f"""
 name: table
 axes: [{{name: disc, unit: deg, kind: rotary, limits: {{velocity: 360, acceleration: 3600, jerk: 72000}}}}]
-belts: [{{name: table, kind: turning, axis: disc, lower_limit: {lower}, upper_limit: {upper}}}]
+belts: [{{name: table, kind: turning, axis: disc, {given}}}]
 """
     engine = takt.Engine(text)
     table = engine.belt("table")
     table.detect(x=200 * math.cos(math.radians(angle)), y=200 * math.sin(math.radians(angle))).wait()
     engine.step(2)
     assert table.objects[0].place == pytest.approx(place)
-    assert table.objects[0].in_range == (lower <= place <= upper)
+    assert table.objects[0].in_range == ((lower is None or lower <= place) and (upper is None or place <= upper))
 
 
 @pytest.mark.parametrize(("speed", "first"), [(60, 2), (-60, 1)])
