@@ -621,6 +621,25 @@ def test_a_workpiece_without_a_path_is_missed_once_when_it_is_lost() -> None:
         assert (picker.picked, picker.missed, picker.missed_refused) == ((0, 1, 1) if lost else (1, 0, 0))
 
 
+def test_a_refused_path_from_a_workpiece_is_counted_as_refused(engine: takt.Engine) -> None:
+    """PP-44: also where the lift from the workpiece before is interrupted by the refusal."""
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    belt.axis.move_velocity(velocity=20).wait(until="reached")
+    picker.control(enable_hw_limit=True, hw_limit_negative=[axis == 6 for axis in range(13)]).wait()  # A1
+    engine.run(0.3)
+    picker.control(reset_error=True).wait()
+    engine.run(0.3)
+    for x in (300, 100):
+        belt.detect(x=x).wait()
+    first, second = picker.execute(1), picker.execute(1)
+    first.wait()
+    assert second.wait_final().error_id == 20501
+    belt.axis.move_velocity(velocity=400)
+    engine.wait(lambda: belt.lost_count == 1, 6)
+    engine.run(0.01)
+    assert (picker.missed, picker.missed_refused, picker.missed_interrupted) == (1, 1, 0)
+
+
 def test_what_a_module_does_not_take_is_not_missed() -> None:
     """PP-63, PP-66, PP-67: of another kind, or of the turn of another module."""
     for own, missed in (("kind: 1", 1), ("every: 2", 2), ("sync_time: 0", 3)):

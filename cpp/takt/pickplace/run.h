@@ -75,7 +75,7 @@ double LongerBy(const group::State& g, const State& s) noexcept;
 // It was fetched, or something was put there: it is deleted, and what lies in the same place (PP-66).
 void RemoveWorkpiece(const Context& c, Order& order) noexcept;
 // The order lets go of its workpiece, which is missed if it leaves the range. `refused`: there is no path to it; else
-// the path was stopped.
+// the path was stopped. A cause that is noted already stays.
 void NoteLeft(const Order& order, bool refused, State& s) noexcept;
 // Counts each workpiece that has left the range as missed, once: those that were left behind, and, while the module
 // moves, those that the belts have lost and it would have taken.

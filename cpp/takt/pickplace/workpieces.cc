@@ -359,7 +359,7 @@ bool StaysWithin(const Context& c, const group::State& g, const Order& order, do
 
 void NoteLeft(const Order& order, bool refused, State& s) noexcept {
   if (order.workpiece == 0) return;
-  ForgetLeft(order.belt, order.workpiece, s);
+  if (FindLeft(order.belt, order.workpiece, s) < s.left_count) return;  // the first cause counts
   if (s.left_count == kLeft) EraseLeft(0, s);
   s.left[s.left_count++] = {order.belt, order.workpiece, refused, false};
 }
