@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 import takt
@@ -638,6 +640,45 @@ def test_a_refused_path_from_a_workpiece_is_counted_as_refused(engine: takt.Engi
     engine.wait(lambda: belt.lost_count == 1, 6)
     engine.run(0.01)
     assert (picker.missed, picker.missed_refused, picker.missed_interrupted) == (1, 1, 0)
+
+
+def path_is_aborted(engine: takt.Engine) -> None:
+    picker = engine.pick_place("picker")
+    picker.control(path_stop=True).wait()
+    engine.run(1)
+    picker.control(path_stop=False).wait()
+    engine.run(0.1)
+    picker.abort()
+
+
+ENDS: dict[str, Callable[[takt.Engine], object]] = {
+    "disabled": lambda engine: engine.pick_place("picker").control(enable=False).wait(),
+    "aborted": path_is_aborted,
+    "limit switch": lambda engine: (
+        engine.pick_place("picker").control(enable_hw_limit=True, hw_limit_negative=[k == 8 for k in range(13)]).wait()
+    ),
+    "regulator off": lambda engine: engine.pick_place("picker").control(regulator_on=False).wait(),
+    "group stopped": lambda engine: engine.group("portal").stop(),
+}
+
+
+@pytest.mark.parametrize("low", [False, True])
+@pytest.mark.parametrize("end", ENDS)
+def test_a_workpiece_of_an_order_that_was_ended_is_missed(engine: takt.Engine, end: str, low: bool) -> None:
+    """PP-44, PP-63: the height of the tool does not matter."""
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    belt.axis.move_velocity(velocity=100).wait(until="reached")
+    belt.detect(x=100).wait()
+    picker.execute(1)
+    engine.wait(lambda: picker.workpiece == 1, 2)
+    if low:
+        engine.wait(lambda: picker.synchronised and picker.position[2] < -40, 2)
+    else:
+        engine.run(0.06)
+    ENDS[end](engine)
+    engine.wait(lambda: belt.lost_count == 1, 10)
+    engine.run(0.01)
+    assert (picker.picked, picker.missed, picker.missed_interrupted) == (0, 1, 1)
 
 
 def test_what_a_module_does_not_take_is_not_missed() -> None:

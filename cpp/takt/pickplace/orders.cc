@@ -72,7 +72,11 @@ void MissWorkpiece(const Context& c, Order& order, std::uint32_t& cause, State& 
 
 // Of an order that ends, or begins anew, before it is done.
 void LetGoOfWorkpiece(const Context& c, Order& order, State& s) {
-  if (order.phase == Phase::kStaying) MissWorkpiece(c, order, s.counters.interrupted, s);
+  if (order.phase == Phase::kStaying) {
+    MissWorkpiece(c, order, s.counters.interrupted, s);
+  } else {
+    NoteLeft(order, false, s);
+  }
   GiveBackWorkpiece(c, order);
 }
 
@@ -521,7 +525,6 @@ void LosePath(const Context& c, bool kept, State& s) noexcept {
       continue;
     }
     if (i == 0 && kept && order.phase == Phase::kHeld) continue;
-    if (order.phase != Phase::kStaying) NoteLeft(order, false, s);
     LetGoOfWorkpiece(c, order, s);
     order.phase = Phase::kNew;
   }
