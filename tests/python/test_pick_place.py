@@ -681,6 +681,24 @@ def test_a_workpiece_of_an_order_that_was_ended_is_missed(engine: takt.Engine, e
     assert (picker.picked, picker.missed, picker.missed_interrupted) == (0, 1, 1)
 
 
+@pytest.mark.parametrize("stop", [{"stop_all": True}, {"regulator_on": False}])
+def test_the_twin_of_a_workpiece_that_is_missed_under_the_tool_is_deleted(stop: dict[str, bool]) -> None:
+    """PP-66: the gripper may hold the product that was seen twice."""
+    engine = started(LOW)
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    belt.axis.move_velocity(velocity=60).wait(until="reached")
+    for x in (50, 51, 10):
+        belt.detect(x=x).wait()
+    picker.execute(1)
+    engine.wait(lambda: picker.in_target, 5)
+    engine.run(0.1)
+    assert picker.workpiece == 2
+    picker.control(**stop).wait()
+    engine.run(0.5)
+    assert (picker.missed, picker.missed_interrupted, picker.picked) == (1, 1, 0)
+    assert [thing.number for thing in belt.objects] == [3]
+
+
 def test_what_a_module_does_not_take_is_not_missed() -> None:
     """PP-63, PP-66, PP-67: of another kind, or of the turn of another module."""
     for own, missed in (("kind: 1", 1), ("every: 2", 2), ("sync_time: 0", 3)):

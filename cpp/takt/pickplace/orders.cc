@@ -64,8 +64,7 @@ void Push(const Order& order, State& s) {
 // No other order gets the workpiece; `cause`: the counter of missed ones that says why.
 void MissWorkpiece(const Context& c, Order& order, std::uint32_t& cause, State& s) {
   if (order.workpiece == 0) return;
-  conveyor::Remove(order.workpiece, *c.belts[order.belt - 1].state);
-  order.workpiece = 0;
+  RemoveWorkpiece(c, order);
   ++s.counters.missed;
   ++cause;
 }

@@ -72,7 +72,8 @@ void GiveBackWorkpiece(const Context& c, Order& order) noexcept;
 bool StaysWithin(const Context& c, const group::State& g, const Order& order, double time_s) noexcept;
 // Of what it was thought to take a profile may take so many times as much now.
 double LongerBy(const group::State& g, const State& s) noexcept;
-// It was fetched, or something was put there: it is deleted, and what lies in the same place (PP-66).
+// It was fetched or missed under the tool, or something was put there: it is deleted, and what lies in the same place
+// (PP-66).
 void RemoveWorkpiece(const Context& c, Order& order) noexcept;
 // The order lets go of its workpiece, which is missed if it leaves the range. `refused`: there is no path to it; else
 // the path was stopped. A cause that is noted already stays.
