@@ -525,7 +525,7 @@ def test_a_target_in_acs_is_refused(engine: takt.Engine) -> None:
 
 
 @pytest.mark.parametrize("waits", [False, True])
-@pytest.mark.parametrize("change", [{"z": -50}, {"c": 30}])
+@pytest.mark.parametrize("change", [{"z": -50}, {"c": 30}, {"c": 0.1}])
 def test_a_tool_that_is_set_anew_parks_again(engine: takt.Engine, change: dict[str, float], waits: bool) -> None:
     """PP-42: the parking position is one of the tool."""
     picker, group = engine.pick_place("picker"), engine.group("portal")

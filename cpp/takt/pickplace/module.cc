@@ -393,8 +393,11 @@ bool MovesOn(const Context& c, const group::State& g) {
 
 // The tool is not at a place of the MCS any more: its frame, or the position of an axis, was set anew.
 bool IsElsewhere(const Context& c, const group::State& g, const Place& place) {
-  constexpr double kSamePlace = 0.01;  // mm, rad
-  return !KDL::Equal(kinematics::ToFrame(PresentPlace(c, g).pose), kinematics::ToFrame(place.pose), kSamePlace);
+  constexpr double kSamePosition = 0.01;     // mm
+  constexpr double kSameOrientation = 1e-4;  // rad, of the elements of the rotation matrix
+  const kinematics::Frame present = kinematics::ToFrame(PresentPlace(c, g).pose);
+  const kinematics::Frame then = kinematics::ToFrame(place.pose);
+  return !KDL::Equal(present.p, then.p, kSamePosition) || !KDL::Equal(present.M, then.M, kSameOrientation);
 }
 
 void WatchWindow(const Context& c, State& s) {
