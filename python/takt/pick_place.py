@@ -37,6 +37,7 @@ def why_refused(error_id: int, verb: str, arguments: str) -> str:
         )
     if verb == "configure_belt" and asked.keys() & (LIMITS | {"leave"}):
         rules.append("leave must be 0 without lower_limit and upper_limit: it counts workpieces behind that range")
+        rules.append("leave must be 0, or upper_limit lie below that of the belt, which deletes workpieces beyond it")
     if verb == "configure_belt" and asked.keys() & TURNS:
         rules.append("turns must not lead beyond every: turn + turns - 1 is at most every")
     if verb == "jog" and asked.get("positive") and asked.get("negative"):

@@ -126,3 +126,23 @@ def test_leave_needs_a_range() -> None:
         picker.configure_belt(leave=2, lower_limit=50, upper_limit=250).wait()
         feedback = picker.configure_belt(lower_limit=0, upper_limit=0).wait_final()
         assert (feedback.error_id, wrong in str(feedback.sentence)) == (5, True)
+
+
+def test_leave_needs_a_range_that_ends_before_the_belt() -> None:
+    """PP-67: the belt deletes what lies behind its own end; refused in the file and at run time."""
+    wrong = "leave: expected 0, or an upper_limit below that of belt 'belt', 1200.0, found leave 2 with upper_limit "
+    text = sharing("leave: 2")
+    for upper in (1200, 1300):
+        with pytest.raises(takt.ConfigError, match=f"{wrong}{upper}.0"):
+            takt.Engine(text.replace("upper_limit: 250", f"upper_limit: {upper}"))
+    takt.Engine(text.replace("upper_limit: 250", "upper_limit: 1199")).close()
+    takt.Engine(text.replace("lower_limit: 0, upper_limit: 1200", "lower_limit: 0")).close()
+    with takt.Engine(text) as session:
+        picker = session.pick_place("left_picker")
+        with pytest.raises(takt.CommandError, match=f"{wrong}1200.0"):
+            picker.configure_belt(leave=2, lower_limit=50, upper_limit=1200).wait()
+        with pytest.raises(takt.CommandError, match="leave must be 0, or upper_limit lie below that of the belt"):
+            picker.configure_belt(upper_limit=1200).wait()
+        picker.configure_belt(leave=0, upper_limit=1200).wait()
+        with pytest.raises(takt.CommandError, match="leave must be 0, or upper_limit lie below that of the belt"):
+            picker.configure_belt(leave=1).wait()

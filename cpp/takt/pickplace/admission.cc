@@ -119,8 +119,9 @@ void CarryOut(const Context& c, Ticket ticket, double, const ConfigureBelt& comm
   if (belt > c.params.belts.size()) return Refuse(c, ticket, ErrorId::kUnknownTarget, s);
   BeltSettings changed = s.belts[belt - 1];
   TakeGiven(command, changed);
-  const bool fits =
-      TurnsFit(changed) && RangeFits(changed) && LeaveFits(changed) && RangeMeets(changed, *c.belts[belt - 1].params);
+  const conveyor::BeltParams& params = *c.belts[belt - 1].params;
+  const bool fits = TurnsFit(changed) && RangeFits(changed) && LeaveFits(changed) && RangeMeets(changed, params) &&
+                    LeaveMeets(changed, params);
   if (!fits) return Refuse(c, ticket, ErrorId::kParameter, s);
   s.belts[belt - 1] = changed;
   Finish(c, ticket);

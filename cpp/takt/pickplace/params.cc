@@ -34,6 +34,12 @@ std::string WhyNotRange(const BeltSettings& settings, const conveyor::BeltParams
          FormatReal(settings.lower_limit) + " to " + FormatReal(settings.upper_limit);
 }
 
+std::string WhyNotLeave(const BeltSettings& settings, const conveyor::BeltParams& belt) {
+  if (LeaveMeets(settings, belt)) return {};
+  return "expected 0, or an upper_limit below that of belt '" + belt.name + "', " + FormatReal(*belt.upper_limit) +
+         ", found leave " + std::to_string(settings.leave) + " with upper_limit " + FormatReal(settings.upper_limit);
+}
+
 void describe(Description<PickPlaceBelt>& d) {
   d.about("A belt as a pick and place module uses it.");
   d.required<&PickPlaceBelt::belt>("Name of the belt.");

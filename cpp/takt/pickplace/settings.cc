@@ -157,7 +157,7 @@ void DescribeBelt(Description<BeltSettingsOf<Of>>& d) {
   d.template defaulted<&S::leave>(
       at_most(conveyor::kObjects),
       "It takes one only while so many free ones lie behind its range, for modules further on; 0: it does not look. "
-      "With lower_limit and upper_limit.");
+      "With lower_limit and upper_limit, which lies below that of the belt.");
   d.template defaulted<&S::same_within>(
       unit::mm, kFromZero,
       "What lies so near to a workpiece that was fetched is the same one, seen twice, as where pictures of a camera "
@@ -204,6 +204,10 @@ bool RangeFits(const BeltSettings& s) noexcept {
 
 bool LeaveFits(const BeltSettings& s) noexcept {
   return s.leave == 0 || HasRange(s);
+}
+
+bool LeaveMeets(const BeltSettings& s, const conveyor::BeltParams& belt) noexcept {
+  return s.leave == 0 || !HasRange(s) || !belt.upper_limit || s.upper_limit < *belt.upper_limit;
 }
 
 bool RangeMeets(const BeltSettings& s, const conveyor::BeltParams& belt) noexcept {

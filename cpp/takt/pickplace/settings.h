@@ -162,6 +162,8 @@ bool HasRange(const BeltSettings& settings) noexcept;
 bool RangeFits(const BeltSettings& settings) noexcept;
 // It counts free workpieces behind its range and has a range of its own, or does not count them.
 bool LeaveFits(const BeltSettings& settings) noexcept;
+// It counts none, or counts them between the end of its range and that of the belt, which deletes what lies beyond.
+bool LeaveMeets(const BeltSettings& settings, const conveyor::BeltParams& belt) noexcept;
 // It has none that fits, or one that overlaps the belt's own.
 bool RangeMeets(const BeltSettings& settings, const conveyor::BeltParams& belt) noexcept;
 
