@@ -32,10 +32,14 @@ def _read(file: Path) -> list[tuple[int, Fields]]:
     head, rows = read_rows(file, CalibrationError)
     if not rows:
         raise CalibrationError(f"{file}: expected a head and a row for each point, found no row")
-    missing = [name for name in MEASURED if name not in head]
+    _require(file, MEASURED, head)
+    return rows
+
+
+def _require(file: Path, names: Sequence[str], head: Sequence[str]) -> None:
+    missing = [name for name in names if name not in head]
     if missing:
         raise CalibrationError(f"{file}: there is no column {missing[0]}; the head says {_shown(head)}")
-    return rows
 
 
 def _shown(head: Sequence[str]) -> str:
@@ -58,6 +62,7 @@ def _numbers(file: Path, line: int, fields: Fields, names: tuple[str, ...]) -> l
 def _frame(file: Path, rows: list[tuple[int, Fields]]) -> Calibration:
     measured = [_numbers(file, line, fields, MEASURED) for line, fields in rows]
     if any(name in rows[0][1] for name in SEEN):
+        _require(file, SEEN, list(rows[0][1]))
         return calibrate.fit([_numbers(file, line, fields, SEEN) for line, fields in rows], measured)
     if len(measured) != 3:
         raise CalibrationError(

@@ -11,6 +11,7 @@ from takt.feedback import Feedback
 from takt.group import Group
 
 PARAMETER = 5  # error number: an argument is out of range
+SYSTEMS = {"target_coordinate_system", "target_pcs", "workpiece_pcs1", "workpiece_pcs2"}
 LIMITS = {"lower_limit", "upper_limit"}
 TURNS = {"turn", "turns", "every"}
 
@@ -23,11 +24,20 @@ def why_refused(error_id: int, verb: str, arguments: str) -> str:
     rules = []
     if verb == "configure" and asked.keys() & {"workpiece_pcs1", "workpiece_pcs2"}:
         rules.append("workpiece_pcs1 and workpiece_pcs2 must be different: places on two belts are seen from them")
+    if verb == "configure" and asked.get("target_coordinate_system") == "acs":
+        rules.append("target_coordinate_system must not be acs: targets are places of the tool")
+    elif verb == "configure" and asked.keys() & SYSTEMS:
+        rules.append(
+            "target_pcs must be another one than workpiece_pcs1 and workpiece_pcs2: the target would lie on a workpiece"
+        )
     if verb == "configure_belt" and asked.keys() & LIMITS:
         rules.append(
             "upper_limit must lie above lower_limit, and both must overlap the work range of the belt, or both must be "
             "0: the range of the belt alone"
         )
+    if verb == "configure_belt" and asked.keys() & (LIMITS | {"leave"}):
+        rules.append("leave must be 0 without lower_limit and upper_limit: it counts workpieces behind that range")
+        rules.append("leave must be 0, or upper_limit lie below that of the belt, which deletes workpieces beyond it")
     if verb == "configure_belt" and asked.keys() & TURNS:
         rules.append("turns must not lead beyond every: turn + turns - 1 is at most every")
     if verb == "jog" and asked.get("positive") and asked.get("negative"):

@@ -172,3 +172,6 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     line.write_text("x,y,z\n0,0,0\n10,0,0\n20,0,0\n")
     assert main(["calibrate", "frame", str(line)]) == 2
     assert "must not lie on one line" in capsys.readouterr().err
+    camera.write_text("seen_x,seen_y,x,y,z\n0,0,10,0,0\n50,0,60,0.1,0\n0,50,10,50,0\n")
+    assert main(["calibrate", "frame", str(camera)]) == 2
+    assert "there is no column seen_z; the head says seen_x, seen_y, x, y, z" in capsys.readouterr().err

@@ -578,3 +578,58 @@ def test_a_system_of_which_nothing_is_known() -> None:
             assert [move.error_id for move in moves] == [3035] * 3
             assert "is not known" in moves[0].sentence
         assert gantry.pose == pytest.approx(place)
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "angle", "place"),
+    [
+        (190, 260, 185, 185),
+        (190, 260, 200, 200),
+        (190, 260, 280, -80),
+        (150, 210, 190, 190),
+        (-200, -100, 155, -205),
+        (0, 90, 100, -260),
+        (0, 90, 80, 80),
+        (0, 720, 10, 10),
+        (0, 720, -10, -10),
+        (0, 360, -10, -10),
+        (-60, 265, -100, -100),
+        (185, 545, 182, 182),
+        (None, 90, 100, -260),
+        (10, None, -170, -170),
+    ],
+)
+def test_objects_on_a_table_reach_its_range_within_a_turn(
+    lower: float | None, upper: float | None, angle: float, place: float
+) -> None:
+    """CV-22: also ranges beyond 180 deg and of a turn, and objects just before and just behind the range."""
+    limits = {"lower_limit": lower, "upper_limit": upper}
+    given = ", ".join(f"{name}: {limit}" for name, limit in limits.items() if limit is not None)
+    text = f"""
+name: table
+axes: [{{name: disc, unit: deg, kind: rotary, limits: {{velocity: 360, acceleration: 3600, jerk: 72000}}}}]
+belts: [{{name: table, kind: turning, axis: disc, {given}}}]
+"""
+    engine = takt.Engine(text)
+    table = engine.belt("table")
+    table.detect(x=200 * math.cos(math.radians(angle)), y=200 * math.sin(math.radians(angle))).wait()
+    engine.step(2)
+    assert table.objects[0].place == pytest.approx(place)
+    assert table.objects[0].in_range == ((lower is None or lower <= place) and (upper is None or place <= upper))
+
+
+@pytest.mark.parametrize(("speed", "first"), [(60, 2), (-60, 1)])
+def test_the_object_that_leaves_the_range_first(speed: float, first: int) -> None:
+    """CV-43: in the sense in which the belt moves."""
+    engine = takt.Engine("""
+name: belt
+axes: [{name: drive, limits: {velocity: 500, acceleration: 5000, jerk: 100000}}]
+belts: [{name: infeed, axis: drive, lower_limit: 0, upper_limit: 600}]
+""")
+    belt = engine.belt("infeed")
+    belt.axis.power().wait()
+    belt.axis.move_absolute(position=math.copysign(1, speed)).wait()
+    for x in (200, 400):
+        belt.detect(x=x).wait()
+    engine.step()
+    assert (belt.first_number, belt.first_place) == (first, pytest.approx(200 * first))

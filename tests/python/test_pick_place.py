@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 import takt
@@ -408,3 +410,346 @@ def test_rules_of_settings_are_named(engine: takt.Engine) -> None:
     ):
         with pytest.raises(takt.CommandError, match=rule):
             command(**arguments).wait()
+
+
+@pytest.mark.parametrize(("factor", "slower"), [(0, 2), (0.01, 4)])
+def test_a_profile_begun_at_a_low_override_does_not_crawl_afterwards(factor: float, slower: float) -> None:
+    """PP-21: behind a hold it keeps its accelerations, behind a low override a tenth of them at least."""
+
+    def takes_s(override_factor: float) -> float:
+        engine = started()
+        picker = engine.pick_place("picker")
+        picker.control(override_factor=override_factor).wait()
+        going = picker.execute()
+        engine.run(0.3 if override_factor < 1 else 0)
+        picker.control(override_factor=1).wait()
+        begin = engine.now
+        going.wait()
+        return engine.now - begin
+
+    assert takes_s(factor) < slower * takes_s(1)
+
+
+def test_profiles_given_behind_an_override_have_their_own_accelerations(engine: takt.Engine) -> None:
+    """PP-21: the profiles that wait begin with those of the override at their begin; it scales accelerations, too."""
+    picker = engine.pick_place("picker")
+    picker.configure(blending_radius=0, z_start_distance=0, z_target_distance=0).wait()  # straight along X
+    picker.control(override_factor=0.5).wait()
+    targets = []
+    for x_target in (50, 200, 20):
+        picker.configure(x_target=x_target).wait()
+        targets.append(picker.execute())
+    record = engine.record("x")
+    targets[0].wait()
+    assert np.abs(record.stop()["x"]["set_acceleration"]).max() <= 0.5 * 8000 * 1.001
+    picker.control(override_factor=1).wait()
+    targets[1].wait()
+    record = engine.record("x")
+    targets[2].wait()
+    assert np.abs(record.stop()["x"]["set_acceleration"]).max() > 0.6 * 8000
+
+
+@pytest.mark.parametrize("off_s", [0.001, 0.03])
+def test_power_asked_for_while_the_tool_brakes_is_given_at_rest(engine: takt.Engine, off_s: float) -> None:
+    """PP-02: the rising edge of regulator_on counts while the axes are still being switched off."""
+    picker = engine.pick_place("picker")
+    picker.execute()
+    engine.run(0.1)
+    picker.control(regulator_on=False).wait()
+    engine.run(off_s)
+    assert engine.group("portal").state is takt.GroupState.GROUP_MOVING
+    picker.control(regulator_on=True).wait()
+    engine.run(1)
+    assert (picker.axes_enabled, picker.axes_group_enabled) == (True, True)
+    picker.execute().wait()
+
+
+def test_power_withdrawn_while_the_tool_brakes_is_not_given(engine: takt.Engine) -> None:
+    """PP-02: the level of regulator_on counts once the axes are off."""
+    picker = engine.pick_place("picker")
+    picker.execute()
+    engine.run(0.1)
+    for level in (False, True, False):
+        picker.control(regulator_on=level).wait()
+    engine.run(1)
+    assert not picker.axes_enabled
+
+
+@pytest.mark.parametrize(
+    ("setting", "then"),
+    [
+        ({"target_coordinate_system": "pcs", "target_pcs": 15}, {"target_pcs": 14}),
+        ({"target_coordinate_system": "pcs", "target_pcs": 3, "workpiece_pcs2": 3}, {"workpiece_pcs2": 4}),
+    ],
+)
+def test_a_target_in_a_system_of_workpieces_is_refused(
+    engine: takt.Engine, setting: dict[str, str | int], then: dict[str, int]
+) -> None:
+    """PP-14: in the file and at run time, whichever is changed; each pick would move the target onto its belt."""
+    wrong = "target_pcs must be another one than workpiece_pcs1 and workpiece_pcs2"
+    text = ", ".join(f"{name}: {value}" for name, value in setting.items())
+    with pytest.raises(takt.ConfigError, match=wrong):
+        takt.Engine(MACHINE.replace("{path_velocity", f"{{{text}, path_velocity"))
+    picker = engine.pick_place("picker")
+    feedback = picker.configure(**setting).wait_final()
+    assert (feedback.error_id, wrong in str(feedback.sentence)) == (5, True)
+    picker.configure(**setting | then).wait()
+    for name, value in setting.items():
+        if name != "target_coordinate_system":
+            taken = picker.configure(**{name: value}).wait_final().error_id
+            assert taken == (5 if then.get(name, value) != value else 0)
+    picker.configure(target_coordinate_system="mcs").wait()
+    picker.configure(**{name: value for name, value in setting.items() if name != "target_coordinate_system"}).wait()
+    assert picker.configure(target_coordinate_system="pcs").wait_final().error_id == 5
+
+
+def test_a_system_of_a_waiting_target_is_not_given_to_workpieces(engine: takt.Engine) -> None:
+    """PP-16: later settings do not change a profile that was accepted."""
+    picker = engine.pick_place("picker")
+    picker.configure(target_coordinate_system="pcs", target_pcs=3).wait()
+    going = picker.execute()
+    picker.configure(target_coordinate_system="mcs").wait()
+    assert picker.configure(workpiece_pcs1=3).wait_final().error_id == 5
+    going.wait()
+    engine.run(0.01)
+    picker.configure(workpiece_pcs1=3).wait()
+
+
+def test_a_target_in_acs_is_refused(engine: takt.Engine) -> None:
+    """PP-14: in the file and at run time."""
+    wrong = "target_coordinate_system must not be acs"
+    with pytest.raises(takt.ConfigError, match="target_coordinate_system: must not be acs"):
+        takt.Engine(MACHINE.replace("{path_velocity", "{target_coordinate_system: acs, path_velocity"))
+    feedback = engine.pick_place("picker").configure(target_coordinate_system="acs").wait_final()
+    assert (feedback.error_id, wrong in str(feedback.sentence)) == (5, True)
+
+
+@pytest.mark.parametrize("waits", [False, True])
+@pytest.mark.parametrize("change", [{"z": -50}, {"c": 30}, {"c": 0.1}])
+def test_a_tool_that_is_set_anew_parks_again(engine: takt.Engine, change: dict[str, float], waits: bool) -> None:
+    """PP-42: the parking position is one of the tool."""
+    picker, group = engine.pick_place("picker"), engine.group("portal")
+    engine.axis("drive").move_velocity(velocity=100).wait(until="reached")
+    if not waits:
+        engine.belt("infeed").detect(x=50).wait()
+    picker.execute(1)
+    engine.wait(lambda: picker.in_park_position, 5)
+    engine.run(0.5)
+    assert picker.in_park_position
+    group.set_tool(**change).wait()
+    if not waits:
+        engine.run(0.01)
+        assert not picker.in_park_position
+        picker.execute(1)
+    engine.run(1)
+    assert picker.in_park_position
+    assert picker.position[:3] == pytest.approx((300, 200, 20), abs=0.01)
+
+
+def test_a_waiting_profile_keeps_its_workpiece_rule(engine: takt.Engine) -> None:
+    """PP-16: later settings do not change a profile that was accepted."""
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    belt.axis.move_velocity(velocity=5).wait(until="reached")
+    picker.execute(1)
+    engine.wait(lambda: picker.in_park_position, 5)
+    picker.configure(workpiece_rule="latest").wait()
+    for x in (100, 200):
+        belt.detect(x=x)
+    engine.run(0.01)
+    assert picker.workpiece == 2  # the one that leaves the range first
+
+
+def test_a_workpiece_that_is_deleted_under_the_tool_keeps_its_attributes() -> None:
+    """PP-66: it is picked, as the tool stands on it; attributes travel with it to its place."""
+    engine = started(LOW)
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    belt.axis.move_velocity(velocity=60).wait(until="reached")
+    belt.detect(x=50, kind=7, colour=3, quality=0.5).wait()
+    picking = picker.execute(1)
+    engine.wait(lambda: picker.in_target, 5)
+    engine.run(0.1)
+    belt.remove(number=1).wait()
+    picking.wait()
+    assert (picker.picked, picker.held) == (1, 1)
+    assert (picker.held_kind, picker.held_colour, picker.held_quality) == (7, 3, 0.5)
+
+
+def test_more_products_are_held_than_attributes_are_known() -> None:
+    """PP-66: all count; those from the ninth on have no attributes."""
+    engine = started(MACHINE.replace("sync_time: 0.05", "sync_time: 0"))
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    belt.axis.move_velocity(velocity=10).wait(until="reached")
+    for kind in range(1, 11):
+        belt.detect(x=100, kind=kind).wait()
+        picker.execute(1).wait()
+    held = []
+    for _ in range(10):
+        held.append((picker.held, picker.held_kind))
+        picker.execute().wait()
+    assert held == [(10 - i, i + 1 if i < 8 else 0) for i in range(10)]
+    assert picker.held == 0
+
+
+def test_a_workpiece_without_a_path_is_missed_once_when_it_is_lost() -> None:
+    """PP-44: each refusal leaves it on the belt, where it may still be picked."""
+    switch = [axis == 8 for axis in range(13)]  # A3
+
+    def refused(engine: takt.Engine) -> None:
+        picker = engine.pick_place("picker")
+        picker.control(enable_hw_limit=True, hw_limit_negative=switch).wait()
+        for _ in range(3):
+            engine.run(0.2)
+            picker.control(reset_error=False).wait()
+            picker.control(reset_error=True).wait()
+            engine.run(0.3)
+            assert picker.execute(1).wait_final().error_id == 20501
+            assert picker.missed == 0
+        picker.control(hw_limit_negative=[False] * 13, reset_error=False).wait()
+        picker.control(reset_error=True).wait()
+        engine.run(0.3)
+
+    for lost in (False, True):
+        engine = started()
+        picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+        belt.axis.move_velocity(velocity=5).wait(until="reached")
+        belt.detect(x=200).wait()
+        refused(engine)
+        if lost:
+            belt.axis.move_velocity(velocity=400)
+            engine.wait(lambda belt=belt: belt.lost_count == 1, 5)
+            engine.run(0.01)
+        else:
+            picker.execute(1).wait()
+        assert (picker.picked, picker.missed, picker.missed_refused) == ((0, 1, 1) if lost else (1, 0, 0))
+
+
+def test_a_refused_path_from_a_workpiece_is_counted_as_refused(engine: takt.Engine) -> None:
+    """PP-44: also where the lift from the workpiece before is interrupted by the refusal."""
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    belt.axis.move_velocity(velocity=20).wait(until="reached")
+    picker.control(enable_hw_limit=True, hw_limit_negative=[axis == 6 for axis in range(13)]).wait()  # A1
+    engine.run(0.3)
+    picker.control(reset_error=True).wait()
+    engine.run(0.3)
+    for x in (300, 100):
+        belt.detect(x=x).wait()
+    first, second = picker.execute(1), picker.execute(1)
+    first.wait()
+    assert second.wait_final().error_id == 20501
+    belt.axis.move_velocity(velocity=400)
+    engine.wait(lambda: belt.lost_count == 1, 6)
+    engine.run(0.01)
+    assert (picker.missed, picker.missed_refused, picker.missed_interrupted) == (1, 1, 0)
+
+
+def path_is_aborted(engine: takt.Engine) -> None:
+    picker = engine.pick_place("picker")
+    picker.control(path_stop=True).wait()
+    engine.run(1)
+    picker.control(path_stop=False).wait()
+    engine.run(0.1)
+    picker.abort()
+
+
+ENDS: dict[str, Callable[[takt.Engine], object]] = {
+    "disabled": lambda engine: engine.pick_place("picker").control(enable=False).wait(),
+    "aborted": path_is_aborted,
+    "limit switch": lambda engine: (
+        engine.pick_place("picker").control(enable_hw_limit=True, hw_limit_negative=[k == 8 for k in range(13)]).wait()
+    ),
+    "regulator off": lambda engine: engine.pick_place("picker").control(regulator_on=False).wait(),
+    "group stopped": lambda engine: engine.group("portal").stop(),
+}
+
+
+@pytest.mark.parametrize("low", [False, True])
+@pytest.mark.parametrize("end", ENDS)
+def test_a_workpiece_of_an_order_that_was_ended_is_missed(engine: takt.Engine, end: str, low: bool) -> None:
+    """PP-44, PP-63: the height of the tool does not matter."""
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    belt.axis.move_velocity(velocity=100).wait(until="reached")
+    belt.detect(x=100).wait()
+    picker.execute(1)
+    engine.wait(lambda: picker.workpiece == 1, 2)
+    if low:
+        engine.wait(lambda: picker.synchronised and picker.position[2] < -40, 2)
+    else:
+        engine.run(0.06)
+    ENDS[end](engine)
+    engine.wait(lambda: belt.lost_count == 1, 10)
+    engine.run(0.01)
+    assert (picker.picked, picker.missed, picker.missed_interrupted) == (0, 1, 1)
+
+
+@pytest.mark.parametrize("stop", [{"stop_all": True}, {"regulator_on": False}])
+def test_the_twin_of_a_workpiece_that_is_missed_under_the_tool_is_deleted(stop: dict[str, bool]) -> None:
+    """PP-66: the gripper may hold the product that was seen twice."""
+    engine = started(LOW)
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    belt.axis.move_velocity(velocity=60).wait(until="reached")
+    for x in (50, 51, 10):
+        belt.detect(x=x).wait()
+    picker.execute(1)
+    engine.wait(lambda: picker.in_target, 5)
+    engine.run(0.1)
+    assert picker.workpiece == 2
+    picker.control(**stop).wait()
+    engine.run(0.5)
+    assert (picker.missed, picker.missed_interrupted, picker.picked) == (1, 1, 0)
+    assert [thing.number for thing in belt.objects] == [3]
+
+
+def test_what_a_module_does_not_take_is_not_missed() -> None:
+    """PP-63, PP-66, PP-67: of another kind, or of the turn of another module."""
+    for own, missed in (("kind: 1", 1), ("every: 2", 2), ("sync_time: 0", 3)):
+        engine = started(MACHINE.replace("sync_time: 0.05", own))
+        picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+        belt.axis.move_velocity(velocity=100).wait(until="reached")
+        picker.execute(1)
+        engine.run(0.5)
+        for kind in (1, 2, 2):
+            belt.detect(x=595, kind=kind)
+        engine.run(0.5)
+        assert (belt.lost_count, picker.missed, picker.missed_too_late) == (3, missed, missed)
+
+
+def test_a_workpiece_that_a_stop_left_and_others_fetch_is_counted_by_its_number(engine: takt.Engine) -> None:
+    """PP-63: the next one that is lost is missed, too."""
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    picker.configure_belt(lower_limit=10, upper_limit=400).wait()
+    belt.axis.move_velocity(velocity=100).wait(until="reached")
+    belt.detect(x=220).wait()
+    picker.execute(1)
+    engine.run(0.05)
+    assert picker.workpiece == 1
+    picker.control(stop_all=True)
+    engine.run(2)
+    assert (picker.missed_interrupted, belt.object_count) == (1, 1)
+    belt.remove(number=1).wait()
+    picker.control(stop_all=False)
+    engine.run(0.3)
+    picker.execute(1)
+    engine.run(0.5)
+    belt.detect(x=550)
+    engine.run(1)
+    assert (picker.missed, picker.missed_interrupted, picker.missed_too_late) == (2, 1, 1)
+
+
+def test_profiles_given_on_the_way_to_the_parking_position_begin_where_those_before_end(engine: takt.Engine) -> None:
+    """PP-10, PP-42: the last one rises from the target before."""
+    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
+    picker.configure(path_velocity=200, blending_radius=0).wait()
+    belt.axis.move_velocity(velocity=100).wait(until="reached")
+    belt.detect(x=50).wait()
+    picker.execute(1).wait()
+    engine.run(0.1)
+    assert picker.target == 0
+    assert not picker.in_park_position
+    going = picker.execute()
+    engine.wait(lambda: picker.profile_point_passed == 1, 10)
+    picker.configure(x_target=200).wait()
+    then = picker.execute()
+    going.wait()
+    record = engine.record("portal")
+    then.wait()
+    assert record.stop()["portal"]["z"].max() == pytest.approx(30, abs=0.1)

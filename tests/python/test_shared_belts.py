@@ -91,3 +91,58 @@ def test_bad_shares_are_named(bad: str) -> None:
         given = {key: int(value) for key, value in (one.split(": ") for one in bad.split(", "))}
         assert picker.configure_belt(**given).wait_final().error_id == 5
         assert picker.configure_belt(every=3, turn=2, turns=2).wait().done
+
+
+@pytest.mark.parametrize("of_each", [("sync_time: 0.1", "sync_time: 0.1"), ("every: 2", "every: 2, turn: 2")])
+def test_a_product_that_was_seen_twice_is_fetched_once(of_each: tuple[str, str]) -> None:
+    """PP-66: the second module takes another one, where its range begins at that of the first."""
+    text = sharing(*of_each).replace("lower_limit: 350, upper_limit: 550", "lower_limit: 50, upper_limit: 250")
+    with takt.Engine(text) as session:
+        belt, pickers = session.belt("belt"), list(session.pick_places.values())
+        belt.axis.power().wait()
+        for picker in pickers:
+            picker.control(regulator_on=True).wait()
+        session.wait(lambda: all(p.axes_enabled and p.axes_group_enabled for p in pickers), 5)
+        belt.axis.move_velocity(velocity=60).wait(until="reached")
+        for x in (100, 101):
+            belt.detect(x=x)
+        for picker in pickers:
+            picker.execute()
+        session.run(3)
+        assert sum(picker.picked for picker in pickers) == 1
+        assert (belt.object_count, sum(picker.missed for picker in pickers)) == (0, 0)
+
+
+def test_leave_needs_a_range() -> None:
+    """PP-67: without one nothing lies behind it; refused in the file and at run time, whichever is changed."""
+    wrong = "leave must be 0 without lower_limit and upper_limit"
+    text = sharing("leave: 2").replace("lower_limit: 50, upper_limit: 250, ", "")
+    with pytest.raises(takt.ConfigError, match="leave: must be 0 without lower_limit and upper_limit"):
+        takt.Engine(text)
+    with takt.Engine(text.replace("leave: 2", "leave: 0")) as session:
+        picker = session.pick_place("left_picker")
+        feedback = picker.configure_belt(leave=2).wait_final()
+        assert (feedback.error_id, wrong in str(feedback.sentence)) == (5, True)
+        picker.configure_belt(leave=2, lower_limit=50, upper_limit=250).wait()
+        feedback = picker.configure_belt(lower_limit=0, upper_limit=0).wait_final()
+        assert (feedback.error_id, wrong in str(feedback.sentence)) == (5, True)
+
+
+def test_leave_needs_a_range_that_ends_before_the_belt() -> None:
+    """PP-67: the belt deletes what lies behind its own end; refused in the file and at run time."""
+    wrong = "leave: expected 0, or an upper_limit below that of belt 'belt', 1200.0, found leave 2 with upper_limit "
+    text = sharing("leave: 2")
+    for upper in (1200, 1300):
+        with pytest.raises(takt.ConfigError, match=f"{wrong}{upper}.0"):
+            takt.Engine(text.replace("upper_limit: 250", f"upper_limit: {upper}"))
+    takt.Engine(text.replace("upper_limit: 250", "upper_limit: 1199")).close()
+    takt.Engine(text.replace("lower_limit: 0, upper_limit: 1200", "lower_limit: 0")).close()
+    with takt.Engine(text) as session:
+        picker = session.pick_place("left_picker")
+        with pytest.raises(takt.CommandError, match=f"{wrong}1200.0"):
+            picker.configure_belt(leave=2, lower_limit=50, upper_limit=1200).wait()
+        with pytest.raises(takt.CommandError, match="leave must be 0, or upper_limit lie below that of the belt"):
+            picker.configure_belt(upper_limit=1200).wait()
+        picker.configure_belt(leave=0, upper_limit=1200).wait()
+        with pytest.raises(takt.CommandError, match="leave must be 0, or upper_limit lie below that of the belt"):
+            picker.configure_belt(leave=1).wait()

@@ -56,9 +56,7 @@ void Step(const Context& c, State& s) noexcept {
   s.travel = Travelled(c, s);
   if (s.travel.velocity != 0) s.sense = s.travel.velocity > 0 ? 1 : -1;
   for (std::uint32_t i = s.count; i-- > 0;) {
-    if (!IsGone(c.params, s, s.objects[i])) continue;
-    Remove(s.objects[i].number, s);
-    ++s.lost;
+    if (IsGone(c.params, s, s.objects[i])) Lose(s.objects[i].number, s);
   }
 }
 

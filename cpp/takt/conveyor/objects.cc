@@ -14,9 +14,18 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// Along the belt, where the object lay when it was detected.
+// On a table, from -180 to 180 if that is within the range, or if there is no upper limit; else, if the object lies
+// less than half a turn before the lower limit, there, even if a later turn is within the range; else in the last turn
+// that does not lie beyond the upper limit: the object reaches the range within a turn of positive travel.
 double InitialPlace(const BeltParams& p, const Object& object) {
-  return p.kind == BeltKind::kTurning ? maths::Atan2(object.pose.y, object.pose.x) / kDegree : object.pose.x;
+  if (p.kind != BeltKind::kTurning) return object.pose.x;
+  const double angle = maths::Atan2(object.pose.y, object.pose.x) / kDegree;
+  if (!p.upper_limit || IsWithin(p, angle)) return angle;
+  if (p.lower_limit) {
+    const double before = angle + 360 * (std::ceil((*p.lower_limit - angle) / 360) - 1);
+    if (*p.lower_limit - before < 180) return before;
+  }
+  return angle + 360 * std::floor((*p.upper_limit - angle) / 360);
 }
 
 template <typename Objects>
@@ -88,10 +97,10 @@ const Object* FirstFree(const BeltParams& p, const State& s) noexcept {
   double furthest = 0;
   for (const Object& object : ObjectsOf(s)) {
     if (object.state != ObjectState::kVisible) continue;
-    const double place = PlaceOf(p, s, object);
-    if (!IsWithin(p, place) || (first && place <= furthest)) continue;
+    const double place = PlaceOf(p, s, object), along = s.sense * place;
+    if (!IsWithin(p, place) || (first && along <= furthest)) continue;
     first = &object;
-    furthest = place;
+    furthest = along;
   }
   return first;
 }
@@ -134,6 +143,13 @@ Status Remove(std::uint32_t number, State& s) noexcept {
   std::move(object + 1, s.objects.data() + s.count, object);
   s.objects[--s.count] = Object{};
   return Status::Ok();
+}
+
+Status Lose(std::uint32_t number, State& s) noexcept {
+  const Object* object = Find(s, number);
+  if (!object) return Status::Failed(ErrorId::kNoWorkpiece);
+  s.last_lost[s.lost++ % kObjects] = {number, object->attributes};
+  return Remove(number, s);
 }
 
 }  // namespace takt::conveyor

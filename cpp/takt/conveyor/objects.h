@@ -42,7 +42,8 @@ bool IsWithin(const BeltParams& params, double place) noexcept;
 bool InRange(const BeltParams& params, const State& state, const Object& object) noexcept;
 // InRange and not taken.
 bool IsFree(const BeltParams& params, const State& state, const Object& object) noexcept;
-// The one that leaves the range first, of those that are free; null: there is none.
+// The one that leaves the range first in the sense in which the belt moved last, of those that are free; null: there
+// is none.
 const Object* FirstFree(const BeltParams& params, const State& state) noexcept;
 
 // s until the object is at place x if the belt goes on as fast as now; 0: it is there. NaN: never.
@@ -59,5 +60,7 @@ Status Take(std::uint32_t number, State& state) noexcept;
 Status GiveBack(std::uint32_t number, State& state) noexcept;
 // Whatever its state. kNoWorkpiece: there is none.
 Status Remove(std::uint32_t number, State& state) noexcept;
+// The same, and it counts as lost.
+Status Lose(std::uint32_t number, State& state) noexcept;
 
 }  // namespace takt::conveyor

@@ -22,7 +22,9 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::lost_count>("Objects that left the range and nobody had taken them, since the start.");
   d.internal<&O::refused_count>("Objects that found no room, since the start.");
   d.internal<&O::first_number>(
-      "Number of the object that leaves the range first, of those that nobody has taken; 0: there is none.");
+      "Number of the object that leaves the range first, of those that nobody has taken, in the sense in which the "
+      "belt "
+      "moved last; 0: there is none.");
   d.internal<&O::first_kind>("What that one is.");
   d.internal<&O::first_colour>("Its colour.");
   d.internal<&O::first_quality>(unit::one, "How good it is; nan without one, as all that follows.");

@@ -29,6 +29,12 @@ void describe(Description<Object>& d) {
   d.internal<&O::attributes>("What people know of it.");
 }
 
+void describe(Description<LostObject>& d) {
+  d.about("An object that a belt has lost.");
+  d.internal<&LostObject::number>("As it was on the belt; 0: none.");
+  d.internal<&LostObject::attributes>("As they were.");
+}
+
 void describe(Description<State>& d) {
   using S = State;
   d.about("A belt.");
@@ -41,6 +47,7 @@ void describe(Description<State>& d) {
   d.internal<&S::count>("So many.");
   d.internal<&S::last_number>("Of the object detected last.");
   d.internal<&S::lost>("Objects that left the range untaken.");
+  d.internal<&S::last_lost>("The last of them.");
   d.internal<&S::refused>("Objects without room.");
 }
 

@@ -39,6 +39,14 @@ struct Object {
   bool operator==(const Object&) const = default;
 };
 
+// What the belt has lost.
+struct LostObject {
+  std::uint32_t number = 0;
+  Attributes attributes;
+
+  bool operator==(const LostObject&) const = default;
+};
+
 struct State {
   // mm or deg from the origin's own place, over all turns: at the instant for which the axes get their set points.
   KinematicState travel;
@@ -49,13 +57,15 @@ struct State {
   std::array<Object, kObjects> objects;
   std::uint32_t count = 0;  // so many of them, in the order of their numbers
   std::uint32_t last_number = 0;
-  std::uint32_t lost = 0;     // left the range and nobody had taken them
-  std::uint32_t refused = 0;  // did not find room
+  std::uint32_t lost = 0;                      // left the range and nobody had taken them
+  std::array<LostObject, kObjects> last_lost;  // the n-th, from 0, is at n % kObjects
+  std::uint32_t refused = 0;                   // did not find room
 };
 
 void describe(Enumeration<ObjectState>&);
 void describe(Description<Attributes>&);
 void describe(Description<Object>&);
+void describe(Description<LostObject>&);
 void describe(Description<State>&);
 
 }  // namespace takt::conveyor

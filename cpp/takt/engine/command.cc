@@ -619,8 +619,10 @@ std::string WhyNot(const Machine& machine, const pickplace::Command& command, st
   pickplace::BeltSettings range;
   range.lower_limit = *configure->lower_limit;
   range.upper_limit = *configure->upper_limit;
-  const bool fits = found == machine.belts.end() || !pickplace::RangeFits(range);
-  return fits ? why : named("lower_limit", pickplace::WhyNotRange(range, *found));
+  range.leave = configure->leave.value_or(0);
+  if (found == machine.belts.end() || !pickplace::RangeFits(range)) return {};
+  why = named("lower_limit", pickplace::WhyNotRange(range, *found));
+  return why.empty() ? named("leave", pickplace::WhyNotLeave(range, *found)) : why;
 }
 
 // Why this component cannot do it, as far as its description tells; empty: it can.

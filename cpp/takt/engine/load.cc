@@ -281,6 +281,7 @@ class CrossCheck {
         const auto belt = std::ranges::find(machine_.belts, module.belts[k].belt, &conveyor::BeltParams::name);
         if (belt == machine_.belts.end()) continue;
         AddIf(place + ".settings.lower_limit", pickplace::WhyNotRange(module.belts[k].settings, *belt));
+        AddIf(place + ".settings.leave", pickplace::WhyNotLeave(module.belts[k].settings, *belt));
       }
       const pickplace::Settings& settings = module.settings;
       const std::size_t count = module.belts.size();

@@ -90,10 +90,24 @@ void CarryOut(const Context& c, Ticket ticket, double lease_s, const Jog& comman
   if (!held && !Jogs(s)) EndJog(c, FeedbackState::kDone, ErrorId::kNone, s);
 }
 
+// Static targets that were accepted do not lie in product coordinate systems that workpieces get.
+bool WaitingTargetsFit(const State& s) {
+  Settings settings = s.settings;
+  for (std::uint32_t i = 0; i < s.order_count; ++i) {
+    settings.target_coordinate_system = s.orders[i].target.system;
+    settings.target_pcs = s.orders[i].target.pcs;
+    if (s.orders[i].belt == 0 && !TargetSystemFits(settings)) return false;
+  }
+  return true;
+}
+
 void CarryOut(const Context& c, Ticket ticket, double, const Configure& command, group::State&, State& s) {
   const Settings was = s.settings;
   TakeGiven(command, s.settings);
-  if (s.settings.workpiece_pcs1 == s.settings.workpiece_pcs2) {  // where it lifts from would be forgotten
+  // Workpieces in one system: where it lifts from would be forgotten.
+  const bool fits = TargetFits(s.settings) && WorkpieceSystemsFit(s.settings) &&
+                    (c.params.belts.empty() || (TargetSystemFits(s.settings) && WaitingTargetsFit(s)));
+  if (!fits) {
     s.settings = was;
     return Refuse(c, ticket, ErrorId::kParameter, s);
   }
@@ -105,7 +119,9 @@ void CarryOut(const Context& c, Ticket ticket, double, const ConfigureBelt& comm
   if (belt > c.params.belts.size()) return Refuse(c, ticket, ErrorId::kUnknownTarget, s);
   BeltSettings changed = s.belts[belt - 1];
   TakeGiven(command, changed);
-  const bool fits = TurnsFit(changed) && RangeFits(changed) && RangeMeets(changed, *c.belts[belt - 1].params);
+  const conveyor::BeltParams& params = *c.belts[belt - 1].params;
+  const bool fits = TurnsFit(changed) && RangeFits(changed) && LeaveFits(changed) && RangeMeets(changed, params) &&
+                    LeaveMeets(changed, params);
   if (!fits) return Refuse(c, ticket, ErrorId::kParameter, s);
   s.belts[belt - 1] = changed;
   Finish(c, ticket);

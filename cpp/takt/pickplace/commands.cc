@@ -39,7 +39,8 @@ void DescribeInputs(Description<InputsOf<Of>>& d) {
       "A rising edge at rest forgets the path; in a tracking mode on the way it ends the loop behind this profile. "
       "T&P: xAbort.");
   d.template defaulted<&I::override_factor>(unit::one, between(0, 1),
-                                            "Of speeds, accelerations and jerks of the path. T&P: lrOverride.");
+                                            "Of speeds at once, and of accelerations and jerks of profiles that begin "
+                                            "meanwhile, 0.1 at least; 0 holds the path. T&P: lrOverride.");
   d.template defaulted<&I::ack_gripper>(
       "A rising edge ends the time on the workpiece: the tool lifts at once. T&P: xAckGripper.");
   d.template defaulted<&I::return_to_path>("A rising edge moves the tool back to where it left its path.");

@@ -12,6 +12,8 @@ namespace {
 
 using group::GroupState;
 
+constexpr double kLeastRamps = 0.1;  // least factor of accelerations and jerks by an override
+
 // Something that stops harder than what is there.
 bool StopRises(const State& s) {
   return Rises(s.inputs.stop_all, s.before.stop_all) || Rises(s.inputs.path_stop, s.before.path_stop);
@@ -84,13 +86,25 @@ void Leave(const Context& c, FeedbackState feedback, ErrorId error, group::State
   if (moves) HaltGroup(c, g, s);
 }
 
+// The group or a member is being switched off: it brakes, or its brake closes, and refuses power until then.
+bool SwitchesOff(const Context& c, const group::State& g) {
+  if (g.task == group::Task::kPower && !g.power_on) return true;
+  return !group::AllMembers(
+      c.group, g, [](const axis::State& m) { return m.active.kind != axis::RequestKind::kPower || m.active.enable; });
+}
+
 void SwitchPower(const Context& c, group::State& g, State& s) {
   const bool rises = s.inputs.enable && s.inputs.regulator_on && (!s.before.regulator_on || !s.before.enable);
   const bool falls = !s.inputs.regulator_on && s.before.regulator_on;
   if (IsOn(c, g)) s.enables = false;  // enabled, by any command: a `disable` given later holds
-  if (rises && !IsOn(c, g)) {
-    Tell(c, group::Power{.enable = true}, g);
-    s.enables = true;
+  if (rises) s.powers = true;
+  if (!s.inputs.enable || !s.inputs.regulator_on) s.powers = false;
+  if (s.powers && !SwitchesOff(c, g)) {
+    if (!IsOn(c, g)) {
+      Tell(c, group::Power{.enable = true}, g);
+      s.enables = true;
+    }
+    s.powers = false;
   }
   if (falls) {
     ForgetAll(c, FeedbackState::kAborted, ErrorId::kPowerOff, g, s);
@@ -109,9 +123,9 @@ void SwitchPower(const Context& c, group::State& g, State& s) {
 void SetOverride(const Context& c, group::State& g, State& s) {
   const double factor = s.inputs.override_factor;
   if (factor == s.override_given) return;
-  // Accelerations and jerks cannot be 0.
-  const double ramps = std::max(factor, 1e-3);
-  Tell(c, group::SetOverride{factor, ramps, ramps}, g);
+  // Moves keep the accelerations and jerks with which they were given. A hold (0) leaves these factors as they are.
+  const auto ramps = [&](double given) { return factor > 0 ? std::max(factor, kLeastRamps) : given; };
+  Tell(c, group::SetOverride{factor, ramps(g.acceleration_factor), ramps(g.jerk_factor)}, g);
   s.override_given = factor;
 }
 
@@ -377,6 +391,15 @@ bool MovesOn(const Context& c, const group::State& g) {
   return g.begun ? g.pace.now.velocity > 0 : !group::AllMembers(c.group, g, axis::AtRest);
 }
 
+// The tool is not at a place of the MCS any more: its frame, or the position of an axis, was set anew.
+bool IsElsewhere(const Context& c, const group::State& g, const Place& place) {
+  constexpr double kSamePosition = 0.01;     // mm
+  constexpr double kSameOrientation = 1e-4;  // rad, of the elements of the rotation matrix
+  const kinematics::Frame present = kinematics::ToFrame(PresentPlace(c, g).pose);
+  const kinematics::Frame then = kinematics::ToFrame(place.pose);
+  return !KDL::Equal(present.p, then.p, kSamePosition) || !KDL::Equal(present.M, then.M, kSameOrientation);
+}
+
 void WatchWindow(const Context& c, State& s) {
   const double cycles = s.settings.position_window_ms / 1000 / c.group.cycle.period_s;
   if (c.path_error > s.settings.position_window) {
@@ -406,7 +429,7 @@ void Fail(const Context& c, ErrorId error, group::State& g, State& s) noexcept {
 }
 
 void EmergencyStop(const Context& c, group::State& g, State& s) noexcept {
-  s.enables = false;
+  s.enables = s.powers = false;
   if (IsBusy(s) || s.order_count > 0 || s.loop.active || s.lifting) return Fail(c, ErrorId::kEmergencyStop, g, s);
   EndJog(c, FeedbackState::kAborted, ErrorId::kEmergencyStop, s);
 }
@@ -420,10 +443,9 @@ State MakeState(const PickPlaceParams& params) noexcept {
 
 void Step(const Context& c, group::State& g, State& s) noexcept {
   s.pulse = false;
-  if (MovesOn(c, g)) {
-    s.in_target = false;
-    if (!s.parking && s.parked_at != 0) ForgetPlace(s);  // a motion of others
-  }
+  const bool moves = MovesOn(c, g);
+  if (moves) s.in_target = false;
+  if (s.parked_at != 0 && !s.parking && (moves || IsElsewhere(c, g, s.at))) ForgetPlace(s);  // by other commands
   SwitchPower(c, g, s);
   SetOverride(c, g, s);
   CloseDirections(c, g, s);

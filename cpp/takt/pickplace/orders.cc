@@ -51,6 +51,7 @@ Order MakeOrder(std::uint32_t belt, bool picks, const State& s) {
   if (belt != 0) order.own = s.belts[belt - 1];
   if (belt != 0) order.shape.target_distance = order.own.z_distance;
   order.ramps = RampsOf(p);
+  order.rule = p.workpiece_rule;
   const bool opens = p.tracking_mode != TrackingMode::kProgram && !picks;
   order.gripper_time = opens ? p.gripper_open_time : p.gripper_closing_time;
   return order;
@@ -63,15 +64,18 @@ void Push(const Order& order, State& s) {
 // No other order gets the workpiece; `cause`: the counter of missed ones that says why.
 void MissWorkpiece(const Context& c, Order& order, std::uint32_t& cause, State& s) {
   if (order.workpiece == 0) return;
-  conveyor::Remove(order.workpiece, *c.belts[order.belt - 1].state);
-  order.workpiece = 0;
+  RemoveWorkpiece(c, order);
   ++s.counters.missed;
   ++cause;
 }
 
 // Of an order that ends, or begins anew, before it is done.
 void LetGoOfWorkpiece(const Context& c, Order& order, State& s) {
-  if (order.phase == Phase::kStaying) MissWorkpiece(c, order, s.counters.interrupted, s);
+  if (order.phase == Phase::kStaying) {
+    MissWorkpiece(c, order, s.counters.interrupted, s);
+  } else {
+    NoteLeft(order, false, s);
+  }
   GiveBackWorkpiece(c, order);
 }
 
@@ -186,11 +190,17 @@ void Park(const Context& c, std::uint32_t belt, group::State& g, State& s) {
   s.parking_over = profile.legs[0].to;
 }
 
+// From where the tool is now, which mechanisms without a wrist turn otherwise than the parking position.
+void EndParking(const Context& c, const group::State& g, State& s) {
+  s.parking = false;
+  if (s.parked_at == 0) return;  // moves behind it were given
+  s.at = PresentPlace(c, g);
+  s.at.parks = true;
+}
+
 // Its moves are given; or it waits for a workpiece, where such wait.
 void Begin(const Context& c, group::State& g, Order& order, State& s) {
   s.in_target = false;
-  CountLeft(c, order, s);
-  order.left = 0;
   Place target = order.target;
   if (!IsStatic(order)) {
     const conveyor::Object* object = s.parking ? nullptr : ChooseWorkpiece(c, g, order, s);
@@ -216,7 +226,7 @@ void Begin(const Context& c, group::State& g, Order& order, State& s) {
   if (&order == &s.orders[0]) s.profile_time = 0;  // not known yet
   const Given given = GiveLegs(c, order.profile, 0, order.ramps, order.shape.keep_orientation, g, s);
   if (given.error != ErrorId::kNone) {
-    if (order.workpiece != 0) ++s.counters.missed, ++s.counters.refused;
+    NoteLeft(order, true, s);
     return Fail(c, given.error, g, s);
   }
   order.first = given.first;
@@ -251,12 +261,14 @@ void BeginAgain(const Context& c, group::State& g, Order& order, State& s) {
 void CountPick(const Context& c, const Order& order, State& s) {
   if (!order.picks) {
     ++s.counters.placed;
-    if (s.held_count > 0) std::shift_left(s.held.begin(), s.held.begin() + s.held_count--, 1);
+    if (s.held_count == 0) return;
+    std::shift_left(s.held.begin(), s.held.end(), 1);
+    s.held.back() = {};
+    --s.held_count;
     return;
   }
-  const conveyor::Object* object =
-      order.belt != 0 ? conveyor::Find(*c.belts[order.belt - 1].state, order.workpiece) : nullptr;
-  if (s.held_count < kHeld) s.held[s.held_count++] = object ? object->attributes : conveyor::Attributes{};
+  if (s.held_count < kHeld) s.held[s.held_count] = order.attributes;
+  ++s.held_count;
   ++s.counters.picked;
   s.pick_cycles[s.pick_count % kPickTimes] = c.group.cycle.count;
   ++s.pick_count;
@@ -275,7 +287,7 @@ bool IsOnWorkpiece(const Context& c, const group::State& g, const State& s) noex
 }
 
 bool Arrive(const Context& c, const group::State& g, State& s) noexcept {
-  if (s.parking && g.done > s.parking_move && g.failed < s.parking_move) s.parking = false;
+  if (s.parking && g.done > s.parking_move && g.failed < s.parking_move) EndParking(c, g, s);
   if (g.ends || g.reason != kinematics::Reason::kNone) return false;
   if (s.order_count == 0 || !HasArrived(g, s.orders[0])) return false;
   Order& order = s.orders[0];
@@ -350,7 +362,9 @@ void StepOrder(const Context& c, group::State& g, State& s) {
 }
 
 // Static targets behind one another are given as early as may be: their profiles join without a pause.
+// Under an override each begins behind the one before: its accelerations are those of the override at its begin.
 void GiveAhead(const Context& c, group::State& g, State& s) {
+  if (s.inputs.override_factor < 1) return;
   for (std::uint32_t i = 1; i < s.order_count && s.state != PickPlaceState::kError; ++i) {
     const Order& before = s.orders[i - 1];
     if (before.phase != Phase::kGoing || !IsStatic(before) || !IsStatic(s.orders[i])) return;
@@ -510,7 +524,6 @@ void LosePath(const Context& c, bool kept, State& s) noexcept {
       continue;
     }
     if (i == 0 && kept && order.phase == Phase::kHeld) continue;
-    if (order.workpiece != 0 && order.phase != Phase::kStaying) order.left = order.workpiece;
     LetGoOfWorkpiece(c, order, s);
     order.phase = Phase::kNew;
   }
@@ -547,7 +560,7 @@ void RunOrders(const Context& c, group::State& g, State& s) noexcept {
     s.error_axes |= AxesOf(c, g, g.refused);
     return Fail(c, TroubleOf(g), g, s);
   }
-  if (s.parking && g.done > s.parking_move) s.parking = false;
+  if (s.parking && g.done > s.parking_move) EndParking(c, g, s);
   StepLoop(c, s);
   if (s.order_count > 0) StepOrder(c, g, s);
   if (s.state == PickPlaceState::kError) return;

@@ -34,6 +34,12 @@ std::string WhyNotRange(const BeltSettings& settings, const conveyor::BeltParams
          FormatReal(settings.lower_limit) + " to " + FormatReal(settings.upper_limit);
 }
 
+std::string WhyNotLeave(const BeltSettings& settings, const conveyor::BeltParams& belt) {
+  if (LeaveMeets(settings, belt)) return {};
+  return "expected 0, or an upper_limit below that of belt '" + belt.name + "', " + FormatReal(*belt.upper_limit) +
+         ", found leave " + std::to_string(settings.leave) + " with upper_limit " + FormatReal(settings.upper_limit);
+}
+
 void describe(Description<PickPlaceBelt>& d) {
   d.about("A belt as a pick and place module uses it.");
   d.required<&PickPlaceBelt::belt>("Name of the belt.");
@@ -56,7 +62,10 @@ void describe(Description<PickPlaceParams>& d) {
   d.defaulted<&P::settings>("Settings at the start.");
   d.defaulted<&P::homing>("Homing of axes other than they do by themselves.");
   d.rule<&P::settings>("workpiece_pcs1 and workpiece_pcs2 must be different: places on two belts are seen from them",
-                       [](const P& p) { return p.settings.workpiece_pcs1 != p.settings.workpiece_pcs2; });
+                       [](const P& p) { return WorkpieceSystemsFit(p.settings); });
+  d.rule<&P::settings>(
+      "target_pcs must be another one than workpiece_pcs1 and workpiece_pcs2: the target would lie on a workpiece",
+      [](const P& p) { return p.belts.empty() || TargetSystemFits(p.settings); });
   d.rule<&P::belts>("must be no more than 16", [](const P& p) { return p.belts.size() <= kBelts; });
 }
 

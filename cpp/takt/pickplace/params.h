@@ -40,6 +40,8 @@ std::string WhyNotBelt(std::uint32_t belt, std::size_t belts, std::string_view n
 std::string WhyNotMode(TrackingMode mode, std::size_t belts);
 // What is wrong with the work range that a module is to have on a belt; empty: nothing.
 std::string WhyNotRange(const BeltSettings& settings, const conveyor::BeltParams& belt);
+// Why leave and upper_limit do not fit the upper_limit of the belt; empty: they do.
+std::string WhyNotLeave(const BeltSettings& settings, const conveyor::BeltParams& belt);
 
 void describe(Description<PickPlaceBelt>&);
 void describe(Description<AxisHoming>&);

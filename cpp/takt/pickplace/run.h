@@ -72,10 +72,14 @@ void GiveBackWorkpiece(const Context& c, Order& order) noexcept;
 bool StaysWithin(const Context& c, const group::State& g, const Order& order, double time_s) noexcept;
 // Of what it was thought to take a profile may take so many times as much now.
 double LongerBy(const group::State& g, const State& s) noexcept;
-// It was fetched, or something was put there: it is deleted, and what lies in the same place (PP-66).
+// It was fetched or missed under the tool, or something was put there: it is deleted, and what lies in the same place
+// (PP-66).
 void RemoveWorkpiece(const Context& c, Order& order) noexcept;
-// Counts a workpiece that a stop left as missed once it has left the range.
-void CountLeft(const Context& c, Order& order, State& s) noexcept;
+// The order lets go of its workpiece, which is missed if it leaves the range. `refused`: there is no path to it; else
+// the path was stopped. A cause that is noted already stays.
+void NoteLeft(const Order& order, bool refused, State& s) noexcept;
+// Counts each workpiece that has left the range as missed, once: those that were left behind, and, while the module
+// moves, those that the belts have lost and it would have taken.
 void CountLost(const Context& c, State& s) noexcept;
 
 // orders.cc

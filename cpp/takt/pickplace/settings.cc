@@ -84,7 +84,7 @@ void DescribeSettings(Description<SettingsOf<Of>>& d) {
   d.template defaulted<&S::target_coordinate_system>(
       "What the static target is seen from; not acs. T&P: eTargetCoordSystem.");
   d.template defaulted<&S::target_pcs>(between(1, group::kProductSystems),
-                                       "Which product coordinate system; with pcs.");
+                                       "Which product coordinate system, with pcs; none that workpieces get.");
   d.template defaulted<&S::z_start_distance>(unit::mm, kFromZero, "A profile first lifts by this. T&P: lrZStartDist.");
   d.template defaulted<&S::z_target_distance>(unit::mm, kFromZero,
                                               "And lowers by this at its end. T&P: lrZTargetDist.");
@@ -156,7 +156,8 @@ void DescribeBelt(Description<BeltSettingsOf<Of>>& d) {
                                             "It takes no more workpieces a minute than this, evenly; 0: any number.");
   d.template defaulted<&S::leave>(
       at_most(conveyor::kObjects),
-      "It takes one only while so many free ones lie behind its range, for modules further on; 0: it does not look.");
+      "It takes one only while so many free ones lie behind its range, for modules further on; 0: it does not look. "
+      "With lower_limit and upper_limit, which lies below that of the belt.");
   d.template defaulted<&S::same_within>(
       unit::mm, kFromZero,
       "What lies so near to a workpiece that was fetched is the same one, seen twice, as where pictures of a camera "
@@ -176,6 +177,19 @@ void DescribeBelt(Description<BeltSettingsOf<Of>>& d) {
 
 }  // namespace
 
+bool WorkpieceSystemsFit(const Settings& s) noexcept {
+  return s.workpiece_pcs1 != s.workpiece_pcs2;
+}
+
+bool TargetSystemFits(const Settings& s) noexcept {
+  const bool in_pcs = s.target_coordinate_system == group::CoordinateSystem::kPcs;
+  return !in_pcs || (s.target_pcs != s.workpiece_pcs1 && s.target_pcs != s.workpiece_pcs2);
+}
+
+bool TargetFits(const Settings& s) noexcept {
+  return s.target_coordinate_system != group::CoordinateSystem::kAcs;
+}
+
 bool TurnsFit(const BeltSettings& s) noexcept {
   return s.turn <= s.every && s.turns <= s.every - s.turn + 1;
 }
@@ -188,6 +202,14 @@ bool RangeFits(const BeltSettings& s) noexcept {
   return !HasRange(s) || s.lower_limit < s.upper_limit;
 }
 
+bool LeaveFits(const BeltSettings& s) noexcept {
+  return s.leave == 0 || HasRange(s);
+}
+
+bool LeaveMeets(const BeltSettings& s, const conveyor::BeltParams& belt) noexcept {
+  return s.leave == 0 || !HasRange(s) || !belt.upper_limit || s.upper_limit < *belt.upper_limit;
+}
+
 bool RangeMeets(const BeltSettings& s, const conveyor::BeltParams& belt) noexcept {
   if (!HasRange(s) || !RangeFits(s)) return true;
   return !(belt.lower_limit && s.upper_limit < *belt.lower_limit) &&
@@ -198,6 +220,8 @@ void describe(Description<Settings>& d) {
   d.named("PickPlaceSettings");
   d.about("What is set of a pick and place module.");
   DescribeSettings(d);
+  d.rule<&Settings::target_coordinate_system>("must not be acs: targets are places of the tool",
+                                              [](const Settings& s) { return TargetFits(s); });
 }
 
 void describe(Description<Configure>& d) {
@@ -216,6 +240,8 @@ void describe(Description<BeltSettings>& d) {
                                [](const BeltSettings& s) { return TurnsFit(s); });
   d.rule<&BeltSettings::upper_limit>("must lie above lower_limit, or both must be 0: the range of the belt alone",
                                      [](const BeltSettings& s) { return RangeFits(s); });
+  d.rule<&BeltSettings::leave>("must be 0 without lower_limit and upper_limit: it counts workpieces behind that range",
+                               [](const BeltSettings& s) { return LeaveFits(s); });
 }
 
 void describe(Description<ConfigureBelt>& d) {

@@ -148,12 +148,22 @@ using BeltSettings = BeltSettingsOf<Plain>;
 // The command that changes what is given of them.
 using ConfigureBelt = BeltSettingsOf<std::optional>;
 
+// workpiece_pcs1 and workpiece_pcs2 differ.
+bool WorkpieceSystemsFit(const Settings& settings) noexcept;
+// The static target does not lie in a product coordinate system that workpieces get.
+bool TargetSystemFits(const Settings& settings) noexcept;
+// The static target is not seen from the axes.
+bool TargetFits(const Settings& settings) noexcept;
 // The workpieces that a module takes in turn are among those of a round.
 bool TurnsFit(const BeltSettings& settings) noexcept;
 // It has a work range of its own; else that of the belt alone counts.
 bool HasRange(const BeltSettings& settings) noexcept;
 // It has none, or lower_limit lies below upper_limit.
 bool RangeFits(const BeltSettings& settings) noexcept;
+// It counts free workpieces behind its range and has a range of its own, or does not count them.
+bool LeaveFits(const BeltSettings& settings) noexcept;
+// It counts none, or counts them between the end of its range and that of the belt, which deletes what lies beyond.
+bool LeaveMeets(const BeltSettings& settings, const conveyor::BeltParams& belt) noexcept;
 // It has none that fits, or one that overlaps the belt's own.
 bool RangeMeets(const BeltSettings& settings, const conveyor::BeltParams& belt) noexcept;
 

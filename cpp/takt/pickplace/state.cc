@@ -24,6 +24,7 @@ void describe(Description<Order>& d) {
   d.internal<&Order::shape>("How its profile runs.");
   d.internal<&Order::own>("Of the belt.");
   d.internal<&Order::ramps>("Limits along it.");
+  d.internal<&Order::rule>("Which workpiece.");
   d.internal<&Order::gripper_time>("Before its end.");
   d.internal<&Order::phase>("Where it has got to.");
   d.internal<&Order::profile>("Its moves.");
@@ -31,7 +32,7 @@ void describe(Description<Order>& d) {
   d.internal<&Order::first>("Number of its first move.");
   d.internal<&Order::last>("Number of its last one.");
   d.internal<&Order::workpiece>("That is taken; 0: none.");
-  d.internal<&Order::left>("That a stop left; 0: none.");
+  d.internal<&Order::attributes>("Of it.");
   d.internal<&Order::from_belt>("It began on a workpiece, or low over a belt.");
   d.internal<&Order::begin_cycle>("When it began.");
   d.internal<&Order::stay_cycle>("When it arrived.");
@@ -39,6 +40,15 @@ void describe(Description<Order>& d) {
   d.internal<&Order::gripper_off>("It was stopped, or the override changed.");
   d.internal<&Order::pulse_at_end>("It was interrupted.");
   d.internal<&Order::pulsed>("The gripper has got its pulse.");
+}
+
+void describe(Description<LeftWorkpiece>& d) {
+  d.named("PickPlaceLeftWorkpiece");
+  d.about("A workpiece that was taken and left behind.");
+  d.internal<&LeftWorkpiece::belt>("Its belt, from 1.");
+  d.internal<&LeftWorkpiece::number>("Its number there.");
+  d.internal<&LeftWorkpiece::refused>("There was no path to it; else the path was stopped.");
+  d.internal<&LeftWorkpiece::counted>("As missed.");
 }
 
 void describe(Description<Loop>& d) {
@@ -111,6 +121,7 @@ void describe(Description<State>& d) {
   d.internal<&State::done>("What was asked for last.");
   d.internal<&State::halting>("The group comes to rest because of the module.");
   d.internal<&State::enables>("The group, once its axes stand.");
+  d.internal<&State::powers>("The group, once it is no longer being switched off.");
   d.internal<&State::orders>("The first one is gone.");
   d.internal<&State::order_count>("How many.");
   d.internal<&State::loop>("A tracking mode.");
@@ -154,7 +165,8 @@ void describe(Description<State>& d) {
   d.internal<&State::held>("Of what was picked and is not placed yet.");
   d.internal<&State::held_count>("How many.");
   d.internal<&State::warning_belt>("That the warning is about; 0: none.");
-  d.internal<&State::counted_before>("Of those that belts will lose.");
+  d.internal<&State::left>("Workpieces that were taken and left behind.");
+  d.internal<&State::left_count>("How many.");
   d.internal<&State::refused_before>("Of the belts.");
   d.internal<&State::pick_cycles>("Of the last picks.");
   d.internal<&State::pick_count>("So many.");

@@ -21,7 +21,8 @@ namespace takt::pickplace {
 
 inline constexpr std::size_t kOrders = 8;  // profiles that may wait, with the one that is gone
 inline constexpr std::size_t kPickTimes = 8;
-inline constexpr std::size_t kHeld = 8;  // products whose attributes are known
+inline constexpr std::size_t kLeft = 32;  // workpieces that were left and are known
+inline constexpr std::size_t kHeld = 8;   // products whose attributes are known
 
 // Where an order has got to.
 enum class Phase : std::uint8_t {
@@ -42,21 +43,31 @@ struct Order {
   Shape shape;
   BeltSettings own;  // of the belt, as it was accepted
   PathRamps ramps;
+  WorkpieceRule rule = WorkpieceRule::kFirst;
   double gripper_time = 0;  // s
   Phase phase = Phase::kNew;
   Profile profile;
-  std::uint32_t next_leg = 0;   // the first one given
-  std::uint64_t first = 0;      // number of its first move ...
-  std::uint64_t last = 0;       // ... and of its last one, in the group
-  std::uint32_t workpiece = 0;  // its number; 0: none is taken
-  std::uint32_t left = 0;       // number of the one that a stop left; 0: none, or it is known what became of it
-  bool from_belt = false;       // it began on a workpiece, or low over a belt
+  std::uint32_t next_leg = 0;       // the first one given
+  std::uint64_t first = 0;          // number of its first move ...
+  std::uint64_t last = 0;           // ... and of its last one, in the group
+  std::uint32_t workpiece = 0;      // its number; 0: none is taken
+  conveyor::Attributes attributes;  // of it, as it was taken
+  bool from_belt = false;           // it began on a workpiece, or low over a belt
   std::uint64_t begin_cycle = 0;
   std::uint64_t stay_cycle = 0;  // when it arrived
   double expected_s = 0;         // the way was thought to take
   bool gripper_off = false;      // it was stopped, or the override changed
   bool pulse_at_end = false;     // it was interrupted
   bool pulsed = false;
+};
+
+// A workpiece that was taken and left behind on its belt: it is missed once it has left the range. Known by its number
+// until it is taken again or gone.
+struct LeftWorkpiece {
+  std::uint32_t belt = 0;  // of the module's list, from 1
+  std::uint32_t number = 0;
+  bool refused = false;  // there was no path to it; else the path was stopped
+  bool counted = false;  // as missed: it has left the module's range, and not the belt's
 };
 
 // A tracking mode that goes round and round.
@@ -120,6 +131,7 @@ struct State {
   bool done = false;
   bool halting = false;               // the group comes to rest because the module told it to
   bool enables = false;               // the group, as soon as its axes are on and stand
+  bool powers = false;                // the group, as soon as it is no longer being switched off
   std::array<Order, kOrders> orders;  // [0] is the one that is gone
   std::uint32_t order_count = 0;
   Loop loop;
@@ -162,9 +174,10 @@ struct State {
   bool in_target = false;
   Counters counters;
   std::array<conveyor::Attributes, kHeld> held{};  // of what was picked and is not placed yet, the oldest first
-  std::uint32_t held_count = 0;
-  std::uint32_t warning_belt = 0;                       // that the warning is about, from 1; 0: none
-  std::array<std::uint32_t, kBelts> counted_before{};   // of those that belts will lose
+  std::uint32_t held_count = 0;                    // all that is held; may be more than kHeld
+  std::uint32_t warning_belt = 0;                  // that the warning is about, from 1; 0: none
+  std::array<LeftWorkpiece, kLeft> left{};         // the oldest first
+  std::uint32_t left_count = 0;
   std::array<std::uint32_t, kBelts> refused_before{};   // of the belts
   std::array<std::uint64_t, kPickTimes> pick_cycles{};  // a ring
   std::uint32_t pick_count = 0;
@@ -175,6 +188,7 @@ struct State {
 
 void describe(Enumeration<Phase>&);
 void describe(Description<Order>&);
+void describe(Description<LeftWorkpiece>&);
 void describe(Description<Loop>&);
 void describe(Description<JogKeys>&);
 void describe(Description<Hold>&);

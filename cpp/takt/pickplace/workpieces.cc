@@ -1,7 +1,6 @@
 // Which workpiece is next, and whether it can be reached in time (PP-44).
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "takt/core/angle.h"
 #include "takt/group/systems.h"
@@ -32,15 +31,14 @@ bool IsInside(const BeltSettings& own, double place) {
 }
 
 // PP-66: of the kind, the colour and the quality that are asked for.
-bool IsWanted(const BeltSettings& own, const Object& object) {
-  const conveyor::Attributes& of = object.attributes;
+bool IsWanted(const BeltSettings& own, const conveyor::Attributes& of) {
   return (own.kind == 0 || of.kind == own.kind) && (own.colour == 0 || of.colour == own.colour) &&
          of.quality >= own.least_quality;
 }
 
 // PP-67: it is this module's by its number.
-bool IsOurs(const BeltSettings& own, const Object& object) {
-  const std::uint32_t place = (object.number - 1) % own.every + 1;  // among so many
+bool IsOurs(const BeltSettings& own, std::uint32_t number) {
+  const std::uint32_t place = (number - 1) % own.every + 1;  // among so many
   return place >= own.turn && place - own.turn < own.turns;
 }
 
@@ -53,8 +51,7 @@ bool MayTake(const Context& c, const Order& order, const State& s) {
   if (own.most_per_minute > 0 && last != 0 && since_s * own.most_per_minute < 60) return false;
   if (own.leave == 0) return true;
   const int sense = belt.state->sense;
-  const double end =
-      HasRange(own) ? (sense > 0 ? own.upper_limit : own.lower_limit) : std::numeric_limits<double>::infinity();
+  const double end = sense > 0 ? own.upper_limit : own.lower_limit;
   const auto lies_behind = [&](const Object& object) {
     return object.state == conveyor::ObjectState::kVisible &&
            sense * (conveyor::PlaceOf(*belt.params, *belt.state, object) - end) > 0;
@@ -82,6 +79,42 @@ Frame ObjectAfter(const Context& c, const Belt& belt, const Object& object, doub
 // What belts lose is missed while the module moves.
 bool CountsLost(const State& s) {
   return s.state == PickPlaceState::kMovePp || s.state == PickPlaceState::kPreparingPath;
+}
+
+void EraseLeft(std::uint32_t index, State& s) {
+  std::shift_left(s.left.begin() + index, s.left.begin() + s.left_count, 1);
+  s.left[--s.left_count] = {};
+}
+
+std::uint32_t FindLeft(std::uint32_t belt, std::uint32_t number, const State& s) {
+  std::uint32_t i = 0;
+  while (i < s.left_count && (s.left[i].belt != belt || s.left[i].number != number)) ++i;
+  return i;
+}
+
+void ForgetLeft(std::uint32_t belt, std::uint32_t number, State& s) {
+  if (const std::uint32_t i = FindLeft(belt, number, s); i < s.left_count) EraseLeft(i, s);
+}
+
+void CountLeft(LeftWorkpiece& left, State& s) {
+  if (left.counted) return;
+  left.counted = true;
+  ++s.counters.missed;
+  ++(left.refused ? s.counters.refused : s.counters.interrupted);
+}
+
+void CountLostObject(std::uint32_t belt, const conveyor::LostObject& lost, State& s) {
+  if (const std::uint32_t i = FindLeft(belt, lost.number, s); i < s.left_count) {
+    CountLeft(s.left[i], s);
+    return EraseLeft(i, s);
+  }
+  // Of the belts of a tracking mode alone.
+  const bool of_mode = !s.loop.active || s.loop.pick_belt == belt || s.loop.place_belt == belt;
+  const bool goes_there = s.order_count > 0 && s.orders[0].belt == belt;
+  const BeltSettings& own = goes_there ? s.orders[0].own : s.belts[belt - 1];
+  if (!CountsLost(s) || !of_mode || !IsWanted(own, lost.attributes) || !IsOurs(own, lost.number)) return;
+  ++s.counters.too_late;
+  ++s.counters.missed;
 }
 
 // What a belt may do from now on. Between these it may change its speed as it likes.
@@ -119,14 +152,27 @@ bool IsSafe(const Context& c, const group::State& g, const Order& order, double 
   return IsInside(belt, own, place - back) && IsInside(belt, own, place + ahead);
 }
 
+double Apart(const Belt& belt, const Object& object, const Object& other) {
+  const auto place = [&](const Object& of) { return conveyor::PoseOf(*belt.params, *belt.state, of).GetFrame().p; };
+  return (place(object) - place(other)).Norm();
+}
+
+// PP-66: it is a workpiece that was taken, seen twice.
+bool IsTaken(const Belt& belt, const BeltSettings& own, const Object& object) {
+  return own.same_within > 0 && std::ranges::any_of(conveyor::ObjectsOf(*belt.state), [&](const Object& other) {
+           return other.state == conveyor::ObjectState::kTaken && Apart(belt, object, other) <= own.same_within;
+         });
+}
+
 // The tool can be there, and over there.
-bool CanBeAt(const Context& c, const group::State& g, const BeltSettings& own, const Frame& object, const State& s) {
+bool CanBeAt(const Context& c, const group::State& g, const Order& order, const Frame& object) {
+  const BeltSettings& own = order.own;
   const group::End present = group::Present(c.group, g);
   kinematics::Pose grip = GripOn(own);
   for (const double height : {0.0, own.z_distance}) {
     grip.z = own.grip_z + height;
     Frame at = object * kinematics::ToFrame(grip);
-    if (s.settings.keep_orientation) {
+    if (order.shape.keep_orientation) {
       at.M = present.tool.M;
     } else {
       at = kinematics::ToFrame(Levelled(c, g, {.pose = kinematics::ToPose(at)}).pose);
@@ -172,8 +218,8 @@ bool IsReachableAt(double speed, const Context& c, const group::State& g, const 
   if (meeting.error != ErrorId::kNone) return false;
   const double travel = speed * (LongerBy(g, s) * meeting.time_s + own.sync_time + TimeUp(c, g, order, own));
   const double end = conveyor::PlaceOf(*belt.params, *belt.state, object) + travel;
-  return IsSafe(c, g, order, end, speed) && CanBeAt(c, g, own, meeting.object, s) &&
-         CanBeAt(c, g, own, ObjectAfter(c, belt, object, travel), s);
+  return IsSafe(c, g, order, end, speed) && CanBeAt(c, g, order, meeting.object) &&
+         CanBeAt(c, g, order, ObjectAfter(c, belt, object, travel));
 }
 
 // Wherever the belt may have come to meanwhile lies between where its two speeds take it.
@@ -197,7 +243,7 @@ const Object* ChooseWorkpiece(const Context& c, const group::State& g, const Ord
   const KDL::Vector tool = group::Present(c.group, g).tool.p;
   const auto rank = [&](const Object& object) {
     const double place = belt.state->sense * conveyor::PlaceOf(*belt.params, *belt.state, object);
-    switch (s.settings.workpiece_rule) {
+    switch (order.rule) {
       case WorkpieceRule::kFirst:
         return place;
       case WorkpieceRule::kLatest:
@@ -222,11 +268,13 @@ const Object* ChooseWorkpiece(const Context& c, const group::State& g, const Ord
       const Object& object = objects[i];
       if (tried < objects.size() && !is_behind(i, tried)) continue;
       if (best < objects.size() && is_behind(i, best)) continue;
-      if (!conveyor::IsFree(*belt.params, *belt.state, object) || !IsWanted(own, object) || !IsOurs(own, object))
+      if (!conveyor::IsFree(*belt.params, *belt.state, object) || !IsWanted(own, object.attributes) ||
+          !IsOurs(own, object.number))
         continue;
       if (IsInside(own, conveyor::PlaceOf(*belt.params, *belt.state, object))) best = i;
     }
-    const bool found = best < objects.size() && IsReachable(c, g, order, objects[best], s);
+    const bool found =
+        best < objects.size() && !IsTaken(belt, own, objects[best]) && IsReachable(c, g, order, objects[best], s);
     s.searched = best == objects.size() || found ? 0 : objects[best].number;
     if (found) return &objects[best];
     if (s.searched == 0) return nullptr;
@@ -268,8 +316,10 @@ ErrorId BindWorkpiece(const Context& c, const Object& object, group::State& g, O
                                          .c = on.c};
   if (const ErrorId error = Tell(c, bind, g); error != ErrorId::kNone) return error;
   const std::uint32_t number = object.number;
+  order.attributes = object.attributes;
   if (const Status taken = conveyor::Take(number, *belt.state); taken.failed()) return taken.error;
   order.workpiece = number;
+  ForgetLeft(order.belt, number, s);
   s.taken_cycle[order.belt - 1] = c.group.cycle.count;
   s.second_pcs = !s.second_pcs;
   place = {.system = group::CoordinateSystem::kPcs, .pcs = pcs, .pose = GripOn(own), .aux1 = own.aux1_target};
@@ -285,12 +335,11 @@ void RemoveWorkpiece(const Context& c, Order& order) noexcept {
   if (order.workpiece == 0) return;
   const Belt& belt = BeltOf(c, order);
   if (const Object* object = conveyor::Find(*belt.state, order.workpiece)) {
-    const KDL::Vector place = conveyor::PoseOf(*belt.params, *belt.state, *object).GetFrame().p;
+    const Object fetched = *object;
     for (std::uint32_t i = belt.state->count; i-- > 0 && order.own.same_within > 0;) {
       const Object& other = belt.state->objects[i];
-      if (other.state != conveyor::ObjectState::kVisible) continue;
-      const double apart = (conveyor::PoseOf(*belt.params, *belt.state, other).GetFrame().p - place).Norm();
-      if (apart <= order.own.same_within) conveyor::Remove(other.number, *belt.state);
+      if (other.state == conveyor::ObjectState::kDetected) continue;
+      if (Apart(belt, fetched, other) <= order.own.same_within) conveyor::Remove(other.number, *belt.state);
     }
     conveyor::Remove(order.workpiece, *belt.state);
   }
@@ -308,37 +357,34 @@ bool StaysWithin(const Context& c, const group::State& g, const Order& order, do
                              [&](double speed) { return IsSafe(c, g, order, place + speed * until_s, speed); });
 }
 
-void CountLeft(const Context& c, Order& order, State& s) noexcept {
-  if (order.left == 0) return;
-  const Belt& belt = BeltOf(c, order);
-  const Object* object = conveyor::Find(*belt.state, order.left);
-  if (object && IsInside(belt, order.own, conveyor::PlaceOf(*belt.params, *belt.state, *object))) return;
-  order.left = 0;
-  if (!object && CountsLost(s)) return;            // as one of those that the belt has lost
-  if (object) ++s.counted_before[order.belt - 1];  // the belt will lose it, too
-  ++s.counters.missed, ++s.counters.interrupted;
+void NoteLeft(const Order& order, bool refused, State& s) noexcept {
+  if (order.workpiece == 0) return;
+  if (FindLeft(order.belt, order.workpiece, s) < s.left_count) return;  // the first cause counts
+  if (s.left_count == kLeft) EraseLeft(0, s);
+  s.left[s.left_count++] = {order.belt, order.workpiece, refused, false};
 }
 
 void CountLost(const Context& c, State& s) noexcept {
-  const bool counts = CountsLost(s);
-  if (s.order_count > 0) CountLeft(c, s.orders[0], s);
-  for (std::size_t i = 0; i < c.params.belts.size(); ++i) {
-    const std::uint32_t lost = c.belts[i].state->lost, refused = c.belts[i].state->refused;
-    if (refused != s.refused_before[i]) {
+  for (std::uint32_t i = 0; i < c.params.belts.size(); ++i) {
+    const conveyor::State& belt = *c.belts[i].state;
+    if (belt.refused != s.refused_before[i]) {
       s.warning = ErrorId::kTooManyWorkpieces;
-      s.warning_belt = static_cast<std::uint32_t>(i + 1);
+      s.warning_belt = i + 1;
     }
-    s.refused_before[i] = refused;
-    // Of the belts of a tracking mode alone.
-    const bool ours = !s.loop.active || s.loop.pick_belt == i + 1 || s.loop.place_belt == i + 1;
-    const std::uint32_t known = std::min(lost - s.lost_before[i], s.counted_before[i]);
-    s.counted_before[i] -= known;
-    if (counts && ours) {
-      const std::uint32_t fresh = lost - s.lost_before[i] - known;
-      s.counters.too_late += fresh;
-      s.counters.missed += fresh;
+    s.refused_before[i] = belt.refused;
+    for (; s.lost_before[i] != belt.lost; ++s.lost_before[i]) {
+      CountLostObject(i + 1, belt.last_lost[s.lost_before[i] % conveyor::kObjects], s);
     }
-    s.lost_before[i] = lost;
+  }
+  for (std::uint32_t i = s.left_count; i-- > 0;) {
+    LeftWorkpiece& left = s.left[i];
+    const Belt& belt = c.belts[left.belt - 1];
+    const Object* object = conveyor::Find(*belt.state, left.number);
+    if (!object) {  // it was fetched by others
+      EraseLeft(i, s);
+    } else if (!IsInside(belt, s.belts[left.belt - 1], conveyor::PlaceOf(*belt.params, *belt.state, *object))) {
+      CountLeft(left, s);
+    }
   }
 }
 

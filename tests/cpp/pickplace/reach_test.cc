@@ -190,8 +190,7 @@ class RandomRun {
       const conveyor::Object& object = belt().objects[i];
       if (object.state != conveyor::ObjectState::kVisible) continue;
       if (conveyor::PlaceOf(cell_.belts[0].params, belt(), object) <= *cell_.belts[0].params.upper_limit) continue;
-      conveyor::Remove(object.number, belt());
-      ++belt().lost;
+      conveyor::Lose(object.number, belt());
     }
   }
 

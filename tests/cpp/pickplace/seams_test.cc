@@ -121,8 +121,7 @@ class SeamsRun {
       const conveyor::Object& object = belt.objects[i];
       const double along = conveyor::PlaceOf(cell_.belts[0].params, belt, object);
       if (object.state != conveyor::ObjectState::kVisible || (along <= kUpper && along >= kLower - 200)) continue;
-      conveyor::Remove(object.number, belt);
-      ++belt.lost;
+      conveyor::Lose(object.number, belt);
     }
   }
 
