@@ -52,7 +52,7 @@ ROBOTS = {
 }
 
 
-def machine(robot: Robot, extra: str = "") -> str:
+def machine(robot: Robot) -> str:
     """The robot, a belt and a table whose coordinate systems lie where its tool stands."""
     velocity, acceleration, jerk = robot.limits
     limits = f"{{velocity: {velocity}, acceleration: {acceleration}, jerk: {jerk}}}"
@@ -65,7 +65,7 @@ def machine(robot: Robot, extra: str = "") -> str:
         "  - {name: drive, unit: mm, limits: {velocity: 2000, acceleration: 5000, jerk: 100000}}\n"
         "  - {name: disc, unit: deg, kind: rotary, limits: {velocity: 400, acceleration: 2000, jerk: 40000}}\n"
         f"groups:\n  - name: robot\n    axes: [{', '.join('g' + name for name in robot.axes)}]\n"
-        f"    kinematics: {robot.kinematics}\n    path: {robot.path}\n{extra}"
+        f"    kinematics: {robot.kinematics}\n    path: {robot.path}\n    tracking: {{board: true}}\n"
         f"belts:\n  - {{name: belt, axis: drive, origin: {at}}}\n"
         f"  - {{name: table, kind: turning, axis: disc, origin: {beside}}}\n"
     )
@@ -74,9 +74,9 @@ def machine(robot: Robot, extra: str = "") -> str:
 class Cell:
     """A robot at rest, and a belt or table at speed whose coordinate system 1 is recorded now."""
 
-    def __init__(self, name: str, carrier: str, speed: float, extra: str = "") -> None:
+    def __init__(self, name: str, carrier: str, speed: float) -> None:
         self.robot = ROBOTS[name]
-        self.engine = takt.Engine(machine(self.robot, extra))
+        self.engine = takt.Engine(machine(self.robot))
         self.group = self.engine.group("robot")
         self.carrier = self.engine.axis({"belt": "drive", "table": "disc"}[carrier])
         for axis in self.engine.axes.values():

@@ -184,7 +184,7 @@ double LookAt(const Context& c, const State& s, const Start& start, Boarding& bo
 // The best way that keeps the limits. False: there is none.
 bool FindWay(const Context& c, const State& s, const Start& start, Way& best) {
   const trajectory::CoordinateLimits& own = c.ahead.window.limits();
-  const PathLimits& path = c.params.path;
+  const trajectory::AlongPath& path = c.ahead.next.limits;
   const double length = start.taken.p.v.Norm(), scale = length > 0 ? 1 / length : 1;
   trajectory::Limits limits = {HUGE_VAL, scale * path.acceleration, scale * path.acceleration, scale * path.jerk};
   for (std::size_t k = 0; k < own.count; ++k) {
@@ -219,6 +219,7 @@ bool FindWay(const Context& c, const State& s, const Start& start, Way& best) {
 }  // namespace
 
 bool MayBoard(const Context& c, const State& s) noexcept {
+  if (!c.params.tracking.board) return false;
   const Request& move = MoveAt(s, s.planning.move);
   const bool one_way =
       move.kind == MoveKind::kLinear || move.kind == MoveKind::kDirect || move.kind == MoveKind::kCircular;

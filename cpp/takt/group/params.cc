@@ -62,6 +62,7 @@ void describe(Description<TrackingParams>& d) {
   d.defaulted<&P::zones_ahead_s>(
       unit::s, between(0, 10),
       "So long beforehand a free zone is taken that the tool is carried into: nobody else goes there then.");
+  d.defaulted<&P::board>("From rest onto a belt or table at constant speed by time, while the path begins on it.");
 }
 
 void describe(Description<GroupParams>& d) {

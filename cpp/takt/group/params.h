@@ -52,6 +52,7 @@ struct TrackingParams {
   double tolerance_time_s = 0;    // for which the lag has to be within that
   bool override_in_sync = false;  // the override scales getting into sync, too
   double zones_ahead_s = 0.5;     // 0 to 10: so long before the tool is carried into a zone, it is taken
+  bool board = false;             // from rest onto a belt at constant speed by time, beside the path (boarding.h)
 };
 
 struct GroupParams {

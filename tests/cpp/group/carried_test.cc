@@ -93,6 +93,7 @@ TEST(Carried, GetsOntoABeltFromRestNearlyAsFastAsItsAxes) {
       gantry.gantry.emplace().axes = {Coordinate::kX, Coordinate::kY, Coordinate::kZ};
       const PathLimits free{.velocity = 4000, .acceleration = 60000, .deceleration = {}, .jerk = 3e6};
       Rig rig = Machine(gantry, {"x", "y", "z"}, {}, free);
+      rig.params.tracking.board = true;
       rig.StartAt({});
       const auto belts = Put(rig, {BeltAt("belt", {}, [speed = speed](double t) { return Steady(t, speed); })});
       const double now = static_cast<double>(rig.cycle.count) * rig.cycle.period_s * speed;
