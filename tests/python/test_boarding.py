@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import random
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 import takt
+from machines import new_url, running
 from takt.recording import Recording
 
 RUNS = 2000 if os.environ.get("TAKT_LONG") else 120
@@ -121,6 +123,13 @@ def off_target(run: Recording, cycle: int, target: dict[str, float]) -> float:
     return max(abs(float(robot[f"object_{axis}"][row]) - place) for axis, place in target.items())
 
 
+def ends_told(run: Recording, period: float) -> set[int]:
+    """The cycles in which the tool will stand, by all known values of time_left."""
+    cycles, left = run["robot"]["cycle"], run["robot"]["time_left"]
+    known = ~np.isnan(left)
+    return set((cycles[known] + np.round(left[known] / period)).astype(int))
+
+
 def test_random_boardings_keep_all_limits() -> None:
     """GR-40, GR-42: limits hold whatever comes between, and what is Done is on its place."""
     done = 0
@@ -190,22 +199,14 @@ def test_a_tool_is_taken_along_at_once(name: str, carrier: str) -> None:
         cycles.append(move.cycle - start)
         assert off_target(run, move.cycle, cell.target((0, 0, 60))) < 1e-6
     assert cycles[1] <= 1.15 * cycles[0]
-    robot = run["robot"]
-    known = np.flatnonzero(~np.isnan(robot["time_left"]))
-    ends = robot["cycle"][known] + np.round(robot["time_left"][known] / cell.engine.period)
-    assert len(known) > 10
-    assert np.all(ends == move.cycle)
+    assert ends_told(run, cell.engine.period) == {move.cycle}
 
 
 def test_time_left_counts_what_getting_into_step_takes() -> None:
-    """GR-42, GR-60: where that takes longer than the way, time_left is until the tool is in step."""
+    """GR-42: where that takes longer than the way, time_left is until the tool is in step."""
     cell = Cell("gantry", "belt", 500)
     move = cell.line((0, 12, 0)).wait()
-    robot = cell.judge(move.cycle)["robot"]
-    known = np.flatnonzero(~np.isnan(robot["time_left"]))
-    ends = robot["cycle"][known] + np.round(robot["time_left"][known] / cell.engine.period)
-    assert len(known) > 10
-    assert np.all(ends == move.cycle)
+    assert ends_told(cell.judge(move.cycle), cell.engine.period) == {move.cycle}
 
 
 def test_override_0_keeps_a_tool_where_it_is() -> None:
@@ -294,3 +295,60 @@ def test_another_object_is_reached_while_the_tool_boards() -> None:
         cell.engine.run(wait)
         move = cell.group.move_linear_absolute(x=-80, y=10, coordinate_system="pcs", pcs=2).wait()
         cell.judge(move.cycle)
+
+
+@pytest.mark.parametrize("wait", [0.001, 0.005, 0.015, 0.03, 0.06])
+@pytest.mark.parametrize("event", ["emergency stop", "power off", "axis off", "disable"])
+def test_nothing_goes_on_behind_what_switches_off(event: str, wait: float) -> None:
+    """GR-42, AX-100: at any instant of boarding; afterwards the tool boards again."""
+    cell = Cell("gantry", "belt", 200)
+    first = cell.line((30, 40, 0))
+    cell.engine.run(wait)
+    if event == "emergency stop":
+        cell.engine.emergency_stop(hold=True)
+    elif event == "power off":
+        cell.group.power(enable=False)
+    elif event == "axis off":
+        cell.engine.axis("gx").power(enable=False)
+    else:
+        cell.group.disable()
+    cell.engine.run(1.0)
+    assert first.final
+    assert not first.done
+    assert all(cell.engine.axis("g" + name).set_velocity == 0 for name in cell.robot.axes)
+    if event == "emergency stop":
+        assert cell.line((0, 0, 0)).wait_final().error
+        cell.engine.release_emergency_stop().wait()
+    cell.engine.run(0.1)
+    cell.group.reset()
+    cell.engine.run(0.1)
+    for axis in cell.engine.axes.values():
+        axis.reset()
+        axis.power()
+    cell.engine.run(0.5)
+    cell.group.enable()
+    cell.engine.run(0.1)
+    cell.group.move_linear_absolute(**cell.robot.begin).wait(timeout=3)
+    cell.carrier.move_velocity(velocity=150).wait(until="reached")
+    cell.engine.run(3.1)  # by then the belt is steady
+    cell.group.set_dyn_coord_transform(pcs=1, carrier="belt").wait()
+    assert cell.line((30, 40, 0)).wait(timeout=3).done
+
+
+def test_boarding_is_reproduced(tmp_path: Path) -> None:
+    """EN-07, GR-42: every cycle, bit for bit, and the states are in the log."""
+    url, log = new_url(), tmp_path / "run.lcm"
+    arguments = ("--log", str(log))
+    with running(tmp_path, url, *arguments, machine=machine(ROBOTS["gantry"])), takt.connect(url) as session:
+        group = session.group("robot")
+        for axis in session.axes.values():
+            axis.power().wait()
+        group.enable().wait()
+        session.axis("drive").move_velocity(velocity=150).wait(until="reached")
+        group.set_dyn_coord_transform(pcs=1, carrier="belt").wait()
+        group.move_linear_absolute(x=0, y=50, z=0, coordinate_system="pcs", pcs=1)
+        group.move_linear_absolute(x=40, y=0, z=0, coordinate_system="pcs", pcs=1, buffer_mode="buffered").wait()
+        group.stop().wait()
+    result = takt.replay(log)
+    assert result.same, result.sentence
+    assert {2, 3} <= set(np.unique(takt.read_log(log)["robot"]["track_state"]))

@@ -300,8 +300,8 @@ def test_what_an_override_makes_too_late_is_not_begun(engine: takt.Engine, by: s
         assert picker.workpiece == 0
 
 
-def test_what_is_lost_at_a_stop_is_counted_once(engine: takt.Engine) -> None:
-    """PP-63: a workpiece that a stop left behind counts as interrupted; the next one that is lost is missed, too."""
+def left_by_a_stop(engine: takt.Engine) -> tuple[takt.PickPlace, takt.Belt]:
+    """The module stopped on its way to the only workpiece, which the belt carries out of its range."""
     picker, belt = engine.pick_place("picker"), engine.belt("infeed")
     picker.configure_belt(lower_limit=10, upper_limit=400).wait()
     belt.axis.move_velocity(velocity=100).wait(until="reached")
@@ -310,6 +310,12 @@ def test_what_is_lost_at_a_stop_is_counted_once(engine: takt.Engine) -> None:
     engine.run(0.05)
     assert picker.workpiece == 1
     picker.control(stop_all=True)
+    return picker, belt
+
+
+def test_what_is_lost_at_a_stop_is_counted_once(engine: takt.Engine) -> None:
+    """PP-63: a workpiece that a stop left behind counts as interrupted; the next one that is lost is missed, too."""
+    picker, belt = left_by_a_stop(engine)
     engine.run(4.5)
     assert (picker.missed, picker.missed_interrupted, belt.lost_count) == (1, 1, 1)
     picker.control(stop_all=False)
@@ -715,14 +721,7 @@ def test_what_a_module_does_not_take_is_not_missed() -> None:
 
 def test_a_workpiece_that_a_stop_left_and_others_fetch_is_counted_by_its_number(engine: takt.Engine) -> None:
     """PP-63: the next one that is lost is missed, too."""
-    picker, belt = engine.pick_place("picker"), engine.belt("infeed")
-    picker.configure_belt(lower_limit=10, upper_limit=400).wait()
-    belt.axis.move_velocity(velocity=100).wait(until="reached")
-    belt.detect(x=220).wait()
-    picker.execute(1)
-    engine.run(0.05)
-    assert picker.workpiece == 1
-    picker.control(stop_all=True)
+    picker, belt = left_by_a_stop(engine)
     engine.run(2)
     assert (picker.missed_interrupted, belt.object_count) == (1, 1)
     belt.remove(number=1).wait()

@@ -36,14 +36,20 @@ def sharing(*of_each: str) -> str:
     return text
 
 
+def switched_on(session: takt.Session) -> tuple[takt.Belt, list[takt.PickPlace]]:
+    """The belt and all modules, with power."""
+    belt, pickers = session.belt("belt"), list(session.pick_places.values())
+    belt.axis.power().wait()
+    for picker in pickers:
+        picker.control(regulator_on=True).wait()
+    session.wait(lambda: all(p.axes_enabled and p.axes_group_enabled for p in pickers), 5)
+    return belt, pickers
+
+
 def shares(text: str, pitch: float, products: int = 30) -> tuple[list[int], int]:
     """How many each module picked of products that come every `pitch` mm, and how many the belt lost."""
     with takt.Engine(text) as session:
-        belt, pickers = session.belt("belt"), list(session.pick_places.values())
-        belt.axis.power().wait()
-        for picker in pickers:
-            picker.control(regulator_on=True).wait()
-        session.wait(lambda: all(p.axes_enabled and p.axes_group_enabled for p in pickers), 5)
+        belt, pickers = switched_on(session)
         for picker in pickers:
             picker.execute()
         belt.axis.move_velocity(velocity=100)
@@ -98,11 +104,7 @@ def test_a_product_that_was_seen_twice_is_fetched_once(of_each: tuple[str, str])
     """PP-66: the second module takes another one, where its range begins at that of the first."""
     text = sharing(*of_each).replace("lower_limit: 350, upper_limit: 550", "lower_limit: 50, upper_limit: 250")
     with takt.Engine(text) as session:
-        belt, pickers = session.belt("belt"), list(session.pick_places.values())
-        belt.axis.power().wait()
-        for picker in pickers:
-            picker.control(regulator_on=True).wait()
-        session.wait(lambda: all(p.axes_enabled and p.axes_group_enabled for p in pickers), 5)
+        belt, pickers = switched_on(session)
         belt.axis.move_velocity(velocity=60).wait(until="reached")
         for x in (100, 101):
             belt.detect(x=x)

@@ -42,8 +42,7 @@ bool IsWithin(const BeltParams& params, double place) noexcept;
 bool InRange(const BeltParams& params, const State& state, const Object& object) noexcept;
 // InRange and not taken.
 bool IsFree(const BeltParams& params, const State& state, const Object& object) noexcept;
-// The one that leaves the range first in the sense in which the belt moved last, of those that are free; null: there
-// is none.
+// Returns the object not taken that leaves the range first, by the direction of the belt's last motion; null: none.
 const Object* FirstFree(const BeltParams& params, const State& state) noexcept;
 
 // s until the object is at place x if the belt goes on as fast as now; 0: it is there. NaN: never.

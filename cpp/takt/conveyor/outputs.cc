@@ -19,10 +19,10 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::taken_count>("Those that somebody has taken.");
   d.internal<&O::in_range_count>("Those that lie within the work range.");
   d.internal<&O::last_number>("Number of the object detected last; 0: none yet.");
-  d.internal<&O::lost_count>("Objects that left the range and nobody had taken them, since the start.");
+  d.internal<&O::lost_count>("Objects that left the range without being taken, since the start.");
   d.internal<&O::refused_count>("Objects that found no room, since the start.");
   d.internal<&O::first_number>(
-      "Number of the object that leaves the range first, of those that nobody has taken, in the sense in which the "
+      "Number of the object that leaves the range first, of those not taken, in the sense in which the "
       "belt "
       "moved last; 0: there is none.");
   d.internal<&O::first_kind>("What that one is.");

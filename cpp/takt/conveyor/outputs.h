@@ -19,7 +19,7 @@ struct Outputs {
   std::uint32_t taken_count = 0;
   std::uint32_t in_range_count = 0;  // visible or taken, within the work range
   std::uint32_t last_number = 0;     // of the object detected last; 0: none yet
-  std::uint32_t lost_count = 0;      // left the range and nobody had taken them, since the start
+  std::uint32_t lost_count = 0;      // left the range without being taken, since the start
   std::uint32_t refused_count = 0;   // found no room, since the start
   // Of the objects in the range that nobody has taken the one that leaves it first. 0 and nan: there is none.
   std::uint32_t first_number = 0;

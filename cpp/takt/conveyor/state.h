@@ -57,7 +57,7 @@ struct State {
   std::array<Object, kObjects> objects;
   std::uint32_t count = 0;  // so many of them, in the order of their numbers
   std::uint32_t last_number = 0;
-  std::uint32_t lost = 0;                      // left the range and nobody had taken them
+  std::uint32_t lost = 0;                      // left the range without being taken
   std::array<LostObject, kObjects> last_lost;  // the n-th, from 0, is at n % kObjects
   std::uint32_t refused = 0;                   // did not find room
 };

@@ -98,7 +98,7 @@ bool PlanBoarding(const Context& c, const Start& start, double lead_share, Way& 
   return !ComeAboard(c.axes.Of(0).planner, v, way.limits, {way.lead, -v, 0}, way.boarding.apart).failed();
 }
 
-// How the path goes on while the tool boards, and behind that.
+// Estimates the time of the path while the tool boards and after that, and the reach.
 void WeighPath(const Context& c, const State& s, const Start& start, Way& way) {
   const trajectory::CoordinateLimits& own = c.ahead.window.limits();
   const Stretch& next = c.ahead.next;

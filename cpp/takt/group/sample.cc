@@ -52,7 +52,7 @@ bool SampleBegin(const Context& c, const Stretch& stretch, State& s) {
   return true;
 }
 
-// One node more. False: there the path cannot be gone.
+// Appends one node. Returns false where the path cannot be followed.
 bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s) {
   kinematics::Reason reason = kinematics::Reason::kNone;
   double failed_at = 0;
@@ -100,7 +100,7 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   return true;
 }
 
-// Whether the motion goes for a while as if the end that is known were no stop.
+// Returns whether the known end of the path does not yet slow the motion down.
 bool GoesFreely(const Context& c, const State& s) {
   if (const trajectory::PathTiming& timing = c.ahead.timing; timing.active()) {
     const Stretch& blend = c.ahead[c.ahead.end() - 2];
@@ -148,7 +148,7 @@ std::uint64_t SampledTo(const Context& c, const State& s) noexcept {
   const LookAhead& ahead = c.ahead;
   const bool more = s.planning.move < s.done + s.queue.count;
   if (ahead.cut_short || ahead.count == 0) return ahead.end();
-  // How the path goes over from ride to ride depends on where that ends.
+  // The transition between rides depends on where it ends.
   if (more && (s.planning.element > 0 || MoveAt(s, s.planning.move).blends())) {
     std::uint64_t open = ahead.end();
     while (open > ahead.first && IsTransition(ahead[open - 1]) && !ahead[open - 1].begun) --open;

@@ -16,8 +16,8 @@ bool GoesEvenly(const kinematics::Joints& before, const trajectory::PathSlopes& 
 // what is behind it, wait for that as long as there is time.
 std::uint64_t SampledTo(const Context& c, const State& s) noexcept;
 
-// Samples stretches up to there, within the budget of inverses. A path that cannot be gone on with ends where it was
-// sampled last (LookAhead::cut_short).
+// Samples stretches up to there, within the budget of inverses. A path that cannot be continued ends at the last node
+// (LookAhead::cut_short).
 void Sample(const Context& c, int& budget, State& s) noexcept;
 
 }  // namespace takt::group
