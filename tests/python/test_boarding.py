@@ -53,8 +53,10 @@ ROBOTS = {
     ),
 }
 
+GENTLE = Robot(("x", "y", "z"), (1500, 15000, 50000), "{gantry: {axes: [x, y, z]}}", FREE, {"x": 0, "y": 0, "z": 0})
 
-def machine(robot: Robot) -> str:
+
+def machine(robot: Robot, board: bool = True) -> str:
     """The robot, a belt and a table whose coordinate systems lie where its tool stands."""
     velocity, acceleration, jerk = robot.limits
     limits = f"{{velocity: {velocity}, acceleration: {acceleration}, jerk: {jerk}}}"
@@ -67,7 +69,7 @@ def machine(robot: Robot) -> str:
         "  - {name: drive, unit: mm, limits: {velocity: 2000, acceleration: 5000, jerk: 100000}}\n"
         "  - {name: disc, unit: deg, kind: rotary, limits: {velocity: 400, acceleration: 2000, jerk: 40000}}\n"
         f"groups:\n  - name: robot\n    axes: [{', '.join('g' + name for name in robot.axes)}]\n"
-        f"    kinematics: {robot.kinematics}\n    path: {robot.path}\n    tracking: {{board: true}}\n"
+        f"    kinematics: {robot.kinematics}\n    path: {robot.path}\n    tracking: {{board: {str(board).lower()}}}\n"
         f"belts:\n  - {{name: belt, axis: drive, origin: {at}}}\n"
         f"  - {{name: table, kind: turning, axis: disc, origin: {beside}}}\n"
     )
@@ -76,9 +78,9 @@ def machine(robot: Robot) -> str:
 class Cell:
     """A robot at rest, and a belt or table at speed whose coordinate system 1 is recorded now."""
 
-    def __init__(self, name: str, carrier: str, speed: float) -> None:
-        self.robot = ROBOTS[name]
-        self.engine = takt.Engine(machine(self.robot))
+    def __init__(self, robot: str | Robot, carrier: str, speed: float, board: bool = True) -> None:
+        self.robot = ROBOTS[robot] if isinstance(robot, str) else robot
+        self.engine = takt.Engine(machine(self.robot, board))
         self.group = self.engine.group("robot")
         self.carrier = self.engine.axis({"belt": "drive", "table": "disc"}[carrier])
         for axis in self.engine.axes.values():
@@ -263,6 +265,77 @@ def test_fast_belts_leave_the_axes_within_their_velocities(speed: float, by: tup
     cell = Cell("gantry", "belt", speed)
     move = cell.line(by).wait()
     assert off_target(cell.judge(move.cycle), move.cycle, cell.target(by)) < 1e-6
+
+
+@pytest.mark.parametrize("speed", [-200, -150, 115, 200])
+@pytest.mark.parametrize("by", [(0, 0, 60), (-3.6, 0, 2.1), (30, -20, 0)])
+def test_tables_that_turn_fast_leave_gentle_axes_in_step(speed: float, by: tuple[float, float, float]) -> None:
+    """GR-40, GR-42: where the jerk of the axes is little, and turning takes a large part of it."""
+    cell = Cell(GENTLE, "table", speed)
+    move = cell.line(by).wait()
+    assert off_target(cell.judge(move.cycle), move.cycle, cell.target(by)) < 1e-4
+
+
+@pytest.mark.parametrize("wait", [0.003, 0.008, 0.015, 0.025, 0.04])
+@pytest.mark.parametrize(("before", "after"), [(200, 250), (200, 150), (300, 600), (300, 0)])
+def test_a_belt_that_changes_its_velocity_while_the_tool_boards(before: float, after: float, wait: float) -> None:
+    """GR-40, GR-42: the path waits until the tool is in step with what the belt does now."""
+    for by in ((0, 0, 60), (-2, 0, 0), (50, 50, 0)):
+        cell = Cell("gantry", "belt", before)
+        move = cell.line(by)
+        cell.engine.run(wait)
+        if after:
+            cell.carrier.move_velocity(velocity=after)
+        else:
+            cell.carrier.halt()
+        move.wait()
+        cell.engine.run(1.0)
+        assert off_target(cell.judge(move.cycle), cell.engine.cycle - 1, cell.target(by)) < 1e-4
+
+
+def arc(cell: Cell) -> takt.Feedback:
+    target, middle = cell.target((0, 100, 0)), cell.target((50, 50, 0))
+    aux = {f"aux_{axis}": place for axis, place in middle.items()}
+    return cell.group.move_circular_absolute(coordinate_system="pcs", pcs=1, **target, **aux)
+
+
+WAYS: dict[str, Any] = {
+    "arc on a slow belt": ("belt", 3, arc),
+    "arc": ("belt", 150, arc),
+    "far away on a slow belt": ("belt", 50, lambda cell: cell.line((-300, 0, 0))),
+    "ahead on a fast belt": ("belt", 750, lambda cell: cell.line((300, 0, 0))),
+    "across a fast table": ("table", 120, lambda cell: cell.line((-150, 150, -80))),
+    "towards the middle of a table": ("table", 60, lambda cell: cell.line((0, -100, 0))),
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_boarding_is_chosen_where_it_is_faster(way: str) -> None:
+    """GR-42: no move takes longer for it, whatever its length, its shape and the velocity of the carrier."""
+    carrier, speed, command = WAYS[way]
+    times = []
+    for board in (False, True):
+        cell = Cell("gantry", carrier, speed, board)
+        start = cell.engine.now
+        move = command(cell).wait(timeout=5)
+        times.append(move.time_s - start)
+        cell.judge(move.cycle)
+    assert times[1] <= 1.06 * times[0]
+
+
+@pytest.mark.parametrize("by", [(200, 20, 0), (3, 20, 0), (0, 20, 60)])
+def test_a_move_behind_a_stop_has_all_limits_again(by: tuple[float, float, float]) -> None:
+    """GR-42: what boarding takes is not kept from the next move."""
+    times = []
+    for at_once in (True, False):
+        cell = Cell("gantry", "belt", 600)
+        first = cell.line((0, 20, 0))
+        if not at_once:
+            first.wait()
+        second = cell.line(by, buffer_mode="buffered").wait()
+        times.append(second.time_s - first.time_s)
+        cell.judge(second.cycle)
+    assert times[0] <= times[1] + 0.04
 
 
 @pytest.mark.parametrize("behind", [False, True])

@@ -2,15 +2,18 @@
 //
 // A move from rest to a place on such a carrier begins with boarding (TrackingParams::board): a clutch moves the tool
 // into step by a time-optimal profile along the carrier's travel, which may begin ahead of the carrier. The path lies
-// on the carrier from its beginning and starts at the same time. The profile is sampled through the kinematics: what it
-// takes of the velocity, acceleration and jerk of each coordinate is reserved from the path up to the place that the
-// path can have reached when the tool is in step (Boarding::reach). Profiles with several shares of the limits and
-// several leads are compared by the estimated time of the move.
+// on the carrier from its beginning and starts at the same time. What the profile takes of the velocity, acceleration
+// and jerk of each coordinate is reserved from the path up to the place that the path can have reached when the tool is
+// in step (Boarding::reach). Which profile it is: boarding_way.h. If the carrier changes its velocity meanwhile, the
+// path waits until the tool is in step.
 #pragma once
 
 #include "takt/group/group.h"
 
 namespace takt::group {
+
+// The path may become this much faster, or get so much further, than is estimated from where it begins.
+inline constexpr double kReachesFurther = 1.2;
 
 // Whether the tool may board for the move that is planned next, from rest: not where something has to be known before
 // the tool moves, nor where the carrier is not steady. Then the path has a transition between rides (rides.h).
@@ -22,6 +25,21 @@ bool CanBoard(const Context& c, const State& s) noexcept;
 // Begins to board; the move is planned anew from there. False: no profile keeps the limits, or the members cannot be
 // controlled; nothing was changed.
 bool Board(const Context& c, State& s) noexcept;
+
+// The boarding that the nodes of a stretch reckon with; nullptr: none.
+Boarding* BoardingOn(LookAhead& ahead, const Stretch& stretch) noexcept;
+
+// What boarding takes is reserved up to the place that the raw motion can have reached when the tool is in step, by the
+// bounds of the nodes themselves (Boarding::reach). Called where the nodes begin, ...
+void BeginReserve(const Context& c, Boarding& boarding) noexcept;
+// ... with the last node, before the next one is made; returns the place of that one at most, ...
+double FindReach(const trajectory::PathNode& last, Boarding& boarding) noexcept;
+// ... and with both.
+void PassNode(const Context& c, const trajectory::PathNode& last, const trajectory::PathNode& node,
+              Boarding& boarding) noexcept;
+// Returns a speed [mm/s] that the path does not exceed until then, about, by the bounds of a place.
+double SpeedBesideBoarding(const trajectory::PathPoint& point, const trajectory::CoordinateLimits& limits,
+                           double build_up_s, const Boarding& boarding) noexcept;
 
 // Ends boarding for a move that cannot be carried out that way: the tool stops, then the move is planned from rest with
 // a transition between rides.

@@ -26,7 +26,8 @@ constexpr double kJump = 2;             // of the way that the axes could go alo
 constexpr double kLeastClosing = 0.05;  // of the velocity, towards a carrier that is as fast itself
 constexpr double kCarriersOwn = 0.5;    // of the acceleration, at most
 constexpr double kLeastOverride = 0.01;
-constexpr double kBendShare = 0.4;  // of it, while a tool at rest catches up
+constexpr double kBendShare = 0.4;    // of it, while a tool at rest catches up
+constexpr double kChangeShare = 0.5;  // of the jerk, for a tool that boards when its carrier changes its velocity
 
 trajectory::Planner& PlannerOf(const Context& c, const State& s) {
   std::size_t place = 0;
@@ -81,7 +82,8 @@ trajectory::Limits Shared(trajectory::Limits limits, double share) {
 }
 
 trajectory::Limits LimitsNow(const Clutch& clutch, const State& s) {
-  return (clutch.coupled || clutch.boards) && !s.lets_go ? clutch.limits() : Shared(clutch.limits(), BrakeShare(s));
+  const bool alone = clutch.coupled || clutch.boards || clutch.reserved;
+  return alone && !s.lets_go ? clutch.limits() : Shared(clutch.limits(), BrakeShare(s));
 }
 
 KinematicState Less(const KinematicState& a, const KinematicState& b) {
@@ -112,9 +114,8 @@ KinematicState Closer(const Context& c, const State& s, const Clutch& clutch, co
                       const trajectory::Limits& limits) {
   trajectory::Planner& planner = PlannerOf(c, s);
   trajectory::Profile profile;
-  const bool boards = clutch.boards && carrier.acceleration == 0;
-  const Status status = boards ? ComeAboard(planner, carrier.velocity, limits, clutch.apart, profile)
-                               : ComeCloser(planner, carrier, limits, clutch.apart, profile);
+  const Status status = clutch.boards ? ComeAboard(planner, carrier.velocity, limits, clutch.apart, profile)
+                                      : ComeCloser(planner, carrier, limits, clutch.apart, profile);
   if (status.failed()) return clutch.apart;
   return profile.duration() > c.cycle.period_s ? profile.At(c.cycle.period_s) : KinematicState{};
 }
@@ -129,6 +130,13 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
   const double period = c.cycle.period_s;
   const TrackingParams& params = c.params.tracking;
   KinematicState demand = carrier;
+  // What the carrier does then was not reckoned with: the path waits.
+  if (clutch.boards && carrier.acceleration != 0) {
+    // Up to there it is left what it takes.
+    clutch.reserved = RestAt(c, s) < c.ahead.rides[clutch.ride % kRides].boarding.reach;
+    clutch.jerk *= kChangeShare;
+    EndBoarding(c, clutch);
+  }
   // A move that waits does not wait for a carrier that stands.
   if (carrier.velocity == 0 && s.queue.count > 0 && !s.lets_go) clutch.law_length = 0;
   const bool law = FollowLaw(carrier, s.lets_go, clutch, demand);
@@ -162,6 +170,7 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
     clutch.apart = Closer(c, s, clutch, carrier, catching_up);
     clutch.coupled = clutch.apart == KinematicState{};
     if (clutch.coupled || jumps) EndBoarding(c, clutch);
+    if (clutch.coupled) clutch.reserved = false;
     clutch.travel = clutch.coupled ? carrier : Sum(carrier, clutch.apart);
     return;
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "takt/group/boarding.h"
 #include "takt/group/jog.h"
 #include "takt/group/rides.h"
 #include "takt/path/arch.h"
@@ -20,6 +21,7 @@ constexpr double kSameTurn = 1e-4;
 constexpr double kBeltChange = 1.1;
 constexpr double kMostReserve = 0.9;  // of a limit
 constexpr int kReserveRounds = 3;
+constexpr int kBoardingRounds = 6;
 constexpr double kBegins =
     0.1;  // of the velocity share, kept of acceleration and jerk for a steady carrier that begins to change its speed
 constexpr double kBends = 1e-6;  // of the acceleration limit: less is rounding
@@ -333,35 +335,67 @@ trajectory::PathSlopes SlopesOf(const kinematics::JointMotion& motion) {
   return slopes;
 }
 
+// Shares of the limits of a coordinate.
+struct TakenShares {
+  double velocity = 0;
+  double acceleration = 0;
+  double jerk = 0;
+};
+
+TakenShares TakenBeside(const trajectory::CoordinateLimits::One& of, const CarrierPart& part, double speed,
+                        const Boarding* boarding, std::size_t k) {
+  const double own = kBeltChange * std::abs(part.velocity), own_bend = kBeltChange * std::abs(part.bend);
+  const double faster = boarding ? boarding->faster : 1;
+  const double over = kBeltChange * faster * 2 * std::abs(part.cross) * speed;
+  // Where the axes are not linear in the travel of the carrier, its part of the jerk is not known.
+  const double bends = (over + own_bend) / of.acceleration;
+  const double jerk = bends > kBends ? std::max(own / of.velocity, bends) : kBegins * own / of.velocity;
+  if (!boarding) return {own / of.velocity, bends, jerk};
+  return {std::max(own, boarding->velocity[k]) / of.velocity,
+          (over + std::max(own_bend, boarding->acceleration[k])) / of.acceleration, jerk + boarding->jerk[k] / of.jerk};
+}
+
+trajectory::Left LeftOf(const TakenShares& taken) {
+  const auto left = [](double share) { return 1 - std::min(share, kMostReserve); };
+  return {left(taken.velocity), left(taken.acceleration + kBegins * taken.velocity), left(taken.jerk)};
+}
+
 // Computes the share of each limit that the path may use: carriers use q_t of the velocity, q = q_s v + q_t, and
 // 2 q_st v + q_tt of the acceleration. An unsteady carrier may have to be braked together with the path: then the least
 // share over all axes and quantities holds for every one of them. A tool that boards takes its own part besides.
 void Reserve(const Context& c, const trajectory::PathSlopes& moving, const trajectory::PathSlopes& resting,
-             bool unsteady, const Boarding& boarding, trajectory::PathPoint& point) {
+             bool unsteady, const Boarding* boarding, trajectory::PathPoint& point) {
   const trajectory::CoordinateLimits& limits = c.ahead.window.limits();
-  const auto left = [](double taken) { return 1 - std::min(taken, kMostReserve); };
-  for (int round = 0; round < kReserveRounds; ++round) {
-    const double speed = std::sqrt(trajectory::SquareAt(point, limits, 1));
+  double speed = 0;
+  for (int round = 0; round < (boarding ? kBoardingRounds : kReserveRounds); ++round) {
+    const double before = speed;
+    speed = std::sqrt(trajectory::SquareAt(point, limits, 1));
+    if (boarding) {
+      const double attained = SpeedBesideBoarding(point, limits, c.ahead.window.build_up_s(), *boarding);
+      speed = std::min(speed, round == 0 ? attained : std::sqrt(before * attained));
+    }
     double most = 0;
     for (std::size_t k = 0; k < limits.count; ++k) {
       const trajectory::CoordinateLimits::One& of = limits.of[k];
       const double cross = 0.5 * (moving.second[k] - point.slopes.second[k] - resting.second[k]);
-      const double own = kBeltChange * std::abs(resting.first[k]), own_bend = kBeltChange * std::abs(resting.second[k]);
-      const double velocity = std::max(own, boarding.velocity[k]) / of.velocity;
-      const double over = kBeltChange * boarding.faster * 2 * std::abs(cross) * speed;
-      const double bend = (over + std::max(own_bend, boarding.acceleration[k])) / of.acceleration;
-      // Where the axes are not linear in the travel of the carrier, its part of the jerk is not known.
-      const double bends = (over + own_bend) / of.acceleration;
-      const double jerk = bends > kBends ? std::max(own / of.velocity, bends) : kBegins * own / of.velocity;
-      point.left[k] = {left(velocity), left(bend + kBegins * velocity), left(jerk + boarding.jerk[k] / of.jerk)};
-      most = std::max({most, velocity, bend});
-      c.ahead.load = std::max(c.ahead.load, own / of.velocity);
+      const TakenShares taken = TakenBeside(of, {resting.first[k], resting.second[k], cross}, speed, boarding, k);
+      point.left[k] = LeftOf(taken);
+      most = std::max({most, taken.velocity, taken.acceleration});
+      c.ahead.load = std::max(c.ahead.load, kBeltChange * std::abs(resting.first[k]) / of.velocity);
     }
-    if (unsteady) point.left.fill({left(most), left(most), left(most)});
+    if (unsteady) {
+      const double left = 1 - std::min(most, kMostReserve);
+      point.left.fill({left, left, left});
+    }
   }
 }
 
 }  // namespace
+
+trajectory::Left LeftBeside(const trajectory::CoordinateLimits::One& of, const CarrierPart& part, double speed,
+                            const Boarding* boarding, std::size_t k) noexcept {
+  return LeftOf(TakenBeside(of, part, speed, boarding, k));
+}
 
 trajectory::PathSlopes CoordinatesOf(const Context& c, const kinematics::JointMotion& motion,
                                      const path::MovingFrame& tool) noexcept {
@@ -404,12 +438,9 @@ kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& str
     if (reason != kinematics::Reason::kNone) return reason;
     with[i] = CoordinatesOf(c, moved, tool);
   }
-  // One of them at most: it begins from rest.
-  const Boarding& from = c.ahead.rides[stretch.from_ride % kRides].boarding;
-  const Boarding& boarding = from.on ? from : c.ahead.rides[stretch.to_ride % kRides].boarding;
-  const bool boards = boarding.on && stretch.begin + way - stretch.from < boarding.reach;
-  static constexpr Boarding kNone{};
-  Reserve(c, with[0], with[1], IsUnsteady(c, stretch), boards ? boarding : kNone, point);
+  const Boarding* boarding = BoardingOn(c.ahead, stretch);
+  const bool boards = boarding && stretch.begin + way - stretch.from < boarding->reach;
+  Reserve(c, with[0], with[1], IsUnsteady(c, stretch), boards ? boarding : nullptr, point);
   return reason;
 }
 

@@ -37,6 +37,17 @@ bool Foresee(const Context& c, const State& s, const KinematicState& along, doub
              trajectory::PathCoordinateValues& positions, trajectory::PathCoordinateValues& velocities,
              trajectory::PathCoordinateValues& accelerations) noexcept;
 
+// What carriers take of a coordinate: of its velocity, of its acceleration, and of that per speed of the path.
+struct CarrierPart {
+  double velocity = 0;
+  double bend = 0;
+  double cross = 0;
+};
+// Returns the shares of the limits of coordinate k that the path may use at a speed beside its carriers, and beside
+// boarding, which may be nullptr.
+trajectory::Left LeftBeside(const trajectory::CoordinateLimits::One& of, const CarrierPart& part, double speed,
+                            const Boarding* boarding = nullptr, std::size_t k = 0) noexcept;
+
 // Slopes of all coordinates of LimitsOf and what is left of their limits, and the axes.
 kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& stretch, double way,
                             const kinematics::Joints& near, trajectory::PathPoint& point,

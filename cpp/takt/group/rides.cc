@@ -214,11 +214,13 @@ MovingFrame PredictedTool(const Context& c, const Stretch& stretch, const Kinema
 }
 
 MovingFrame ToolIn(const Context& c, const Stretch& stretch, const KinematicState& way, double ahead_s) noexcept {
+  const double place = stretch.begin + way.position - stretch.from;
   return ToolOn(c.ahead, stretch, way, [&](std::uint64_t number) {
     const Ride& ride = RideAt(c.ahead, number);
     const double time_s = std::max(ahead_s, 1e-9);
     kinematics::Carrier carrier = CarrierOf(c, ride.cargo, time_s);
-    const KinematicState apart = ApartIn(c, ride, time_s);
+    // From some place on the tool is in step, whenever it gets there: behind a stop it waits for that.
+    const KinematicState apart = place < ride.boarding.reach ? ApartIn(c, ride, time_s) : KinematicState{};
     carrier.travel = {carrier.travel.position + apart.position, carrier.travel.velocity + apart.velocity,
                       carrier.travel.acceleration + apart.acceleration};
     return Displaced(ride, carrier);

@@ -311,7 +311,8 @@ void Sit(const Context& c, State& s) noexcept {
   const Stretch* stretch = Here(c, s);
   const double way = std::clamp(stretch->from + s.pace.now.position - stretch->begin, stretch->from, stretch->to);
   const std::uint64_t number = ShareAt(c.ahead, *stretch, way).position > 0 ? stretch->to_ride : stretch->from_ride;
-  const Ride ride = ahead.rides[number % kRides];
+  Ride ride = ahead.rides[number % kRides];
+  ride.boarding.earliest_s = NAN;
   path::Point place = path::PointAt(stretch->segment, way);
   if (s.rise.used) {  // as high as it is
     const KDL::Vector up = PlaceOf(c, ride.cargo).M.R.UnitZ();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/group/boarding.h"
 #include "takt/group/failures.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/plan.h"
@@ -39,6 +40,11 @@ bool SampleBegin(const Context& c, const Stretch& stretch, State& s) {
   trajectory::PathPoint point;
   point.s = stretch.begin;
   point.limits = stretch.limits;
+  const trajectory::PathWindow& window = c.ahead.window;
+  Boarding* boarding = BoardingOn(c.ahead, stretch);
+  // Behind a stop the path goes on when the tool is in step.
+  const bool behind_stop = window.end() > window.begin() && window[window.end() - 1].stop;
+  if (boarding && boarding->square > 0 && behind_stop) boarding->reach = point.s;
   kinematics::JointMotion motion;
   if (SlopesOn(c, s, stretch, stretch.from, c.ahead.last_joints, point, motion) != kinematics::Reason::kNone) {
     return false;
@@ -48,6 +54,7 @@ bool SampleBegin(const Context& c, const Stretch& stretch, State& s) {
   c.ahead.last_joints = motion.position;
   c.ahead.last = point;
   c.ahead.window.Append(point);
+  if (boarding) BeginReserve(c, *boarding);
   ++s.planning.nodes;
   return true;
 }
@@ -74,10 +81,13 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   }
   most = std::max(most, kLeastStep);
   double end = left < 1.5 * most ? stretch.end() : c.ahead.last.s + most;
-  // What boarding takes of the limits is free from there on.
-  const Boarding& from = c.ahead.rides[stretch.from_ride % kRides].boarding;
-  const Boarding& boarding = from.on ? from : c.ahead.rides[stretch.to_ride % kRides].boarding;
-  if (boarding.on && c.ahead.last.s < boarding.reach) end = std::min(end, boarding.reach);
+  // What boarding takes of the limits is free from some place on.
+  trajectory::PathWindow& window = c.ahead.window;
+  Boarding* boarding = BoardingOn(c.ahead, stretch);
+  if (boarding && c.ahead.last.s >= boarding->reach) boarding = nullptr;
+  if (boarding) {
+    end = std::clamp(FindReach(window[window.end() - 1], *boarding), std::min(c.ahead.last.s + kLeastStep, end), end);
+  }
   trajectory::PathPoint next;
   const auto bends = carried                       ? trajectory::HiddenBends::kIgnored
                      : c.params.path.planned_ahead ? trajectory::HiddenBends::kInJerk
@@ -95,7 +105,9 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   }
   c.ahead.last_joints = before.position;
   c.ahead.last = next;
-  c.ahead.window.Append(next, stretch.stops && next.s >= stretch.end());
+  next.renewed = boarding && next.s >= boarding->reach;
+  window.Append(next, stretch.stops && next.s >= stretch.end());
+  if (boarding) PassNode(c, window[window.end() - 2], window[window.end() - 1], *boarding);
   ++s.planning.nodes;
   return true;
 }

@@ -64,6 +64,7 @@ void describe(Description<Clutch>& d) {
   d.internal<&Clutch::travel>("Of the carrier, as far as the tool is concerned.");
   d.internal<&Clutch::catches_up>("The tool is on its way into step.");
   d.internal<&Clutch::boards>("From rest, and the path goes on meanwhile.");
+  d.internal<&Clutch::reserved>("The limits are not shared with the path.");
   d.internal<&Clutch::apart>("Of its travel from the carrier's, on that way.");
   d.internal<&Clutch::velocity>("Largest, of the travel.");
   d.internal<&Clutch::acceleration>("The same.");

@@ -60,6 +60,9 @@ struct PathPoint {
   // The second slopes halfway from the point before; without them they are taken for even.
   std::array<double, kPathCoordinates> middle{};
   bool has_middle = false;
+  // What is left at the places before does not hold here any more, however far the mean reaches (PathWindow): it was
+  // left for some time, which is over.
+  bool renewed = false;
 };
 
 // An acceleration that falls with the square of the speed.

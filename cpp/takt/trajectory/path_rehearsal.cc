@@ -46,6 +46,10 @@ void PathRehearsal::GoOn(const PathWindow& window) noexcept {
   free_until_ = window[window.free_until()].at.s;
 }
 
+double PathRehearsal::AheadOf(std::uint64_t cycle, double period_s) const noexcept {
+  return here_.cycle > cycle ? static_cast<double>(here_.cycle - cycle) * period_s : 0;
+}
+
 void PathRehearsal::StartFrom(const PathPace& pace, std::uint64_t cycle) noexcept {
   here_.pace = pace;
   here_.cycle = cycle;
@@ -77,7 +81,12 @@ bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, std
         EndTrouble(window, now, period_s);
       } else if (window[here_.pace.node].stop && here_.pace.node + 2 < window.known()) {
         BeginAt(window, here_.pace.node + 1, period_s, here_.pace);  // behind a stop the next motion begins
-        here_.accelerations.fill(0);
+        // The coordinates stood a cycle before, or what carries the path moved them.
+        const double before_s = std::max(0.0, AheadOf(cycle, period_s) - period_s);
+        PathCoordinateValues velocities;
+        const bool probed = probe.look && probe.look(probe.owner, here_.pace.now, before_s, here_.positions, velocities,
+                                                     here_.accelerations);
+        if (!probed) here_.accelerations.fill(0);
       } else {
         if (!weakened_) {
           through_ = true;
@@ -97,7 +106,7 @@ bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, std
       continue;
     }
     Advance(window, kFullSpeed, period_s, here_.pace);
-    const double ahead_s = here_.cycle > cycle ? static_cast<double>(here_.cycle - cycle) * period_s : 0;
+    const double ahead_s = AheadOf(cycle, period_s);
     ++here_.cycle;
     if (!measuring_) Look(window, before, ahead_s, period_s, probe);
     const double ahead = kBefore * here_.pace.raw.velocity * period_s * here_.pace.cycles;

@@ -45,6 +45,7 @@ class PathRehearsal {
     PathCoordinateValues accelerations{};
   };
 
+  double AheadOf(std::uint64_t cycle, double period_s) const noexcept;
   void StartFrom(const PathPace& pace, std::uint64_t cycle) noexcept;
   void Save() noexcept;
   void GoBack(const PathWindow& window) noexcept;

@@ -98,7 +98,7 @@ void PathWindow::Spread(std::uint64_t i) noexcept {
     lowest_ = std::min(lowest_, k - 1);
   }
   // No place further back than the fastest one reaches is slower and reaches as far.
-  for (std::uint64_t k = i; !IsFirst(k); --k) {
+  for (std::uint64_t k = i; !IsFirst(k) && !Node(k).at.renewed; --k) {
     const PathNode& before = Node(k - 1);
     const double distance = node.at.s - before.at.s;
     if (distance > reach) break;
