@@ -293,6 +293,45 @@ def test_a_belt_that_changes_its_velocity_while_the_tool_boards(before: float, a
         assert off_target(cell.judge(move.cycle), cell.engine.cycle - 1, cell.target(by)) < 1e-4
 
 
+@pytest.mark.parametrize("speed", [100, 400])
+@pytest.mark.parametrize("wait", [0.01, 0.02, 0.03, 0.04])
+def test_a_trifle_of_a_change_does_not_throw_the_tool_past_its_object(speed: float, wait: float) -> None:
+    """GR-40, GR-42: it comes nearer all the time, or overshoots by a few mm."""
+    cell = Cell("gantry", "belt", speed)
+    move = cell.line((0, 0, 60))
+    cell.engine.run(wait)
+    cell.carrier.move_velocity(velocity=1.0001 * speed)
+    move.wait()
+    lags = cell.judge(move.cycle)["robot"]["object_x"]
+    assert np.max(lags) <= 0.02 * speed
+    assert np.min(lags) >= -0.1 * speed
+
+
+@pytest.mark.parametrize("speed", [100, 300, 600])
+@pytest.mark.parametrize("wait", [0.01, 0.02, 0.03, 0.04])
+def test_an_interrupt_while_the_tool_boards_brakes_it_as_a_halt_does(speed: float, wait: float) -> None:
+    """GR-24, GR-42: and continue takes it to its place."""
+    ways = []
+    for interrupt in (False, True):
+        cell = Cell("gantry", "belt", speed)
+        move = cell.line((0, 0, 60))
+        cell.engine.run(wait)
+        x = cell.engine.axis("gx")
+        begin = x.set_position
+        (cell.group.interrupt if interrupt else cell.group.halt)()
+        for _ in range(1000):
+            cell.engine.run(0.001)
+            if x.set_velocity == 0:
+                break
+        ways.append(x.set_position - begin)
+        if interrupt:
+            cell.group.continue_path()
+            move.wait()
+            run = cell.judge(move.cycle)
+            assert off_target(run, move.cycle, cell.target((0, 0, 60))) < 1e-4
+    assert ways[1] <= 1.2 * ways[0] + 1
+
+
 def arc(cell: Cell) -> takt.Feedback:
     target, middle = cell.target((0, 100, 0)), cell.target((50, 50, 0))
     aux = {f"aux_{axis}": place for axis, place in middle.items()}
@@ -306,6 +345,7 @@ WAYS: dict[str, Any] = {
     "ahead on a fast belt": ("belt", 750, lambda cell: cell.line((300, 0, 0))),
     "across a fast table": ("table", 120, lambda cell: cell.line((-150, 150, -80))),
     "towards the middle of a table": ("table", 60, lambda cell: cell.line((0, -100, 0))),
+    "at a low velocity": ("belt", 600, lambda cell: cell.line((0, 0, 60), velocity=300, acceleration=2000, jerk=20000)),
 }
 
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "takt/group/boarding_way.h"
+#include "takt/group/boarding_plan.h"
 #include "takt/group/clutch.h"
 #include "takt/group/members.h"
 #include "takt/group/queue.h"
@@ -14,7 +14,7 @@ namespace takt::group {
 
 namespace {
 
-constexpr double kLastPart = 0.05;  // of the time that boarding takes
+constexpr double kLastPart = 0.05;  // of the boarding time
 
 const Ride& RideOf(const Context& c, std::uint64_t number) {
   return c.ahead.rides[number % kRides];
@@ -29,7 +29,7 @@ bool IsSteady(const Context& c, const Cargo& cargo) {
   return has_travel && !changes && carrier.travel.velocity != 0 && carrier.travel.acceleration == 0;
 }
 
-// Of the raw motion along the path.
+// Returns the largest acceleration of the raw motion along the path.
 double MostAcceleration(const trajectory::PathNode& node, double square) {
   return std::max(0.0, std::min(node.bounds.Most(square), node.bounds.strength.At(square)));
 }
@@ -58,24 +58,24 @@ bool CanBoard(const Context& c, const State& s) noexcept {
 bool Board(const Context& c, State& s) noexcept {
   LookAhead& ahead = c.ahead;
   const Ride to = RideOf(c, ahead.next.to_ride);
-  BoardingWay way;
-  if (!FindWay(c, s, to, way) || TakeMembers(c, s) != ErrorId::kNone) return false;
+  BoardingPlan plan;
+  if (!PlanBoarding(c, s, to, plan) || TakeMembers(c, s) != ErrorId::kNone) return false;
 
   s.boards = MoveAt(s, s.done).ticket;
-  Clutch& clutch = SitDown(c, to.cargo, way.carrier.position + way.lead, s);
-  clutch.apart = {way.lead, -way.carrier.velocity, 0};
+  Clutch& clutch = SitDown(c, to.cargo, plan.carrier.position + plan.lead, s);
+  clutch.apart = {plan.lead, -plan.carrier.velocity, 0};
   clutch.catches_up = clutch.boards = true;
-  SetLimits(way.limits, clutch);
+  SetLimits(plan.limits, clutch);
   Ride& ride = ahead.rides[clutch.ride % kRides];
-  ride.speed = way.carrier.velocity;
-  ride.boarding = way.boarding;
+  ride.speed = plan.carrier.velocity;
+  ride.boarding = plan.boarding;
   ride.boarding.on = true;
   ride.boarding.begin = c.cycle.count;
   return true;
 }
 
 Boarding* BoardingOn(LookAhead& ahead, const Stretch& stretch) noexcept {
-  // One of them at most: it begins from rest.
+  // One at most: boarding begins at rest.
   for (const std::uint64_t ride : {stretch.from_ride, stretch.to_ride}) {
     if (ahead.rides[ride % kRides].boarding.on) return &ahead.rides[ride % kRides].boarding;
   }
@@ -87,6 +87,13 @@ void BeginReserve(const Context& c, Boarding& boarding) noexcept {
   boarding.earliest_s = static_cast<double>(c.cycle.count - boarding.begin) * c.cycle.period_s;
   boarding.square = 0;
   boarding.reach = HUGE_VAL;
+}
+
+void CutReserve(const Context& c, const trajectory::PathNode& last, Boarding& boarding) noexcept {
+  if (last.at.s >= boarding.reach) return;
+  // What is known of the raw motion there: not before now, not faster than the node allows.
+  boarding.earliest_s = static_cast<double>(c.cycle.count - boarding.begin) * c.cycle.period_s;
+  boarding.square = last.own;
 }
 
 double SpeedBesideBoarding(const trajectory::PathPoint& point, const trajectory::CoordinateLimits& limits,
@@ -104,7 +111,7 @@ double FindReach(const trajectory::PathNode& last, Boarding& boarding) noexcept 
   const double most = std::max(std::sqrt(last.own), v);
   const double speeds_up_s = a > 0 ? std::min(left_s, (most - v) / a) : 0;
   boarding.reach = last.at.s + left_s * v + a * speeds_up_s * (left_s - 0.5 * speeds_up_s);
-  // Towards a node that may be faster the path speeds up before it: there must be one with the reserve close to it.
+  // Towards a faster node the path accelerates ahead of it: a node with the reserve must be close before that one.
   const bool as_fast = speeds_up_s < left_s && left_s > kLastPart * boarding.apart.duration();
   return as_fast ? 0.5 * (last.at.s + boarding.reach) : boarding.reach;
 }

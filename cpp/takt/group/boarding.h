@@ -4,7 +4,7 @@
 // into step by a time-optimal profile along the carrier's travel, which may begin ahead of the carrier. The path lies
 // on the carrier from its beginning and starts at the same time. What the profile takes of the velocity, acceleration
 // and jerk of each coordinate is reserved from the path up to the place that the path can have reached when the tool is
-// in step (Boarding::reach). Which profile it is: boarding_way.h. If the carrier changes its velocity meanwhile, the
+// in step (Boarding::reach). boarding_plan.h chooses the profile. If the carrier changes its velocity meanwhile, the
 // path waits until the tool is in step.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace takt::group {
 
-// The path may become this much faster, or get so much further, than is estimated from where it begins.
+// Margin on speed and distance along the path that are estimated from its beginning.
 inline constexpr double kReachesFurther = 1.2;
 
 // Whether the tool may board for the move that is planned next, from rest: not where something has to be known before
@@ -26,18 +26,20 @@ bool CanBoard(const Context& c, const State& s) noexcept;
 // controlled; nothing was changed.
 bool Board(const Context& c, State& s) noexcept;
 
-// The boarding that the nodes of a stretch reckon with; nullptr: none.
+// Returns the boarding that reserves limits on a stretch; nullptr if there is none.
 Boarding* BoardingOn(LookAhead& ahead, const Stretch& stretch) noexcept;
 
-// What boarding takes is reserved up to the place that the raw motion can have reached when the tool is in step, by the
-// bounds of the nodes themselves (Boarding::reach). Called where the nodes begin, ...
+// Boarding::reach is the arc length that the raw motion reaches at the earliest when the tool is in step, computed from
+// the bounds of the nodes as they are appended. Called at the first node, ...
 void BeginReserve(const Context& c, Boarding& boarding) noexcept;
-// ... with the last node, before the next one is made; returns the place of that one at most, ...
+// ... with the last node before the next is appended: returns an upper bound for the arc length of that one; ...
 double FindReach(const trajectory::PathNode& last, Boarding& boarding) noexcept;
 // ... and with both.
 void PassNode(const Context& c, const trajectory::PathNode& last, const trajectory::PathNode& node,
               Boarding& boarding) noexcept;
-// Returns a speed [mm/s] that the path does not exceed until then, about, by the bounds of a place.
+// ... and where the nodes behind one are removed.
+void CutReserve(const Context& c, const trajectory::PathNode& last, Boarding& boarding) noexcept;
+// Returns an upper bound of the path speed until the tool is in step, estimated from the bounds at a point [mm/s].
 double SpeedBesideBoarding(const trajectory::PathPoint& point, const trajectory::CoordinateLimits& limits,
                            double build_up_s, const Boarding& boarding) noexcept;
 

@@ -26,8 +26,9 @@ constexpr double kJump = 2;             // of the way that the axes could go alo
 constexpr double kLeastClosing = 0.05;  // of the velocity, towards a carrier that is as fast itself
 constexpr double kCarriersOwn = 0.5;    // of the acceleration, at most
 constexpr double kLeastOverride = 0.01;
-constexpr double kBendShare = 0.4;    // of it, while a tool at rest catches up
-constexpr double kChangeShare = 0.5;  // of the jerk, for a tool that boards when its carrier changes its velocity
+constexpr double kBendShare = 0.4;      // of it, while a tool at rest catches up
+constexpr double kChangeShare = 0.5;    // of the clutch's jerk; the carrier's own is added to it
+constexpr double kSlightChange = 0.03;  // of the clutch's acceleration and jerk: within the margins of boarding
 
 trajectory::Planner& PlannerOf(const Context& c, const State& s) {
   std::size_t place = 0;
@@ -82,8 +83,8 @@ trajectory::Limits Shared(trajectory::Limits limits, double share) {
 }
 
 trajectory::Limits LimitsNow(const Clutch& clutch, const State& s) {
-  const bool alone = clutch.coupled || clutch.boards || clutch.reserved;
-  return alone && !s.lets_go ? clutch.limits() : Shared(clutch.limits(), BrakeShare(s));
+  const bool alone = clutch.boards || clutch.reserved || (clutch.coupled && !s.lets_go);
+  return alone ? clutch.limits() : Shared(clutch.limits(), BrakeShare(s));
 }
 
 KinematicState Less(const KinematicState& a, const KinematicState& b) {
@@ -130,12 +131,16 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
   const double period = c.cycle.period_s;
   const TrackingParams& params = c.params.tracking;
   KinematicState demand = carrier;
-  // What the carrier does then was not reckoned with: the path waits.
-  if (clutch.boards && carrier.acceleration != 0) {
-    // Up to there it is left what it takes.
-    clutch.reserved = RestAt(c, s) < c.ahead.rides[clutch.ride % kRides].boarding.reach;
-    clutch.jerk *= kChangeShare;
+  // The path leaves boarding its part of the limits: the clutch keeps it until it is in step or at rest, or it could
+  // not take its acceleration back in time.
+  if (clutch.boards) clutch.reserved = true;
+  // Boarding was planned for a constant velocity of the carrier: now the path waits.
+  const double change = carrier.acceleration - (clutch.travel.acceleration - clutch.apart.acceleration);
+  const bool slight = std::abs(carrier.acceleration) <= kSlightChange * clutch.acceleration &&
+                      std::abs(change) <= kSlightChange * clutch.jerk * period;
+  if (clutch.boards && !slight) {
     EndBoarding(c, clutch);
+    clutch.jerk *= kChangeShare;
   }
   // A move that waits does not wait for a carrier that stands.
   if (carrier.velocity == 0 && s.queue.count > 0 && !s.lets_go) clutch.law_length = 0;
@@ -194,6 +199,7 @@ void StepOne(const Context& c, const Stretch& stretch, double way, std::uint64_t
     if (!s.lets_go && !clutch->coupled && !clutch->boards && stands) {
       const double way_to_go = carrier.travel.position - clutch->travel.position;
       SetLimits(LimitsAlong(c, s, stretch, way, number, clutch->travel, way_to_go), *clutch);
+      clutch->reserved = false;
     }
     return Drive(c, s, carrier.travel, *clutch);
   }

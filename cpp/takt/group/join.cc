@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/group/boarding.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/queue.h"
 #include "takt/group/rides.h"
@@ -175,6 +176,7 @@ bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch
   }
   if (shorter) {
     window.CutBehind(node);
+    if (Boarding* boarding = BoardingOn(ahead, ahead[stretch])) CutReserve(c, window[node], *boarding);
     if (end.s > window[node].at.s) {
       window.Append(end);
       window.Close();

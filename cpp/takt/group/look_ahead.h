@@ -37,8 +37,8 @@ struct Boarding {
   trajectory::PathCoordinateValues jerk{};
   double faster = 1;  // the largest velocity of the tool's travel, of the carrier's
   double reach = 0;   // ... before this place along the path [mm]: the path is not further when it ends
-  // The raw motion along the path at the last node (boarding.h): when it is there at the earliest, since the beginning
-  // [s], and the largest square of its speed there. NaN: no node is made yet.
+  // At the last node: earliest time of the raw motion since the begin of boarding [s] (NaN: no node yet), and its
+  // largest squared speed.
   double earliest_s = NAN;
   double square = 0;
 };

@@ -335,7 +335,7 @@ trajectory::PathSlopes SlopesOf(const kinematics::JointMotion& motion) {
   return slopes;
 }
 
-// Shares of the limits of a coordinate.
+// Used shares of the limits of a coordinate.
 struct TakenShares {
   double velocity = 0;
   double acceleration = 0;

@@ -37,14 +37,15 @@ bool Foresee(const Context& c, const State& s, const KinematicState& along, doub
              trajectory::PathCoordinateValues& positions, trajectory::PathCoordinateValues& velocities,
              trajectory::PathCoordinateValues& accelerations) noexcept;
 
-// What carriers take of a coordinate: of its velocity, of its acceleration, and of that per speed of the path.
+// Use of a coordinate by carriers: velocity, acceleration by the curvature along their travel, and mixed acceleration
+// per path speed.
 struct CarrierPart {
   double velocity = 0;
   double bend = 0;
   double cross = 0;
 };
-// Returns the shares of the limits of coordinate k that the path may use at a speed beside its carriers, and beside
-// boarding, which may be nullptr.
+// Returns the shares of the limits of coordinate k that remain for the path at this path speed, after carriers and, if
+// not nullptr, boarding.
 trajectory::Left LeftBeside(const trajectory::CoordinateLimits::One& of, const CarrierPart& part, double speed,
                             const Boarding* boarding = nullptr, std::size_t k = 0) noexcept;
 

@@ -219,7 +219,7 @@ MovingFrame ToolIn(const Context& c, const Stretch& stretch, const KinematicStat
     const Ride& ride = RideAt(c.ahead, number);
     const double time_s = std::max(ahead_s, 1e-9);
     kinematics::Carrier carrier = CarrierOf(c, ride.cargo, time_s);
-    // From some place on the tool is in step, whenever it gets there: behind a stop it waits for that.
+    // From `reach` on the tool is in step: behind a stop the path waits for that.
     const KinematicState apart = place < ride.boarding.reach ? ApartIn(c, ride, time_s) : KinematicState{};
     carrier.travel = {carrier.travel.position + apart.position, carrier.travel.velocity + apart.velocity,
                       carrier.travel.acceleration + apart.acceleration};

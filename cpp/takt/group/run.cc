@@ -238,7 +238,9 @@ bool Advance(const Context& c, State& s) noexcept {
     // Behind a stop the next motion begins.
     const std::uint64_t next = s.pace.node + 1;
     const trajectory::PathWindow& window = c.ahead.window;
-    const bool boards = s.pace.now.position == 0 && std::ranges::any_of(s.clutches, &Clutch::boards);
+    // The move for which the tool boards begins meanwhile, others when it is in step.
+    const bool begins = s.pace.now.position == 0 && s.queue.count > 0 && s.boards == MoveAt(s, s.done).ticket;
+    const bool boards = begins && std::ranges::any_of(s.clutches, &Clutch::boards);
     const bool waits = !boards && ToolLags(c, s);
     if (window[s.pace.node].stop && next + 1 < window.known() && window.swept() && !waits) {
       trajectory::BeginAt(window, next, c.cycle.period_s, s.pace);

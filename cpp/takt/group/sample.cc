@@ -42,7 +42,7 @@ bool SampleBegin(const Context& c, const Stretch& stretch, State& s) {
   point.limits = stretch.limits;
   const trajectory::PathWindow& window = c.ahead.window;
   Boarding* boarding = BoardingOn(c.ahead, stretch);
-  // Behind a stop the path goes on when the tool is in step.
+  // Behind a stop the path begins when the tool is in step.
   const bool behind_stop = window.end() > window.begin() && window[window.end() - 1].stop;
   if (boarding && boarding->square > 0 && behind_stop) boarding->reach = point.s;
   kinematics::JointMotion motion;
@@ -81,7 +81,7 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   }
   most = std::max(most, kLeastStep);
   double end = left < 1.5 * most ? stretch.end() : c.ahead.last.s + most;
-  // What boarding takes of the limits is free from some place on.
+  // Boarding reserves limits up to an arc length.
   trajectory::PathWindow& window = c.ahead.window;
   Boarding* boarding = BoardingOn(c.ahead, stretch);
   if (boarding && c.ahead.last.s >= boarding->reach) boarding = nullptr;

@@ -55,7 +55,7 @@ struct Clutch {
   KinematicState travel;    // mm or rad
   bool catches_up = false;  // the tool is on its way into step
   bool boards = false;      // from rest, and the path goes on meanwhile (boarding.h)
-  bool reserved = false;    // what it takes is left by the path, which waits (boarding.h)
+  bool reserved = false;    // the path leaves it its limits and waits (boarding.h)
   KinematicState apart;     // how far its travel is from the carrier's then, and how that changes
   // Of the travel.
   double velocity = 0;

@@ -60,8 +60,8 @@ struct PathPoint {
   // The second slopes halfway from the point before; without them they are taken for even.
   std::array<double, kPathCoordinates> middle{};
   bool has_middle = false;
-  // What is left at the places before does not hold here any more, however far the mean reaches (PathWindow): it was
-  // left for some time, which is over.
+  // Limits reserved at earlier points end here and are not spread any further (PathWindow): they were reserved for a
+  // time that is over when the raw motion arrives.
   bool renewed = false;
 };
 

@@ -81,7 +81,7 @@ bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, std
         EndTrouble(window, now, period_s);
       } else if (window[here_.pace.node].stop && here_.pace.node + 2 < window.known()) {
         BeginAt(window, here_.pace.node + 1, period_s, here_.pace);  // behind a stop the next motion begins
-        // The coordinates stood a cycle before, or what carries the path moved them.
+        // Accelerations in the cycle before: 0, or those of the carriers.
         const double before_s = std::max(0.0, AheadOf(cycle, period_s) - period_s);
         PathCoordinateValues velocities;
         const bool probed = probe.look && probe.look(probe.owner, here_.pace.now, before_s, here_.positions, velocities,
