@@ -378,6 +378,24 @@ def test_a_move_behind_a_stop_has_all_limits_again(by: tuple[float, float, float
     assert times[0] <= times[1] + 0.04
 
 
+@pytest.mark.parametrize("speed", [60, 90, 120])
+@pytest.mark.parametrize("board", [False, True])
+def test_moves_on_a_table_take_no_longer_given_at_once_than_one_by_one(board: bool, speed: float) -> None:
+    """GR-22, GR-42: the table moves the axes of a tool that stands on it; the look-ahead behind a stop knows that."""
+    times = []
+    for at_once in (True, False):
+        cell = Cell(GENTLE._replace(limits=(1500, 15000, 150000)), "table", speed, board)
+        cell.line((0, 0, 40)).wait()
+        start = cell.engine.now
+        for by in ((30, 0, 40), (30, 30, 40), (0, 30, 40)):
+            move = cell.line(by, buffer_mode="buffered")
+            if not at_once:
+                move.wait()
+        times.append(move.wait().time_s - start)
+        cell.judge(move.cycle)
+    assert times[0] <= 1.02 * times[1]
+
+
 @pytest.mark.parametrize("behind", [False, True])
 def test_a_refused_move_leaves_the_tool_at_rest(behind: bool) -> None:
     """GR-40, GR-42: towards a belt that comes from beyond the range of an axis; nothing rides on behind the error."""
@@ -412,10 +430,14 @@ def test_another_object_is_reached_while_the_tool_boards() -> None:
 
 @pytest.mark.parametrize("wait", [0.001, 0.005, 0.015, 0.03, 0.06])
 @pytest.mark.parametrize("event", ["emergency stop", "power off", "axis off", "disable"])
-def test_nothing_goes_on_behind_what_switches_off(event: str, wait: float) -> None:
-    """GR-42, AX-100: at any instant of boarding; afterwards the tool boards again."""
+@pytest.mark.parametrize("changes", [False, True])
+def test_nothing_goes_on_behind_what_switches_off(changes: bool, event: str, wait: float) -> None:
+    """GR-42, AX-100: at any instant of boarding, also when the belt has ended it; afterwards the tool boards again."""
     cell = Cell("gantry", "belt", 200)
     first = cell.line((30, 40, 0))
+    if changes:
+        cell.engine.run(0.003)
+        cell.carrier.move_velocity(velocity=300)
     cell.engine.run(wait)
     if event == "emergency stop":
         cell.engine.emergency_stop(hold=True)
