@@ -49,7 +49,7 @@ std::size_t DriveGate::DriveOf(std::uint32_t axis) const {
 
 void DriveGate::OnSent(const engine::DriveSetPoint& set_point) {
   Sent& sent = sent_[DriveOf(set_point.axis)];
-  if (sent.cycle.exchange(set_point.cycle) == set_point.cycle) sent.again = set_point.cycle;
+  if (sent.cycle.exchange(set_point.cycle) == set_point.cycle) sent.AgainAt(set_point.cycle) = set_point.cycle;
 }
 
 std::optional<engine::DriveSample> DriveGate::Take(std::string_view channel, std::span<const std::uint8_t> bytes) {
@@ -65,7 +65,7 @@ std::optional<engine::DriveSample> DriveGate::Take(std::string_view channel, std
   }
   const auto index = static_cast<std::size_t>(drive - drives_.begin());
   if (const std::optional<Refusal> refusal = WhyNot(*message, index)) {
-    const bool asked_for = refusal->reason == Reason::kOld && message->cycle == sent_[index].again;
+    const bool asked_for = refusal->reason == Reason::kOld && message->cycle == sent_[index].AgainAt(message->cycle);
     if (!asked_for) Say(channel, *refusal);
     return {};
   }

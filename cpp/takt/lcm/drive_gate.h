@@ -2,6 +2,7 @@
 // whether its numbers are numbers. No LCM in here.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -43,6 +44,7 @@ class DriveGate {
 
  private:
   static constexpr std::int64_t kNothing = -2;  // no cycle yet
+  static constexpr std::size_t kAskedAgain = 16;
 
   struct Drive {
     std::uint32_t axis = 0;
@@ -54,8 +56,15 @@ class DriveGate {
 
   // Newest set point that went out; how it was given before.
   struct Sent {
+    Sent() {
+      for (auto& cycle_again : again) cycle_again = kNothing;
+    }
+    std::atomic<std::int64_t>& AgainAt(std::int64_t at) { return again[static_cast<std::size_t>(at) % kAskedAgain]; }
+
     std::atomic<std::int64_t> cycle{kNothing};
-    std::atomic<std::int64_t> again{kNothing};  // this cycle's went out more than once: its answer may, too
+    // Cycles whose set point went out more than once, as may their answers; each at its place. On a busy host an answer
+    // comes when those of later cycles were asked for again, too.
+    std::array<std::atomic<std::int64_t>, kAskedAgain> again{};
   };
   enum class Reason : std::uint8_t { kChannel, kType, kAxis, kRun, kFuture, kNumber, kPlant, kOld };
   struct Refusal {
