@@ -1,6 +1,7 @@
 #include "takt/group/join.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "takt/group/boarding.h"
@@ -68,9 +69,11 @@ bool MakeBlend(const Context& c, const Stretch& before, const Stretch& after, do
                      RampOf(c, before, after)) == path::Problem::kNone;
 }
 
-// The slowest speed, squared, that the limits ask for on a blend; negative where it cannot be gone.
-double SquareOn(const Context& c, const State& s, const Stretch& blend) {
-  double square = std::numeric_limits<double>::infinity();
+// Squares of the speeds that the limits ask for on a blend, at equal distances.
+using Squares = std::array<double, kBlendPlaces + 1>;
+
+// The least of them; negative where the blend cannot be gone.
+double SquareOn(const Context& c, const State& s, const Stretch& blend, Squares& squares) {
   kinematics::Joints near = c.ahead.end_joints;
   for (int i = 0; i <= kBlendPlaces; ++i) {
     trajectory::PathPoint point;
@@ -79,9 +82,9 @@ double SquareOn(const Context& c, const State& s, const Stretch& blend) {
     const double way = blend.segment.length * i / kBlendPlaces;
     if (SlopesOn(c, s, blend, way, near, point, motion) != kinematics::Reason::kNone) return -1;
     near = motion.position;
-    square = std::min(square, trajectory::SquareAt(point, c.ahead.window.limits(), 1));
+    squares[static_cast<std::size_t>(i)] = trajectory::SquareAt(point, c.ahead.window.limits(), 1);
   }
-  return square;
+  return *std::ranges::min_element(squares);
 }
 
 // From the corner; 0: there is no transition.
@@ -115,7 +118,8 @@ Distances DistancesOf(const Context& c, const State& s, const Request& move, con
         const double d = 0.5 * (short_of + enough);
         work += kBlendPlaces + 1;
         const bool made = MakeBlend(c, before, after, d, d, blend.segment);
-        (made && SquareOn(c, s, blend) >= parameter * parameter ? enough : short_of) = d;
+        Squares squares;
+        (made && SquareOn(c, s, blend, squares) >= parameter * parameter ? enough : short_of) = d;
       }
       return both(enough);
     }
@@ -124,13 +128,15 @@ Distances DistancesOf(const Context& c, const State& s, const Request& move, con
   }
 }
 
-// Whether the motion can still stop at a place, at a node or between it and the next one.
-bool CanStopAt(const trajectory::PathWindow& window, const trajectory::PathPace& pace, std::uint64_t node,
-               double place) {
-  if (pace.raw_stands) return pace.node < node;
-  double square = 0;
+// Whether the motion can still come down to the square of a speed at a place.
+bool CanSlowDown(const trajectory::PathWindow& window, const trajectory::PathPace& pace, double place, double square,
+                 double period_s) {
+  if (pace.raw_stands) return place > pace.raw.position;
+  const KinematicState from = trajectory::OnceBraking(window, pace, period_s);
   double later = place;
-  for (std::uint64_t i = place > window[node].at.s ? node + 1 : node; i > pace.node + 1; --i) {
+  std::uint64_t i = window.end();
+  while (i > pace.node + 1 && window[i - 1].at.s >= place) --i;
+  for (; i > pace.node + 1 && window[i - 1].at.s > from.position; --i) {
     const trajectory::PathNode& before = window[i - 1];
     const double length = later - before.at.s;
     square = length > 0 ? trajectory::SquareBefore(before.bounds, length, square, before.ceiling)
@@ -138,15 +144,32 @@ bool CanStopAt(const trajectory::PathWindow& window, const trajectory::PathPace&
     if (square >= before.ceiling) return true;
     later = before.at.s;
   }
-  const double v = pace.raw.velocity;
-  const double left = later - pace.raw.position;
+  const double v = from.velocity;
+  const double left = later - from.position;
   // It may go by the ceiling itself.
-  return left > 0 && v * v + 2 * left * window[pace.node].bounds.Least(pace.entered) <= square * (1 + kRounding);
+  return left > 0 && v * v + 2 * left * window[i - 1].bounds.Least(pace.entered) <= square * (1 + kRounding);
 }
 
-// Takes back what is planned behind a place, to be sampled again from a stretch on, if the motion can still stop
-// before.
-bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch) {
+// Whether the motion can still stop where a blend begins, and is slow enough for it as early as the mean needs: that
+// reaches back from each place of the blend by half the time over which it is taken.
+bool CanGoOnto(const Context& c, const State& s, double place, const Stretch& blend, const Squares& squares) {
+  const trajectory::PathWindow& window = c.ahead.window;
+  const auto slow_enough = [&](double at, double square) {
+    return CanSlowDown(window, s.pace, at, square, c.cycle.period_s);
+  };
+  if (!slow_enough(place, 0)) return false;
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    const double way = blend.segment.length * static_cast<double>(i) / kBlendPlaces;
+    const double at = place + way - 0.5 * blend.build_up_s * std::sqrt(squares[i]);
+    if (at < place && !slow_enough(at, squares[i])) return false;
+  }
+  return true;
+}
+
+// Takes back what is planned behind a place, to be sampled again from a stretch on, if the motion can still go onto
+// the blend that begins there.
+bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch, const Stretch& blend,
+           const Squares& squares) {
   LookAhead& ahead = c.ahead;
   if (!ahead[stretch].begun) return true;  // there are no nodes of it yet: it waited for this
   trajectory::PathWindow& window = ahead.window;
@@ -170,9 +193,9 @@ bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch
     if (place > end.s) end = there;
   }
   if (s.begun) {
-    const bool stops =
-        ahead.timing.active() ? ahead.timing.StopBefore(window, end.s, s.pace) : CanStopAt(window, s.pace, node, end.s);
-    if (!stops) return false;
+    const bool can = ahead.timing.active() ? ahead.timing.StopBefore(window, end.s, s.pace)
+                                           : CanGoOnto(c, s, end.s, blend, squares);
+    if (!can) return false;
   }
   if (shorter) {
     window.CutBehind(node);
@@ -257,8 +280,9 @@ bool GoOnFromLastCorner(const Context& c, const State& s, const CornerBlend& d, 
     if (made || *bend == path::Triple{}) break;
   }
   work += 2 * (kBlendPlaces + 1);
-  if (!made || !(SquareOn(c, s, last) > 0) || !(SquareOn(c, s, blend) > 0)) return false;
-  if (!CutAt(c, s, last.begin, last_one)) return false;
+  Squares on_last, on_blend;
+  if (!made || !(SquareOn(c, s, last, on_last) > 0) || !(SquareOn(c, s, blend, on_blend) > 0)) return false;
+  if (!CutAt(c, s, last.begin, last_one, last, on_last)) return false;
   last.to = last.segment.length;
   ahead[last_one] = last;
   --ahead.count;  // nothing is left of the line
@@ -311,11 +335,11 @@ bool FindDistances(const Context& c, const State& s, const Request& move, std::u
 }
 
 bool MakeSegment(const Context& c, const State& s, const Stretch& before, const Stretch& after, int& work,
-                 CornerBlend& out) {
+                 CornerBlend& out, Squares& squares) {
   work += kBlendPlaces + 1;
   if (!MakeBlend(c, before, after, out.first, out.second, out.stretch.segment)) return false;
   out.stretch.to = out.stretch.segment.length;
-  return SquareOn(c, s, out.stretch) > 0;
+  return SquareOn(c, s, out.stretch, squares) > 0;
 }
 
 bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, int& work) {
@@ -324,9 +348,10 @@ bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, 
   if (!FindDistances(c, s, move, s.planning.element, before, ahead.next, work, blend)) return false;
   if (GoOnFromLastCorner(c, s, blend, work)) return true;
   ahead.corner.open = false;
-  if (!MakeSegment(c, s, before, ahead.next, work, blend)) return false;
+  Squares squares;
+  if (!MakeSegment(c, s, before, ahead.next, work, blend, squares)) return false;
   const double cut = before.to - blend.first;
-  if (!CutAt(c, s, before.begin + (cut - before.from), ahead.end() - 1)) return false;
+  if (!CutAt(c, s, before.begin + (cut - before.from), ahead.end() - 1, blend.stretch, squares)) return false;
   before.to = cut;
   SettleRide(ahead, false, 0);
   ahead.next.from = blend.second;
@@ -339,7 +364,9 @@ bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, 
 
 bool FindBlend(const Context& c, const State& s, const Request& move, std::uint32_t element, const Stretch& before,
                const Stretch& after, int& work, CornerBlend& out) noexcept {
-  return FindDistances(c, s, move, element, before, after, work, out) && MakeSegment(c, s, before, after, work, out);
+  Squares squares;
+  return FindDistances(c, s, move, element, before, after, work, out) &&
+         MakeSegment(c, s, before, after, work, out, squares);
 }
 
 int Join(const Context& c, State& s) noexcept {

@@ -16,10 +16,12 @@ inline constexpr std::size_t kMostBuildUpCycles = 200;
 
 // The raw motion in one cycle.
 struct PathCycle {
-  double position = 0;      // at its beginning
-  double velocity = 0;      // the same
-  double acceleration = 0;  // its mean
-  double ahead = 0;         // the mean of the position less that at the beginning
+  double position = 0;  // at its beginning
+  double velocity = 0;  // the same
+  // Within it: it changes at nodes.
+  double least_acceleration = 0;
+  double most_acceleration = 0;
+  double ahead = 0;  // the mean of the position less that at the beginning
 };
 
 struct PathPace {
@@ -53,6 +55,10 @@ void Advance(const PathWindow& window, double wish, double period_s, PathPace& p
 
 // Whether it stays beneath the ceilings with an acceleration that changes no faster than it may.
 bool GoesOn(const PathWindow& window, const PathPace& pace, double period_s) noexcept;
+
+// The raw motion if it brakes from now on: when it brakes as hard as it may. What the mean holds of speeding up puts
+// that off by up to the time that accelerations take to build up.
+KinematicState OnceBraking(const PathWindow& window, const PathPace& pace, double period_s) noexcept;
 
 // It stands, and so does the raw motion.
 bool Stands(const PathPace& pace) noexcept;
