@@ -124,10 +124,22 @@ def _rate(hz: float) -> float:
     return max(float(hz), 0.1)
 
 
+_PORTS = (20_000, 32_000)  # below those that systems give away by themselves
+_TRIES = 5
+
+
 def free_url() -> str:
-    """A network that stays on this host, on a port nobody else is likely to use, with room for a burst."""
-    url = roomy(f"udpm://239.255.76.67:{random.randint(20000, 60000)}?ttl=0")
-    open_network(url)  # says in one line what is wrong with the network, before anything is started
+    """A network that stays on this host, on a port that no other program has, with room for a burst."""
+    *others, last = random.sample(range(*_PORTS), _TRIES)
+    for port in others:
+        with contextlib.suppress(ConnectionError):
+            return _opened(port)
+    return _opened(last)  # says in one line what is wrong with the network, before anything is started
+
+
+def _opened(port: int) -> str:
+    url = roomy(f"udpm://239.255.76.67:{port}?ttl=0")
+    open_network(url)
     return url
 
 

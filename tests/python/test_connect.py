@@ -44,9 +44,9 @@ def test_a_killed_client_lets_go(tmp_path: Path) -> None:
         x = session.axis("x")
         session.run(1.2)  # twice the dead man's time: it lives
         assert x.set_velocity == pytest.approx(50.0)
-        client.send_signal(signal.SIGKILL)
-        client.wait()
         killed = session.now
+        client.send_signal(signal.SIGKILL)
+        client.wait()  # a busy host may take so long that the axis stands behind it
         session.wait(lambda: x.set_velocity == 0, 2.0, what="the axis at rest")
         assert 0.2 < session.now - killed < 1.5
         assert x.state is takt.PlcState.STANDSTILL

@@ -8,6 +8,7 @@ import json
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -20,6 +21,7 @@ from machines import MACHINE
 from pages import PATIENCE_S, Client, needs_chromium, served
 from playwright.sync_api import Browser, expect
 from takt.cli import main
+from takt.demo import free_url
 from takt.ready import ready_machines
 from takt.scenario import load_scenario
 
@@ -253,3 +255,15 @@ def test_a_verdict_is_the_exit_code_however_long_the_page_stays(tmp_path: Path) 
             running.until(STAYS)
         assert running.interrupt() == 1
     assert "x did not get there (there.py:" in " ".join(running.said.split())
+
+
+def test_a_demo_takes_a_port_that_is_free(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another program may have the port that it would take."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("", 0))
+        taken = other.getsockname()[1]
+        monkeypatch.setattr("random.sample", lambda ports, count: [taken, *range(ports[0], ports[0] + count - 1)])
+        assert f":{taken}?" not in free_url()
+        monkeypatch.setattr("random.sample", lambda ports, count: [taken] * count)
+        with pytest.raises(takt.ConnectionError, match="Address already in use"):
+            free_url()
