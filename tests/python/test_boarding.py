@@ -262,6 +262,22 @@ def test_a_move_behind_a_stop_has_all_limits_again(by: tuple[float, float, float
     assert times[0] <= times[1] + 0.04
 
 
+@pytest.mark.parametrize("jerk", [50000, 100000])
+@pytest.mark.parametrize("speed", [200, 300, 500])
+def test_a_move_behind_a_boarding_one_is_no_slower(jerk: float, speed: float) -> None:
+    """GR-42: over an object, then down onto it; the first path may end before the tool is in step."""
+    for aside in (0, 20, 40):
+        times = []
+        for board in (True, False):
+            cell = Cell(GENTLE._replace(limits=(1500, 15000, jerk)), "belt", speed, board)
+            start = cell.engine.now
+            cell.line((aside, 30, 40))
+            move = cell.line((aside, 30, 0), buffer_mode="buffered").wait()
+            times.append(move.time_s - start)
+            cell.judge(move.cycle)
+        assert times[0] <= 1.02 * times[1], aside
+
+
 @pytest.mark.parametrize("speed", [60, 90, 120])
 @pytest.mark.parametrize("board", [False, True])
 def test_moves_on_a_table_take_no_longer_given_at_once_than_one_by_one(board: bool, speed: float) -> None:

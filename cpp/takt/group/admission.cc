@@ -2,6 +2,7 @@
 #include "takt/core/describe.h"
 #include "takt/core/in_range.h"
 #include "takt/group/ask.h"
+#include "takt/group/boarding.h"
 #include "takt/group/calibrate.h"
 #include "takt/group/clutch.h"
 #include "takt/group/group.h"
@@ -85,7 +86,9 @@ struct Applier {
     if (made.move.system == CoordinateSystem::kPcs && IsLost(made.move.pcs)) return Refuse(ErrorId::kCarrierUnknown);
     const bool waits = made.move.buffer_mode != BufferMode::kAborting;
     if (waits && (s.task == Task::kHalt || Jogs(s) || Streams(s))) return Refuse(ErrorId::kState);
-    if (!waits) AbortAll({}, false);
+    const std::uint32_t carrier = made.move.system == CoordinateSystem::kPcs ? s.cargoes[made.move.pcs].carrier : 0;
+    // Halfway onto a carrier the tool turns back for a move that leads somewhere else.
+    if (!waits) AbortAll({}, BoardsOther(c, s, carrier));
     if (!c.ahead.known && !s.begun) c.ahead.window.SetLimits(LimitsOf(c, s));
     Request move = made.move;
     move.ticket = ticket;

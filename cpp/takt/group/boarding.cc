@@ -128,6 +128,12 @@ void PassNode(const Context& c, const trajectory::PathNode& last, const trajecto
   if (!(boarding.apart.duration() - boarding.earliest_s > c.cycle.period_s)) boarding.reach = node.at.s;
 }
 
+bool BoardsOther(const Context& c, const State& s, std::uint32_t carrier) noexcept {
+  return std::ranges::any_of(s.clutches, [&](const Clutch& clutch) {
+    return clutch.used && clutch.boards && RideOf(c, clutch.ride).cargo.carrier != carrier;
+  });
+}
+
 void GiveUpBoarding(const Context& c, State& s) noexcept {
   s.goes_over = s.boards;
   s.boards = 0;

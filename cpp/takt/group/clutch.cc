@@ -337,7 +337,9 @@ trajectory::Limits LimitsAlong(const Context& c, const State& s, const Stretch& 
     }
   }
   const double scale = length > 0 ? 1 / length : 1;
-  return {std::min(velocity, scale * limits.velocity), std::min(acceleration, scale * limits.acceleration),
+  // Boarding is planned with what the axes can: it comes nearer to a carrier that is faster than the path may be.
+  const double most = stands && c.params.tracking.board ? velocity : std::min(velocity, scale * limits.velocity);
+  return {most, std::min(acceleration, scale * limits.acceleration),
           std::min(acceleration, scale * limits.deceleration), std::min(jerk, scale * limits.jerk)};
 }
 

@@ -193,8 +193,8 @@ bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch
     if (place > end.s) end = there;
   }
   if (s.begun) {
-    const bool can = ahead.timing.active() ? ahead.timing.StopBefore(window, end.s, s.pace)
-                                           : CanGoOnto(c, s, end.s, blend, squares);
+    const bool can =
+        ahead.timing.active() ? ahead.timing.StopBefore(window, end.s, s.pace) : CanGoOnto(c, s, end.s, blend, squares);
     if (!can) return false;
   }
   if (shorter) {

@@ -131,7 +131,11 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
   const double jerk = (mean.acceleration - before.acceleration) / period_s;
   PathShares shares;
   PathCoordinateValues velocities, accelerations;
-  const bool probed = probe.look && probe.look(probe.owner, mean, ahead_s, here_.positions, velocities, accelerations);
+  KinematicState place = mean;
+  if (here_.pace.raw_stands && Stands(here_.pace)) {  // at a stop: on what leads there, not on what begins there
+    place.position = std::min(place.position, std::nextafter(window[here_.pace.node].at.s, -kFullSpeed));
+  }
+  const bool probed = probe.look && probe.look(probe.owner, place, ahead_s, here_.positions, velocities, accelerations);
   for (std::size_t k = 0; k < limits.count; ++k) {
     const PathSlopes &a = node.at.slopes, &b = next.at.slopes;
     const double bend = b.second[k] - a.second[k];
