@@ -278,6 +278,44 @@ def test_a_move_behind_a_boarding_one_is_no_slower(jerk: float, speed: float) ->
         assert times[0] <= 1.02 * times[1], aside
 
 
+@pytest.mark.parametrize("wait", [0.005, 0.015, 0.03])
+@pytest.mark.parametrize("speed", [300, 600])
+def test_a_move_to_the_world_turns_a_tool_back(speed: float, wait: float) -> None:
+    """GR-40, GR-42: halfway onto a belt it is not taken aboard first."""
+    times = []
+    for board in (True, False):
+        cell = Cell(GENTLE, "belt", speed, board)
+        start = cell.engine.now
+        first = cell.line((-20, 40, 30))
+        cell.engine.run(wait)
+        move = cell.group.move_linear_absolute(x=10, y=10, z=10).wait()
+        assert first.aborted
+        run = cell.judge(move.cycle)
+        assert np.max(run["gx"]["set_position"]) <= 16
+        times.append(move.time_s - start)
+    assert times[0] <= 1.02 * times[1]
+
+
+@pytest.mark.parametrize("wait", [0.005, 0.01, 0.02])
+@pytest.mark.parametrize("speed", [200, 290, 310, 400])
+def test_an_interrupt_on_a_belt_as_fast_as_the_path_may_be(speed: float, wait: float) -> None:
+    """GR-42: boarding is planned with what the axes can, and continued so."""
+    times = []
+    for board in (True, False):
+        slow_path = ROBOTS["gantry"]._replace(path="{velocity: 300, acceleration: 60000, jerk: 3000000}")
+        cell = Cell(slow_path, "belt", speed, board)
+        start = cell.engine.now
+        move = cell.line((0, 13, 40))
+        cell.engine.run(wait)
+        cell.group.interrupt()
+        cell.engine.run(0.05)
+        cell.group.continue_path()
+        times.append(move.wait().time_s - start)
+        if board:
+            cell.judge(move.cycle)
+    assert times[0] <= 1.02 * times[1]
+
+
 @pytest.mark.parametrize("speed", [60, 90, 120])
 @pytest.mark.parametrize("board", [False, True])
 def test_moves_on_a_table_take_no_longer_given_at_once_than_one_by_one(board: bool, speed: float) -> None:
