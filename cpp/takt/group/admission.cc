@@ -88,7 +88,7 @@ struct Applier {
     if (waits && (s.task == Task::kHalt || Jogs(s) || Streams(s))) return Refuse(ErrorId::kState);
     const std::uint32_t carrier = made.move.system == CoordinateSystem::kPcs ? s.cargoes[made.move.pcs].carrier : 0;
     // Halfway onto a carrier the tool turns back for a move that leads somewhere else.
-    if (!waits) AbortAll({}, BoardsOther(c, s, carrier));
+    if (!waits) AbortAll({}, TurnsBack(c, s, carrier));
     if (!c.ahead.known && !s.begun) c.ahead.window.SetLimits(LimitsOf(c, s));
     Request move = made.move;
     move.ticket = ticket;

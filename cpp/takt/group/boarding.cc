@@ -15,6 +15,7 @@ namespace takt::group {
 namespace {
 
 constexpr double kLastPart = 0.05;  // of the boarding time
+constexpr double kFirstPart = 0.5;  // of it: turning back is sooner than getting into step first
 
 const Ride& RideOf(const Context& c, std::uint64_t number) {
   return c.ahead.rides[number % kRides];
@@ -128,9 +129,12 @@ void PassNode(const Context& c, const trajectory::PathNode& last, const trajecto
   if (!(boarding.apart.duration() - boarding.earliest_s > c.cycle.period_s)) boarding.reach = node.at.s;
 }
 
-bool BoardsOther(const Context& c, const State& s, std::uint32_t carrier) noexcept {
+bool TurnsBack(const Context& c, const State& s, std::uint32_t carrier) noexcept {
   return std::ranges::any_of(s.clutches, [&](const Clutch& clutch) {
-    return clutch.used && clutch.boards && RideOf(c, clutch.ride).cargo.carrier != carrier;
+    if (!clutch.used || !clutch.boards) return false;
+    const Ride& ride = RideOf(c, clutch.ride);
+    const double passed_s = static_cast<double>(c.cycle.count - ride.boarding.begin) * c.cycle.period_s;
+    return ride.cargo.carrier != carrier && passed_s < kFirstPart * ride.boarding.apart.duration();
   });
 }
 

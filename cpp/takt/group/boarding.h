@@ -43,8 +43,8 @@ void CutReserve(const Context& c, const trajectory::PathNode& last, Boarding& bo
 double SpeedBesideBoarding(const trajectory::PathPoint& point, const trajectory::CoordinateLimits& limits,
                            double build_up_s, const Boarding& boarding) noexcept;
 
-// Whether the tool is on its way onto another carrier; 0: the world.
-bool BoardsOther(const Context& c, const State& s, std::uint32_t carrier) noexcept;
+// Whether a tool that boards another carrier than this one (0: the world) had better come to rest at once.
+bool TurnsBack(const Context& c, const State& s, std::uint32_t carrier) noexcept;
 
 // Ends boarding for a move that cannot be carried out that way: the tool stops, then the move is planned from rest with
 // a transition between rides.

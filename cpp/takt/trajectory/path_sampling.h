@@ -41,18 +41,23 @@ inline double AccelerationAt(const PathPoint& point, const CoordinateLimits& lim
   return acceleration;
 }
 
+// The same of a jerk.
+inline double JerkAt(const PathPoint& point, const CoordinateLimits& limits, double jerk) noexcept {
+  for (std::size_t k = 0; k < limits.count; ++k) {
+    const double slope = std::abs(point.slopes.first[k]);
+    const double own = point.left[k].jerk * limits.of[k].jerk;
+    if (slope * jerk > own) jerk = own / slope;
+  }
+  return jerk;
+}
+
 // Finds T for a motion from one stop to the next, from samples of what is known of its path.
 class BuildUp {
  public:
   void Add(const PathPoint& point, const CoordinateLimits& limits) noexcept {
     const double acceleration = AccelerationAt(point, limits, point.limits.acceleration);
     const double deceleration = AccelerationAt(point, limits, point.limits.deceleration);
-    double jerk = point.limits.jerk;
-    for (std::size_t k = 0; k < limits.count; ++k) {
-      const double slope = std::abs(point.slopes.first[k]);
-      const double own = point.left[k].jerk * limits.of[k].jerk;
-      if (slope * jerk > own) jerk = own / slope;
-    }
+    const double jerk = JerkAt(point, limits, point.limits.jerk);
     ++count_;
     sums_.velocity += std::sqrt(SquareAt(point, limits, 1));
     sums_.acceleration += acceleration;
@@ -112,8 +117,9 @@ inline double StepBetweenSlowPlaces(const PathPoint& point, double begin, double
   namespace c = sampling;
   const double time = std::max(c::kTimeShare * build_up_s, c::kCycles * period_s);
   // The square root of the way from rest, 0.5 a t², grows so much from node to node, with what is built up of a.
+  const double jerk = JerkAt(point, limits, point.limits.jerk);
   const auto growth = [&](double acceleration) {
-    const double built_up = AccelerationAt(point, limits, std::min(acceleration, point.limits.jerk * build_up_s));
+    const double built_up = AccelerationAt(point, limits, std::min(acceleration, jerk * build_up_s));
     return std::max(std::sqrt(0.5 * built_up) * time, std::sqrt(2 * (end - begin)) / c::kMostSteps);
   };
   const double begins = growth(point.limits.acceleration), ends = growth(point.limits.deceleration);
