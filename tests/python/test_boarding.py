@@ -278,6 +278,27 @@ def test_a_move_behind_a_boarding_one_is_no_slower(jerk: float, speed: float) ->
         assert times[0] <= 1.02 * times[1], aside
 
 
+def test_what_boarded_before_is_no_matter_for_moves_that_go_over() -> None:
+    """GR-42: boardings that were broken off leave nothing behind."""
+    times = set()
+    for boardings in range(8):
+        cell = Cell("gantry", "belt", 500)
+        for _ in range(boardings):
+            cell.group.set_dyn_coord_transform(pcs=1, carrier="belt").wait()
+            cell.line((20, 60, 40))
+            cell.engine.run(0.015)
+            cell.group.disable()
+            cell.engine.run(0.2)
+            cell.group.enable().wait()
+            cell.group.move_linear_absolute(x=0, y=0, z=0).wait()
+            cell.engine.run(0.1)
+        cell.group.set_dyn_coord_transform(pcs=1, carrier="belt").wait()
+        start = cell.engine.now
+        blend: dict[str, Any] = {"buffer_mode": "blending_next", "transition_mode": "corner_distance"}
+        times.add(round(cell.line((15, 50, 32), **blend, transition_parameter=5).wait().time_s - start, 6))
+    assert len(times) == 1, times
+
+
 @pytest.mark.parametrize("wait", [0.005, 0.015, 0.03])
 @pytest.mark.parametrize("speed", [300, 600])
 def test_a_move_to_the_world_turns_a_tool_back(speed: float, wait: float) -> None:

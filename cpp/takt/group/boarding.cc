@@ -43,8 +43,8 @@ bool MayBoard(const Context& c, const State& s) noexcept {
   const bool one_way =
       move.kind == MoveKind::kLinear || move.kind == MoveKind::kDirect || move.kind == MoveKind::kCircular;
   if (!one_way || move.system == CoordinateSystem::kAcs || move.blends() || move.master != 0) return false;
-  // A module wants to know how long all moves of its order take.
-  if (c.carriers.modules && s.planning.move > s.done) return false;
+  // A module wants to know how long all moves of its order take. Its own have no ticket.
+  if (move.ticket == 0 || (c.carriers.modules && s.planning.move > s.done)) return false;
   if (s.track.ticket != 0 || s.velocity_factor < 1 || c.params.tracking.after_sync != AfterSync::kStay) return false;
   if (Moves(RideOf(c, c.ahead.end_ride)) || HasWorkspace(c, s) || !c.zones.of.empty()) return false;
   return move.cargo.carrier != 0 && move.ticket != s.goes_over && IsSteady(c, move.cargo);

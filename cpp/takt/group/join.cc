@@ -158,10 +158,10 @@ bool CanSlowDown(const trajectory::PathWindow& window, const trajectory::PathPac
   return left > 0 && v * v + 2 * left * window[i - 1].bounds.Least(pace.entered) <= square * (1 + kRounding);
 }
 
-// Whether the motion is slow, and speeds up and brakes no harder than a place of a blend allows.
+// Whether the motion has hardly begun, and is led from its accelerations within those of a place of a blend at once.
 bool IsGentle(const trajectory::PathPace& pace, const BlendPlace& place) {
   const double square = pace.raw.velocity * pace.raw.velocity;
-  const double strength = place.strength.At(square);
+  const double strength = 2 * place.strength.At(square);
   const auto within = [&](const trajectory::PathCycle& cycle) {
     return -strength <= cycle.least_acceleration && cycle.most_acceleration <= strength;
   };

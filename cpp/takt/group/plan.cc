@@ -286,7 +286,8 @@ void Verify(const Context& c, int& budget, State& s) {
     c.ahead.near = motion.position;
     c.ahead.tried = point.slopes;
     // Where boarding takes a part, accelerations build up as fast as behind that.
-    const bool boards = stretch.begin + to < c.ahead.rides[stretch.to_ride % kRides].boarding.reach && to < length;
+    const Boarding& boarding = c.ahead.rides[stretch.to_ride % kRides].boarding;
+    const bool boards = boarding.on && stretch.begin + to < boarding.reach && to < length;
     if ((!p.verifying || p.step == full) && !boards) c.ahead.build_up.Add(point, c.ahead.window.limits());
     p.step = p.verifying ? std::min(full, 2 * p.step) : full;
     p.verified = to;

@@ -158,6 +158,7 @@ std::uint64_t RideTo(const Context& c, const Cargo& cargo, double arrival_s) noe
   const Frame there = cargo.carrier != 0 ? PlaceOf(c, cargo, arrival_s).GetFrame() : Frame::Identity();
   ride.reference_inverse = there.Inverse() * DisplacementOf(c, end, arrival_s).GetFrame();
   ride.cargo = cargo;
+  ride.boarding = {};
   ride.speed = SpeedOf(c, cargo);
   ride.displaces = Moves(ride) || !KDL::Equal(ride.reference_inverse, Frame::Identity(), 0);
   return ahead.rides_end;
