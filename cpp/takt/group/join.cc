@@ -1,7 +1,6 @@
 #include "takt/group/join.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "takt/group/boarding.h"
@@ -20,8 +19,6 @@ constexpr int kHalvings = 8;
 // Slower than this a joint without a blend is no better than a stop, mm/s.
 constexpr double kLeastJointSpeed = 1;
 constexpr double kRounding = 1e-9;
-// Of the square of the speed that a place of a blend allows: a motion that has hardly begun.
-constexpr double kSlow = 0.01;
 constexpr double kLeastSaved = 3;  // cycles: what a blend saves beside a stop, else there is none
 // Of a stretch that goes over from ride to ride, at most, on each side.
 constexpr double kBlendShare = 0.4;
@@ -71,15 +68,9 @@ bool MakeBlend(const Context& c, const Stretch& before, const Stretch& after, do
                      RampOf(c, before, after)) == path::Problem::kNone;
 }
 
-// What a blend asks for at one of its places, which are at equal distances.
-struct BlendPlace {
-  double square = 0;  // of the speed
-  trajectory::Strength strength;
-};
-using BlendPlaces = std::array<BlendPlace, kBlendPlaces + 1>;
-
-// The least square; negative where the blend cannot be gone.
-double SquareOn(const Context& c, const State& s, const Stretch& blend, BlendPlaces& places) {
+// The slowest speed, squared, that the limits ask for on a blend; negative where it cannot be gone.
+double SquareOn(const Context& c, const State& s, const Stretch& blend) {
+  double square = std::numeric_limits<double>::infinity();
   kinematics::Joints near = c.ahead.end_joints;
   for (int i = 0; i <= kBlendPlaces; ++i) {
     trajectory::PathPoint point;
@@ -88,11 +79,9 @@ double SquareOn(const Context& c, const State& s, const Stretch& blend, BlendPla
     const double way = blend.segment.length * i / kBlendPlaces;
     if (SlopesOn(c, s, blend, way, near, point, motion) != kinematics::Reason::kNone) return -1;
     near = motion.position;
-    const trajectory::CoordinateLimits& limits = c.ahead.window.limits();
-    const double square = trajectory::SquareAt(point, limits, 1);
-    places[static_cast<std::size_t>(i)] = {square, trajectory::StrengthAt(point, {}, limits, square, blend.build_up_s)};
+    square = std::min(square, trajectory::SquareAt(point, c.ahead.window.limits(), 1));
   }
-  return std::ranges::min_element(places, {}, &BlendPlace::square)->square;
+  return square;
 }
 
 // From the corner; 0: there is no transition.
@@ -126,8 +115,7 @@ Distances DistancesOf(const Context& c, const State& s, const Request& move, con
         const double d = 0.5 * (short_of + enough);
         work += kBlendPlaces + 1;
         const bool made = MakeBlend(c, before, after, d, d, blend.segment);
-        BlendPlaces places;
-        (made && SquareOn(c, s, blend, places) >= parameter * parameter ? enough : short_of) = d;
+        (made && SquareOn(c, s, blend) >= parameter * parameter ? enough : short_of) = d;
       }
       return both(enough);
     }
@@ -136,15 +124,13 @@ Distances DistancesOf(const Context& c, const State& s, const Request& move, con
   }
 }
 
-// Whether the motion can still come down to the square of a speed at a place.
-bool CanSlowDown(const trajectory::PathWindow& window, const trajectory::PathPace& pace, double place, double square,
-                 double period_s) {
-  if (pace.raw_stands) return square > 0 || place > pace.raw.position;
-  const KinematicState from = trajectory::OnceBraking(window, pace, period_s);
+// Whether the motion can still stop at a place, at a node or between it and the next one.
+bool CanStopAt(const trajectory::PathWindow& window, const trajectory::PathPace& pace, std::uint64_t node,
+               double place) {
+  if (pace.raw_stands) return pace.node < node;
+  double square = 0;
   double later = place;
-  std::uint64_t i = window.end();
-  while (i > pace.node + 1 && window[i - 1].at.s >= place) --i;
-  for (; i > pace.node + 1 && window[i - 1].at.s > from.position; --i) {
+  for (std::uint64_t i = place > window[node].at.s ? node + 1 : node; i > pace.node + 1; --i) {
     const trajectory::PathNode& before = window[i - 1];
     const double length = later - before.at.s;
     square = length > 0 ? trajectory::SquareBefore(before.bounds, length, square, before.ceiling)
@@ -152,42 +138,15 @@ bool CanSlowDown(const trajectory::PathWindow& window, const trajectory::PathPac
     if (square >= before.ceiling) return true;
     later = before.at.s;
   }
-  const double v = from.velocity;
-  const double left = later - from.position;
+  const double v = pace.raw.velocity;
+  const double left = later - pace.raw.position;
   // It may go by the ceiling itself.
-  return left > 0 && v * v + 2 * left * window[i - 1].bounds.Least(pace.entered) <= square * (1 + kRounding);
+  return left > 0 && v * v + 2 * left * window[pace.node].bounds.Least(pace.entered) <= square * (1 + kRounding);
 }
 
-// Whether the motion has hardly begun, and is led from its accelerations within those of a place of a blend at once.
-bool IsGentle(const trajectory::PathPace& pace, const BlendPlace& place) {
-  const double square = pace.raw.velocity * pace.raw.velocity;
-  const double strength = 2 * place.strength.At(square);
-  const auto within = [&](const trajectory::PathCycle& cycle) {
-    return -strength <= cycle.least_acceleration && cycle.most_acceleration <= strength;
-  };
-  return square <= kSlow * place.square && std::all_of(pace.last.begin(), pace.last.begin() + pace.cycles, within);
-}
-
-// Whether the motion can still stop where a blend begins, and is slow enough for it as early as the mean needs: that
-// reaches back from each place of the blend by half the time over which it is taken.
-bool CanGoOnto(const Context& c, const State& s, double begin, const Stretch& blend, const BlendPlaces& places) {
-  const trajectory::PathWindow& window = c.ahead.window;
-  const double period_s = c.cycle.period_s;
-  if (!CanSlowDown(window, s.pace, begin, 0, period_s)) return false;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const BlendPlace& place = places[i];
-    const double way = blend.segment.length * static_cast<double>(i) / kBlendPlaces;
-    const double at = begin + way - 0.5 * blend.build_up_s * std::sqrt(place.square);
-    if (at >= begin || IsGentle(s.pace, place)) continue;
-    if (!CanSlowDown(window, s.pace, at, place.square, period_s)) return false;
-  }
-  return true;
-}
-
-// Takes back what is planned behind a place, to be sampled again from a stretch on, if the motion can still go onto
-// the blend that begins there.
-bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch, const Stretch& blend,
-           const BlendPlaces& places) {
+// Takes back what is planned behind a place, to be sampled again from a stretch on, if the motion can still stop
+// before.
+bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch) {
   LookAhead& ahead = c.ahead;
   if (!ahead[stretch].begun) return true;  // there are no nodes of it yet: it waited for this
   trajectory::PathWindow& window = ahead.window;
@@ -211,9 +170,9 @@ bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch
     if (place > end.s) end = there;
   }
   if (s.begun) {
-    const bool can =
-        ahead.timing.active() ? ahead.timing.StopBefore(window, end.s, s.pace) : CanGoOnto(c, s, end.s, blend, places);
-    if (!can) return false;
+    const bool stops =
+        ahead.timing.active() ? ahead.timing.StopBefore(window, end.s, s.pace) : CanStopAt(window, s.pace, node, end.s);
+    if (!stops) return false;
   }
   if (shorter) {
     window.CutBehind(node);
@@ -298,9 +257,8 @@ bool GoOnFromLastCorner(const Context& c, const State& s, const CornerBlend& d, 
     if (made || *bend == path::Triple{}) break;
   }
   work += 2 * (kBlendPlaces + 1);
-  BlendPlaces on_last, on_blend;
-  if (!made || !(SquareOn(c, s, last, on_last) > 0) || !(SquareOn(c, s, blend, on_blend) > 0)) return false;
-  if (!CutAt(c, s, last.begin, last_one, last, on_last)) return false;
+  if (!made || !(SquareOn(c, s, last) > 0) || !(SquareOn(c, s, blend) > 0)) return false;
+  if (!CutAt(c, s, last.begin, last_one)) return false;
   last.to = last.segment.length;
   ahead[last_one] = last;
   --ahead.count;  // nothing is left of the line
@@ -353,11 +311,11 @@ bool FindDistances(const Context& c, const State& s, const Request& move, std::u
 }
 
 bool MakeSegment(const Context& c, const State& s, const Stretch& before, const Stretch& after, int& work,
-                 CornerBlend& out, BlendPlaces& places) {
+                 CornerBlend& out) {
   work += kBlendPlaces + 1;
   if (!MakeBlend(c, before, after, out.first, out.second, out.stretch.segment)) return false;
   out.stretch.to = out.stretch.segment.length;
-  return SquareOn(c, s, out.stretch, places) > 0;
+  return SquareOn(c, s, out.stretch) > 0;
 }
 
 bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, int& work) {
@@ -366,10 +324,9 @@ bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, 
   if (!FindDistances(c, s, move, s.planning.element, before, ahead.next, work, blend)) return false;
   if (GoOnFromLastCorner(c, s, blend, work)) return true;
   ahead.corner.open = false;
-  BlendPlaces places;
-  if (!MakeSegment(c, s, before, ahead.next, work, blend, places)) return false;
+  if (!MakeSegment(c, s, before, ahead.next, work, blend)) return false;
   const double cut = before.to - blend.first;
-  if (!CutAt(c, s, before.begin + (cut - before.from), ahead.end() - 1, blend.stretch, places)) return false;
+  if (!CutAt(c, s, before.begin + (cut - before.from), ahead.end() - 1)) return false;
   before.to = cut;
   SettleRide(ahead, false, 0);
   ahead.next.from = blend.second;
@@ -382,9 +339,7 @@ bool TryBlend(const Context& c, State& s, const Request& move, Stretch& before, 
 
 bool FindBlend(const Context& c, const State& s, const Request& move, std::uint32_t element, const Stretch& before,
                const Stretch& after, int& work, CornerBlend& out) noexcept {
-  BlendPlaces places;
-  return FindDistances(c, s, move, element, before, after, work, out) &&
-         MakeSegment(c, s, before, after, work, out, places);
+  return FindDistances(c, s, move, element, before, after, work, out) && MakeSegment(c, s, before, after, work, out);
 }
 
 int Join(const Context& c, State& s) noexcept {

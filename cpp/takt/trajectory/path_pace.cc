@@ -77,12 +77,6 @@ double NextAcceleration(const PathWindow& window, double wish, double period_s, 
   return a;
 }
 
-// By how much an acceleration may differ from that which leaves the mean.
-double ChangeAt(const PathNode& node, const PathPace& pace) {
-  const double square = std::max(pace.entered, pace.raw.velocity * pace.raw.velocity);
-  return std::min(node.at.limits.jerk * node.build_up_s, node.bounds.strength.At(square));
-}
-
 // One cycle of the raw motion: an acceleration holds to the next node at most.
 PathCycle StepRaw(const PathWindow& window, double wish, double period_s, bool full, PathPace& pace) {
   const auto at_end = [&] { return pace.node + 1 >= window.known() || window[pace.node].stop; };
@@ -172,29 +166,10 @@ void Advance(const PathWindow& window, double wish, double period_s, PathPace& p
 bool GoesOn(const PathWindow& window, const PathPace& pace, double period_s) noexcept {
   if (pace.raw_stands || pace.node + 1 >= window.known() || window[pace.node].stop) return true;
   const PathNode& node = window[pace.node];
-  const double change = ChangeAt(node, pace);
+  const double square = std::max(pace.entered, pace.raw.velocity * pace.raw.velocity);
+  const double change = std::min(node.at.limits.jerk * node.build_up_s, node.bounds.strength.At(square));
   const double least = std::max(-node.bounds.deceleration, pace.last[pace.oldest].most_acceleration - change);
   return RawLimitsOf(window, pace, period_s).high >= least - 1e-9 * node.bounds.deceleration;
-}
-
-KinematicState OnceBraking(const PathWindow& window, const PathPace& pace, double period_s) noexcept {
-  KinematicState x = pace.raw;
-  if (pace.raw_stands) return x;
-  const PathNode& node = window[pace.node];
-  const double change = ChangeAt(node, pace);
-  const double hardest = node.bounds.Least(x.velocity * x.velocity);
-  std::uint32_t last = pace.cycles;  // the last one of the mean that holds braking back
-  const auto least = [&](std::uint32_t i) {
-    return pace.last[(pace.oldest + i) % pace.cycles].most_acceleration - change;
-  };
-  while (last > 0 && least(last - 1) <= hardest) --last;
-  for (std::uint32_t i = 0; i < last; ++i) {
-    const double before = x.velocity;
-    x.acceleration = std::max(hardest, least(i));
-    x.velocity = std::max(0.0, before + period_s * x.acceleration);
-    x.position += 0.5 * period_s * (before + x.velocity);
-  }
-  return x;
 }
 
 bool Stands(const PathPace& pace) noexcept {

@@ -56,10 +56,6 @@ void Advance(const PathWindow& window, double wish, double period_s, PathPace& p
 // Whether it stays beneath the ceilings with an acceleration that changes no faster than it may.
 bool GoesOn(const PathWindow& window, const PathPace& pace, double period_s) noexcept;
 
-// The raw motion if it brakes from now on: when it brakes as hard as it may. What the mean holds of speeding up puts
-// that off by up to the time that accelerations take to build up.
-KinematicState OnceBraking(const PathWindow& window, const PathPace& pace, double period_s) noexcept;
-
 // It stands, and so does the raw motion.
 bool Stands(const PathPace& pace) noexcept;
 
