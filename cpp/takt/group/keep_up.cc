@@ -210,10 +210,10 @@ double SlowDown(const Context& c, const State& s, double wish) noexcept {
     const double left = std::max(0.0, k.begin + i * k.apart - raw.position - lag);
     most = std::min(most, brakes.Before(left, k.places[i].velocity));
   }
-  // Against the accelerations that leave the mean in this cycle.
-  const trajectory::PathCycle& before = s.pace.last[s.pace.oldest];
-  const double greatest = std::max(std::min(gentle, before.least_acceleration + change), -gentle);
-  const double least = std::min(std::max(-gentle, before.most_acceleration - change), greatest);
+  // Against the acceleration that leaves the mean in this cycle.
+  const double before = s.pace.last[s.pace.oldest].acceleration;
+  const double least = std::min(std::max(-gentle, before - change), gentle);
+  const double greatest = std::max(std::min(gentle, before + change), -gentle);
   return std::max(0.0, std::clamp(most, raw.velocity + least * period, raw.velocity + greatest * period));
 }
 

@@ -285,7 +285,7 @@ double RestAt(const Context& c, const State& s) noexcept {
   const double deceleration = std::min(node.bounds.Gentle(v * v, full), c.ahead.keep_up.brake);
   const double way = deceleration > 0 ? 0.5 * v * v / deceleration : kNoEnd;
   // What it has sped up with is taken back first.
-  const bool speeds_up = s.pace.last[s.pace.oldest].most_acceleration > 0 || s.pace.raw.acceleration > 0;
+  const bool speeds_up = s.pace.last[s.pace.oldest].acceleration > 0 || s.pace.raw.acceleration > 0;
   return s.pace.raw.position + way + v * (speeds_up ? node.build_up_s : c.cycle.period_s);
 }
 

@@ -53,7 +53,7 @@ RawLimits RawLimitsOf(const PathWindow& window, const PathPace& pace, double per
 
 double NextAcceleration(const PathWindow& window, double wish, double period_s, bool full, PathPace& pace) {
   const RawLimits limits = RawLimitsOf(window, pace, period_s, full);
-  // Against the accelerations that leave the mean in this cycle.
+  // Against the acceleration that leaves the mean in this cycle.
   const PathNode& node = window[pace.node];
   const double square = std::max(pace.entered, pace.raw.velocity * pace.raw.velocity);
   double strength = node.bounds.strength.At(square);
@@ -61,13 +61,13 @@ double NextAcceleration(const PathWindow& window, double wish, double period_s, 
   if (pace.eased > 0 || wanted < limits.high) strength *= node.bounds.strength.gentle;
   const double build_up = node.at.limits.jerk * node.build_up_s;
   const double change = std::min(build_up, strength);
-  const PathCycle& before = pace.last[pace.oldest];
+  const double before = pace.last[pace.oldest].acceleration;
   // Braking may be taken back at once: where it cannot be strong it would go on to a stop.
-  const double released = std::min(0.0, before.least_acceleration + build_up);
-  const double most = std::min(std::max(before.least_acceleration + change, released), strength);
+  const double released = std::min(0.0, before + build_up);
+  const double most = std::min(std::max(before + change, released), strength);
   // Ceilings come first, whatever it takes.
   const double high = std::min(limits.high, std::max(most, limits.low));
-  const double least = std::max({limits.low, before.most_acceleration - (full ? strength : change), -strength});
+  const double least = std::max({limits.low, before - (full ? strength : change), -strength});
   const double a = std::clamp(std::min(high, wanted), std::min(least, high), high);
   if (wanted < high) {
     pace.eased = pace.cycles;
@@ -80,11 +80,7 @@ double NextAcceleration(const PathWindow& window, double wish, double period_s, 
 // One cycle of the raw motion: an acceleration holds to the next node at most.
 PathCycle StepRaw(const PathWindow& window, double wish, double period_s, bool full, PathPace& pace) {
   const auto at_end = [&] { return pace.node + 1 >= window.known() || window[pace.node].stop; };
-  PathCycle cycle{pace.raw.position, pace.raw.velocity, kFullSpeed, -kFullSpeed, 0};
-  const auto has = [&](double acceleration) {
-    cycle.least_acceleration = std::min(cycle.least_acceleration, acceleration);
-    cycle.most_acceleration = std::max(cycle.most_acceleration, acceleration);
-  };
+  PathCycle cycle{pace.raw.position, pace.raw.velocity, 0, 0};
   double left_s = period_s;
   double sum = 0;  // of the position ahead of that at the beginning, over time
   while (left_s > 0 && !at_end()) {
@@ -109,7 +105,6 @@ PathCycle StepRaw(const PathWindow& window, double wish, double period_s, bool f
     }
     sum += time * (s - cycle.position + time * (0.5 * v + time * a * (1.0 / 6)));
     left_s -= time;
-    if (time > 0) has(a);
     pace.raw = {s + time * (v + 0.5 * time * a), rests ? 0 : std::max(0.0, v + time * a), a};
     if (arrives) {
       pace.raw.position = window[pace.node + 1].at.s;
@@ -127,7 +122,7 @@ PathCycle StepRaw(const PathWindow& window, double wish, double period_s, bool f
   if (at_end()) pace.raw = {window[pace.node].at.s, 0, 0};
   pace.raw_stands = at_end();
   sum += left_s * (pace.raw.position - cycle.position);
-  if (left_s > 0) has(0);  // it stands
+  cycle.acceleration = (pace.raw.velocity - cycle.velocity) / period_s;
   cycle.ahead = sum / period_s;
   return cycle;
 }
@@ -153,7 +148,7 @@ void BeginAt(const PathWindow& window, std::uint64_t node, double period_s, Path
   pace.raw_stands = false;
   const double cycles = std::round(window[node].build_up_s / period_s);
   pace.cycles = static_cast<std::uint32_t>(std::clamp(cycles, 1.0, static_cast<double>(kMostBuildUpCycles)));
-  std::fill_n(pace.last.begin(), pace.cycles, PathCycle{pace.raw.position, 0, 0, 0, 0});
+  std::fill_n(pace.last.begin(), pace.cycles, PathCycle{pace.raw.position, 0, 0, 0});
 }
 
 void Advance(const PathWindow& window, double wish, double period_s, PathPace& pace, bool full) noexcept {
@@ -168,7 +163,7 @@ bool GoesOn(const PathWindow& window, const PathPace& pace, double period_s) noe
   const PathNode& node = window[pace.node];
   const double square = std::max(pace.entered, pace.raw.velocity * pace.raw.velocity);
   const double change = std::min(node.at.limits.jerk * node.build_up_s, node.bounds.strength.At(square));
-  const double least = std::max(-node.bounds.deceleration, pace.last[pace.oldest].most_acceleration - change);
+  const double least = std::max(-node.bounds.deceleration, pace.last[pace.oldest].acceleration - change);
   return RawLimitsOf(window, pace, period_s).high >= least - 1e-9 * node.bounds.deceleration;
 }
 
@@ -180,8 +175,7 @@ void describe(Description<PathCycle>& d) {
   d.about("The raw motion in one cycle.");
   d.internal<&PathCycle::position>("At its beginning.");
   d.internal<&PathCycle::velocity>("The same.");
-  d.internal<&PathCycle::least_acceleration>("Within it.");
-  d.internal<&PathCycle::most_acceleration>("The same.");
+  d.internal<&PathCycle::acceleration>("Its mean.");
   d.internal<&PathCycle::ahead>("Mean of the position less that at the beginning.");
 }
 

@@ -16,12 +16,10 @@ inline constexpr std::size_t kMostBuildUpCycles = 200;
 
 // The raw motion in one cycle.
 struct PathCycle {
-  double position = 0;  // at its beginning
-  double velocity = 0;  // the same
-  // Within it: it changes at nodes.
-  double least_acceleration = 0;
-  double most_acceleration = 0;
-  double ahead = 0;  // the mean of the position less that at the beginning
+  double position = 0;      // at its beginning
+  double velocity = 0;      // the same
+  double acceleration = 0;  // its mean
+  double ahead = 0;         // the mean of the position less that at the beginning
 };
 
 struct PathPace {
