@@ -124,7 +124,7 @@ def _rate(hz: float) -> float:
     return max(float(hz), 0.1)
 
 
-_PORTS = (20_000, 32_000)  # below those that systems give away by themselves
+_PORTS = (61_000, 65_000)  # above the ephemeral ports of Linux
 _TRIES = 5
 
 

@@ -44,7 +44,7 @@ UNKNOWN = {
     '{master: "7"}': "7",
 }
 
-_ports = itertools.count(12_000 + os.getpid() % 500 * 40)  # below those that systems give away by themselves
+_ports = itertools.count(12_000 + os.getpid() % 500 * 40)  # below the ephemeral ports of Linux
 
 
 def new_url() -> str:
