@@ -1,6 +1,8 @@
 #include "takt/routing/surface.h"
 
 #include <algorithm>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -9,6 +11,7 @@
 #include "takt/routing/assignment.h"
 #include "takt/routing/compose.h"
 #include "takt/routing/improve.h"
+#include "takt/routing/repair.h"
 #include "takt/routing/steps.h"
 
 namespace takt::routing {
@@ -16,10 +19,14 @@ namespace {
 
 constexpr std::int64_t kStepEffort = 4'000'000;  // places looked at for a first plan; by mover and step
 constexpr std::int64_t kLeastSteps = 5'000;
-constexpr int kSeeds = 8;                     // first plans, of which the best is taken; with few movers
-constexpr std::int64_t kMoversPerSeed = 400;  // ... of 8 seeds: with more movers fewer seeds
-constexpr int kTurns = 6;                     // tries of prioritised planning
-constexpr std::int64_t kTurnStates = 4'000;   // states that those may take
+constexpr int kSeeds = 8;                              // first plans, of which the best is taken; with few movers
+constexpr std::int64_t kMoversPerSeed = 400;           // ... of 8 seeds: with more movers fewer seeds
+constexpr int kTurns = 6;                              // tries of prioritised planning
+constexpr std::int64_t kTurnStates = 4'000;            // states that those may take
+constexpr double kCrowded = 1.1;                       // of the lower bound: above, movers are in the way of others
+constexpr std::int64_t kStepShare = 5;                 // of the effort, for better steps, twice
+constexpr std::int64_t kMostEffort = 100'000'000'000;  // ... more would not end either
+constexpr std::int64_t kStepStates = 16;               // states of steps that take as long as one of Improve
 
 // Which mover of a pool takes which of its targets, by the times alone. Returns a mover that reaches none; kNone: all
 // do.
@@ -80,6 +87,89 @@ void MakeVisits(const Grid& grid, const SurfaceProblem& problem, SurfacePlan& pl
   }
 }
 
+// Better steps than the first ones. `offer` returns the sum of the arrivals [s] that steps become.
+class BetterSteps {
+ public:
+  using Offer = std::function<double(const std::vector<Configuration>&)>;
+  BetterSteps(const Grid& grid, const Task& task, const SurfaceProblem& problem, Offer offer)
+      : grid_(grid),
+        task_(task),
+        problem_(problem),
+        offer_(std::move(offer)),
+        tables_(MakeStepTables(grid, task)),
+        budget_(std::min(problem.effort / kStepShare, kMostEffort) * kStepStates) {}
+
+  // Returns the effort that it took.
+  std::int64_t Run(const std::vector<Configuration>& first) {
+    if (!Repair::Fits(grid_, task_, tables_)) return 0;
+    FindSome();
+    if (best_) {
+      ImproveBest();
+    } else {
+      LookForTails(first);
+    }
+    return spent_ / kStepStates;
+  }
+
+ private:
+  double Try(const std::vector<Configuration>& steps) {
+    spent_ += static_cast<std::int64_t>(task_.starts.size() * steps.size());
+    return offer_(steps);
+  }
+  // By repair, of one seed after the other.
+  void FindSome() {
+    double least = kForever;
+    for (std::uint64_t seed = problem_.seed; spent_ < budget_; ++seed) {
+      auto one = std::make_unique<Repair>(grid_, task_, tables_, problem_.pools, seed);
+      const bool found = one->Find(budget_ - spent_);
+      spent_ += one->looked_at() + 1;
+      if (!found) continue;
+      const double sum = Try(one->steps());
+      if (sum >= least) continue;
+      least = sum;
+      best_ = std::move(one);
+    }
+  }
+  void ImproveBest() {
+    constexpr int kParts = 8;       // each with less heat than the one before
+    constexpr double kHeat = 0.02;  // of the mean of steps alone
+    const double heat = kHeat * static_cast<double>(best_->least_sum()) / static_cast<double>(task_.starts.size());
+    for (int k = 1; k <= kParts; ++k) {
+      const std::int64_t before = best_->looked_at();
+      best_->Improve(budget_ / kParts, heat * (kParts - k) / kParts);
+      spent_ += best_->looked_at() - before;
+      Try(best_->steps());
+    }
+  }
+  // From any step of the first ones on they are looked for anew.
+  void LookForTails(std::vector<Configuration> now) {
+    constexpr std::int64_t kCost = 3;  // states, by mover and step
+    double least = Try(now);
+    Random random(problem_.seed);
+    for (const std::int64_t end = spent_ + budget_; spent_ < end && now.size() > 1;) {
+      const auto at = now.begin() + static_cast<std::ptrdiff_t>(random.Below(now.size() - 1));
+      const StepSearch tail =
+          FindSteps(grid_, {.starts = *at, .targets = task_.targets}, tables_, random.Next(), kLeastSteps);
+      spent_ += kCost * static_cast<std::int64_t>(task_.starts.size() * now.size());
+      if (!tail.steps) continue;
+      std::vector<Configuration> steps(now.begin(), at);
+      steps.insert(steps.end(), tail.steps->begin(), tail.steps->end());
+      const double sum = Try(steps);
+      if (sum >= least) continue;
+      least = sum;
+      now = std::move(steps);
+    }
+  }
+
+  const Grid& grid_;
+  const Task& task_;
+  const SurfaceProblem& problem_;
+  Offer offer_;
+  StepTables tables_;
+  std::int64_t budget_, spent_ = 0;  // states
+  std::unique_ptr<Repair> best_;
+};
+
 }  // namespace
 
 SurfacePlan PlanSurface(const SurfaceProblem& problem) {
@@ -102,12 +192,16 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
   }
   std::optional<Plan> best;
   const auto offer = [&](std::optional<Plan> plan) {
-    if (plan && (!best || SumOf(grid, *plan) < SumOf(grid, *best))) best = std::move(plan);
+    const double sum = plan ? SumOf(grid, *plan) : kForever;
+    if (plan && (!best || sum < SumOf(grid, *best))) best = std::move(plan);
+    return sum;
   };
   const auto offer_steps = [&](const std::vector<Configuration>& steps) {
     std::optional<std::vector<Legs>> legs = Compose(grid, steps);
-    if (legs) offer(Plan{.legs = *std::move(legs), .targets = steps.back()});
+    return legs ? offer(Plan{.legs = *std::move(legs), .targets = steps.back()}) : kForever;
   };
+  std::vector<Configuration> first;
+  double first_sum = kForever;
   Task swapped = task;
   const bool all_have_targets = std::find(task.targets.begin(), task.targets.end(), kNone) == task.targets.end();
   const bool one_pool = different.size() == 1 && *different.begin() != kNone;
@@ -120,8 +214,13 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
     const std::int64_t effort = std::max(kLeastSteps, kStepEffort / movers);
     const auto seeds = static_cast<std::uint64_t>(std::clamp<std::int64_t>(kMoversPerSeed / movers, 1, kSeeds));
     for (std::uint64_t k = 0; k < seeds; ++k) {
-      const StepSearch found = FindSteps(grid, task, tables, problem.seed + k, best ? kLeastSteps : effort);
-      if (found.steps) offer_steps(*found.steps);
+      StepSearch found = FindSteps(grid, task, tables, problem.seed + k, best ? kLeastSteps : effort);
+      if (found.steps) {
+        if (const double sum = offer_steps(*found.steps); sum < first_sum) {
+          first_sum = sum;
+          first = *std::move(found.steps);
+        }
+      }
       if (!best) {
         const bool impossible =
             found.exhausted &&
@@ -132,9 +231,12 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
   }
   offer(PlanInTurn(grid, task, alone, kTurns, kTurnStates));
   result.first_sum = SumOf(grid, *best);
+  std::int64_t effort = problem.effort;
+  if (!first.empty() && result.first_sum > kCrowded * result.lower_bound) {
+    effort -= BetterSteps(grid, task, problem, offer_steps).Run(first);
+  }
   // Whoever has none of its own ends where the first plan leaves it.
-  Plan plan =
-      Improve(grid, task, alone, *std::move(best), {.effort = problem.effort, .seed = problem.seed, .pools = pools});
+  Plan plan = Improve(grid, task, alone, *std::move(best), {.effort = effort, .seed = problem.seed, .pools = pools});
   result.outcome = Outcome::kPlanned;
   result.sum = SumOf(grid, plan);
   result.targets = std::move(plan.targets);

@@ -1,0 +1,114 @@
+// Steps for many movers, found by repair. At first each takes the way with the fewest conflicts with those before it;
+// then movers in conflict are planned anew, a few at a time, until there is none (MAPF-LNS2: Li et al., AAAI 2022).
+// After that the sum of the arrivals is made less in the same way (MAPF-LNS: Li et al., IJCAI 2021). Where many places
+// are filled these are far fewer steps than FindSteps finds; but the search is not complete.
+//
+// Two movers are in conflict if they are at one place at a time, exchange places, or take part in a ring in which each
+// enters the place of the next. A mover that enters a place in the step in which another one leaves it is in none:
+// Compose lets it wait until the place is empty.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "takt/routing/random.h"
+#include "takt/routing/steps.h"
+
+namespace takt::routing {
+
+class Repair {
+ public:
+  // Keeps references to all but the task. `pools`: as those of Improving.
+  Repair(const Grid& grid, Task task, const StepTables& tables, const std::vector<std::int32_t>& pools,
+         std::uint64_t seed);
+
+  // Whether its tables are small enough: they have a line for each step and a column for each place.
+  static bool Fits(const Grid& grid, const Task& task, const StepTables& tables);
+
+  // Returns whether there is no conflict left, before so many states were looked at.
+  bool Find(std::int64_t effort);
+  // Makes the sum of the arrivals less; what is worse is taken with a probability that falls with `heat` [steps], so
+  // the last steps need not be the best. Requires: Find returned true.
+  void Improve(std::int64_t effort, double heat);
+
+  // From step to step; the first are the starts. Requires: Find returned true.
+  std::vector<Configuration> steps() const;
+  std::int64_t sum() const noexcept { return sum_; }              // steps, of all arrivals
+  std::int64_t least_sum() const noexcept { return least_sum_; }  // if each were alone
+  std::int64_t looked_at() const noexcept { return looked_at_; }  // states in all
+
+ private:
+  using Movers = std::vector<MoverIndex>;
+  using Steps = std::vector<PlaceIndex>;  // where one mover is, by step
+
+  static int LastStep(const Task& task, const StepTables& tables);
+  std::size_t Cell(int step, PlaceIndex place) const noexcept {
+    return static_cast<std::size_t>(step) * places_ + static_cast<std::size_t>(place);
+  }
+  std::size_t Line(MoverIndex mover, int step) const noexcept {
+    return static_cast<std::size_t>(mover) * (static_cast<std::size_t>(last_) + 1) + static_cast<std::size_t>(step);
+  }
+  PlaceIndex PlaceOf(MoverIndex mover, int step) const noexcept { return where_[Line(mover, step)]; }
+  // Calls `see` with each other mover at the place in that step.
+  template <typename See>
+  void ForThoseAt(int step, PlaceIndex place, const See& see) const {
+    for (MoverIndex i = first_at_[Cell(step, place)]; i != kNone; i = next_at_[Line(i, step)]) see(i);
+  }
+  // Calls `see` with each mover that is in conflict with one that is at `from` in that step, and at `to` in the next.
+  template <typename See>
+  void ForConflicts(int step, PlaceIndex from, PlaceIndex to, const See& see) const;
+
+  const std::vector<std::int32_t>& Left(MoverIndex mover) const {
+    const PlaceIndex target = At(task_.targets, mover);
+    return target == kNone ? anywhere_ : tables_.at(target);
+  }
+  int Alone(MoverIndex mover) const { return At(Left(mover), At(task_.starts, mover)); }
+  int Delay(MoverIndex mover) const { return At(arrivals_, mover) - Alone(mover); }
+  // Movers at the place after that step.
+  int TakenAfter(int step, PlaceIndex place) const;
+
+  void Put(MoverIndex mover, const Steps& steps);
+  Steps Remove(MoverIndex mover);
+  void CountConflicts(MoverIndex mover);
+  void ForgetConflicts(MoverIndex mover);
+
+  // The steps of one mover with the fewest conflicts, of these the shortest: with at most `conflicts`, and with an
+  // arrival before `bound`. Returns whether there are any, and found before `end_` states were looked at; they are in
+  // `found_` then.
+  bool Search(MoverIndex mover, int conflicts, int bound);
+
+  static void Add(Movers& movers, MoverIndex one);
+  void AddThoseNear(Movers& movers, std::size_t most);
+  Movers SomeInConflict();
+  Movers SomeDelayed();
+  void MendSome(Movers movers);
+  void ImproveSome(Movers movers, double heat);
+
+  const Grid& grid_;
+  Task task_;
+  const StepTables& tables_;
+  const std::vector<std::int32_t>& pools_;
+  Random random_;
+  MoverIndex count_;
+  std::size_t places_;
+  int last_;  // step, until which all have to be at their targets
+  std::vector<std::int32_t> anywhere_;
+  std::vector<PlaceIndex> where_;     // by mover and step
+  std::vector<MoverIndex> first_at_;  // by step and place, a list of who is there:
+  std::vector<MoverIndex> next_at_;   // by mover and step
+  std::vector<int> arrivals_;         // by mover, step
+  std::vector<Movers> in_conflict_;   // by mover, with whom
+  std::int64_t conflicts_ = 0;        // pairs of movers
+  std::int64_t sum_ = 0, least_sum_ = 0, looked_at_ = 0, end_ = 0;
+
+  // Of the search: by step and place
+  std::vector<std::uint32_t> reached_;  // in the search of this number
+  std::vector<std::int32_t> its_conflicts_, from_;
+  std::uint32_t search_ = 0;
+  std::vector<std::vector<std::vector<std::int32_t>>> open_;  // cells by conflicts and estimate
+  std::vector<int> taken_after_;                              // of the target, by step
+  Steps found_;
+};
+
+}  // namespace takt::routing
