@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "takt/group/boarding.h"
 #include "takt/group/make_stretch.h"
@@ -366,7 +367,7 @@ int Join(const Context& c, State& s) noexcept {
     }
   }
   if (!goes_on) {
-    const double length = GoesOn(c, s) ? kNoEnd : ahead.next.segment.length;
+    const double length = GoesOn(c, s) ? std::numeric_limits<double>::infinity() : ahead.next.segment.length;
     ahead.next.build_up_s = ahead.build_up.For(length, c.cycle.period_s, trajectory::kMostBuildUpCycles);
   } else {
     ahead.next.build_up_s = ahead[ahead.end() - 1].build_up_s;

@@ -31,9 +31,8 @@ inline constexpr int kHalvings = 12;
 inline constexpr int kHalvingsForHidden = 5;
 }  // namespace sampling
 
-// The acceleration along the way that the limits allow at a place, but for bends.
-inline double AccelerationAt(const PathPoint& point, const CoordinateLimits& limits) noexcept {
-  double acceleration = std::max(point.limits.acceleration, point.limits.deceleration);
+// What the coordinates leave at a place, but for bends, of an acceleration along the way.
+inline double AccelerationAt(const PathPoint& point, const CoordinateLimits& limits, double acceleration) noexcept {
   for (std::size_t k = 0; k < limits.count; ++k) {
     const double slope = std::abs(point.slopes.first[k]);
     const double own = point.left[k].acceleration * limits.of[k].acceleration;
@@ -46,7 +45,8 @@ inline double AccelerationAt(const PathPoint& point, const CoordinateLimits& lim
 class BuildUp {
  public:
   void Add(const PathPoint& point, const CoordinateLimits& limits) noexcept {
-    const double acceleration = AccelerationAt(point, limits);
+    const double acceleration = AccelerationAt(point, limits, point.limits.acceleration);
+    const double deceleration = AccelerationAt(point, limits, point.limits.deceleration);
     double jerk = point.limits.jerk;
     for (std::size_t k = 0; k < limits.count; ++k) {
       const double slope = std::abs(point.slopes.first[k]);
@@ -54,32 +54,56 @@ class BuildUp {
       if (slope * jerk > own) jerk = own / slope;
     }
     ++count_;
-    time_ += acceleration / jerk;
-    jerk_ += jerk;
-    acceleration_ += acceleration;
-    velocity_ += std::sqrt(SquareAt(point, limits, 1));
+    sums_.velocity += std::sqrt(SquareAt(point, limits, 1));
+    sums_.acceleration += acceleration;
+    sums_.deceleration += deceleration;
+    sums_.jerk += jerk;
+    least_time_ += std::min(acceleration, deceleration) / jerk;
+    most_time_ += std::max(acceleration, deceleration) / jerk;
   }
 
   // What the motion may do, in the mean.
   AlongPath Mean() const noexcept {
     const double n = std::max(count_, 1);
-    return {velocity_ / n, acceleration_ / n, acceleration_ / n, jerk_ / n};
+    return {sums_.velocity / n, sums_.acceleration / n, sums_.deceleration / n, sums_.jerk / n};
   }
 
   // Whole cycles. Longer than it takes to build up what may be is of no use, nor, on a short way, longer than it takes
-  // to build up what can be used: a quarter of the least time from rest to rest with that jerk.
+  // to build up what can be used: a quarter of the least time from rest to rest with that jerk. Between what one of
+  // acceleration and deceleration needs and what the other does, the time of the whole motion decides; it is not known
+  // of an infinite length.
   double For(double length, double period_s, double most_cycles) const noexcept {
     const double n = std::max(count_, 1);
-    const double time = std::min(time_ / n, maths::Cbrt(0.5 * length * n / jerk_));
+    const AlongPath mean = Mean();
+    const bool known = std::isfinite(length);
+    const double used = known ? maths::Cbrt(0.5 * length / mean.jerk) : length;
+    const double least = std::min(least_time_ / n, used), most = std::min(most_time_ / n, used);
+    double time = most;
+    for (int i = 0; i < kTried && known; ++i) {
+      const double shorter = least + (most - least) * i / kTried;
+      if (TimeWith(shorter, length, mean) < TimeWith(time, length, mean)) time = shorter;
+    }
     return period_s * std::clamp(std::ceil(time / period_s), 2.0, most_cycles);
   }
 
  private:
+  static constexpr int kTried = 8;
+
+  // From rest to rest with accelerations that build up in T, and are taken back before it brakes.
+  static double TimeWith(double time, double length, const AlongPath& mean) noexcept {
+    const double built_up = mean.jerk * time;
+    const double ramps = 1 / std::min(mean.acceleration, built_up) + 1 / std::min(mean.deceleration, built_up);
+    const double full = mean.velocity * (0.5 * mean.velocity * ramps + time);
+    if (length > full) return time + 0.5 * mean.velocity * ramps + length / mean.velocity;
+    // L = v² ramps / 2 + v T
+    const double velocity = (std::sqrt(time * time + 2 * length * ramps) - time) / ramps;
+    return 2 * time + velocity * ramps;
+  }
+
   int count_ = 0;
-  double time_ = 0;
-  double jerk_ = 0;
-  double acceleration_ = 0;
-  double velocity_ = 0;
+  double least_time_ = 0;  // T for the weaker one of acceleration and deceleration
+  double most_time_ = 0;   // and for the stronger one
+  AlongPath sums_;
 };
 
 // How far from a node the next one may be on a stretch at both ends of which the motion may be slow. Between two nodes
@@ -90,11 +114,15 @@ inline double StepBetweenSlowPlaces(const PathPoint& point, double begin, double
   namespace c = sampling;
   const double time = std::max(c::kTimeShare * build_up_s, c::kCycles * period_s);
   // The square root of the way from rest, 0.5 a t², grows so much from node to node.
-  const double growth =
-      std::max(std::sqrt(0.5 * AccelerationAt(point, limits)) * time, std::sqrt(2 * (end - begin)) / c::kMostSteps);
-  const double out = 2 * growth * std::sqrt(std::max(0.0, point.s - begin)) + growth * growth;
-  const double in = 2 * growth * std::sqrt(end - point.s) - growth * growth;
-  return std::max(growth * growth, std::min(out, in));
+  const auto growth = [&](double acceleration) {
+    const double has = AccelerationAt(point, limits, acceleration);
+    return std::max(std::sqrt(0.5 * has) * time, std::sqrt(2 * (end - begin)) / c::kMostSteps);
+  };
+  const double begins = growth(point.limits.acceleration), ends = growth(point.limits.deceleration);
+  const double out = 2 * begins * std::sqrt(std::max(0.0, point.s - begin)) + begins * begins;
+  const double in = 2 * ends * std::sqrt(end - point.s) - ends * ends;
+  const double least = std::min(begins, ends);
+  return std::max(least * least, std::min(out, in));
 }
 
 // Where bends between the places that are looked at are searched for. Ignored: the second slopes are not those of the
