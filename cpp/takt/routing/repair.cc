@@ -10,12 +10,10 @@
 namespace takt::routing {
 namespace {
 
-constexpr std::size_t kMostCells = 2'000'000;
 constexpr std::size_t kMostMovers = 8;  // planned anew at once
 constexpr int kMostConflicts = 400;     // of one mover
-constexpr int kLongestRing = 60;
-constexpr int kMoreSteps = 20;  // than twice the longest way
-constexpr int kMostDraws = 40;  // of a set of movers
+constexpr int kMoreSteps = 20;          // than twice the longest way
+constexpr int kMostDraws = 40;          // of a set of movers
 
 }  // namespace
 
@@ -27,15 +25,14 @@ int Repair::LastStep(const Task& task, const StepTables& tables) {
   return 2 * longest + kMoreSteps;
 }
 
-bool Repair::Fits(const Grid& grid, const Task& task, const StepTables& tables) {
-  return static_cast<std::size_t>(LastStep(task, tables) + 1) * static_cast<std::size_t>(grid.size()) <= kMostCells;
+std::int64_t Repair::Cells(const Grid& grid, const Task& task, const StepTables& tables) {
+  return static_cast<std::int64_t>(LastStep(task, tables) + 1) * grid.size();
 }
 
 Repair::Repair(const Grid& grid, Task task, const StepTables& tables, const std::vector<std::int32_t>& pools,
                std::uint64_t seed)
     : grid_(grid),
       task_(std::move(task)),
-      tables_(tables),
       pools_(pools),
       random_(seed),
       count_(static_cast<MoverIndex>(task_.starts.size())),
@@ -50,6 +47,7 @@ Repair::Repair(const Grid& grid, Task task, const StepTables& tables, const std:
       reached_(first_at_.size(), 0),
       its_conflicts_(first_at_.size(), 0),
       from_(first_at_.size(), kNone) {
+  for (const PlaceIndex target : task_.targets) left_.push_back(target == kNone ? &anywhere_ : &tables.at(target));
   for (MoverIndex i = 0; i < count_; ++i) least_sum_ += Alone(i);
 }
 
@@ -62,7 +60,7 @@ void Repair::ForConflicts(int step, PlaceIndex from, PlaceIndex to, const See& s
   ForThoseAt(step, to, [&](MoverIndex other) {
     // Those that each leave a place for the next: do they end where this one begins?
     PlaceIndex at = to, next = PlaceOf(other, step + 1);
-    for (int k = 0; k < kLongestRing && next != at; ++k) {
+    for (MoverIndex k = 0; k < count_ && next != at; ++k) {
       if (next == from) {
         see(other);
         return;
@@ -141,17 +139,17 @@ bool Repair::Search(MoverIndex mover, int conflicts, int bound) {
   const int least = conflicts == 0 ? earliest : 0;
   bound = std::min(bound, last_ + 1);
   ++search_;
-  for (auto& by_estimate : open_) {
-    for (auto& cells : by_estimate) cells.clear();
+  for (std::size_t row = 0; row < open_.size() && row <= static_cast<std::size_t>(conflicts); ++row) {
+    for (auto& cells : open_[row]) cells.clear();
   }
-  const auto push = [&](int step, PlaceIndex place, int its, std::int32_t from) {
+  const auto push = [&](int step, PlaceIndex place, int with, std::int32_t from) {
     const std::size_t cell = Cell(step, place);
     const int estimate = std::max(step + At(left, place), least);
-    if (its > conflicts || estimate >= bound || (reached_[cell] == search_ && its_conflicts_[cell] <= its)) return;
+    if (with > conflicts || estimate >= bound || (reached_[cell] == search_ && its_conflicts_[cell] <= with)) return;
     reached_[cell] = search_;
-    its_conflicts_[cell] = its;
+    its_conflicts_[cell] = with;
     from_[cell] = from;
-    const auto row = static_cast<std::size_t>(its);
+    const auto row = static_cast<std::size_t>(with);
     if (open_.size() <= row) open_.resize(row + 1);
     if (open_[row].empty()) open_[row].resize(static_cast<std::size_t>(last_) + 1);
     open_[row][static_cast<std::size_t>(estimate)].push_back(static_cast<std::int32_t>(cell));
@@ -192,9 +190,9 @@ bool Repair::Search(MoverIndex mover, int conflicts, int bound) {
       std::stable_sort(to.begin(), to.begin() + static_cast<std::ptrdiff_t>(count),
                        [&](PlaceIndex a, PlaceIndex b) { return At(left, a) > At(left, b); });
       for (std::size_t k = 0; k < count; ++k) {
-        int its = row;
-        ForConflicts(step, place, to[k], [&](MoverIndex) { ++its; });
-        push(step + 1, to[k], its, cell);
+        int with = row;
+        ForConflicts(step, place, to[k], [&](MoverIndex) { ++with; });
+        push(step + 1, to[k], with, cell);
       }
     }
   }
@@ -326,14 +324,22 @@ void Repair::ImproveSome(Movers movers, double heat) {
   std::vector<Steps> old;
   for (const MoverIndex i : movers) old.push_back(Remove(i));
   before -= sum_;
-  const Configuration old_targets = task_.targets;
+  // Two of a pool may exchange their targets.
+  MoverIndex a = kNone, b = kNone;
   if (!pools_.empty() && movers.size() > 1 && random_.Below(2) == 0) {
-    const MoverIndex a = movers[0], b = movers[1 + random_.Below(movers.size() - 1)];
+    a = movers[0];
+    b = movers[1 + random_.Below(movers.size() - 1)];
     const bool both = At(task_.targets, a) != kNone && At(task_.targets, b) != kNone;
-    if (both && At(pools_, a) != kNone && At(pools_, a) == At(pools_, b)) {
-      std::swap(At(task_.targets, a), At(task_.targets, b));
-    }
+    if (!both || At(pools_, a) == kNone || At(pools_, a) != At(pools_, b)) a = b = kNone;
   }
+  const auto exchange = [&] {
+    if (a == kNone) return;
+    least_sum_ -= Alone(a) + Alone(b);
+    std::swap(At(task_.targets, a), At(task_.targets, b));
+    std::swap(At(left_, a), At(left_, b));
+    least_sum_ += Alone(a) + Alone(b);
+  };
+  exchange();
   for (const MoverIndex i : movers) alone += Alone(i);
   const std::int64_t others = sum_;
   const double worse = heat > 0 ? -heat * maths::Log(1 - random_.Unit()) : 0;
@@ -345,13 +351,9 @@ void Repair::ImproveSome(Movers movers, double heat) {
     if (bound <= 0 || !Search(movers[done], 0, static_cast<int>(std::min<std::int64_t>(bound, last_ + 1)))) break;
     Put(movers[done], found_);
   }
-  if (done == movers.size()) {
-    least_sum_ = 0;
-    for (MoverIndex i = 0; i < count_; ++i) least_sum_ += Alone(i);
-    return;
-  }
+  if (done == movers.size()) return;
   while (done-- > 0) Remove(movers[done]);
-  task_.targets = old_targets;
+  exchange();
   for (std::size_t k = 0; k < movers.size(); ++k) Put(movers[k], old[k]);
 }
 

@@ -19,12 +19,14 @@ namespace takt::routing {
 
 class Repair {
  public:
-  // Keeps references to all but the task. `pools`: as those of Improving.
+  // Keeps references to all but the task. Not to be copied or moved. `pools`: as those of Improving.
   Repair(const Grid& grid, Task task, const StepTables& tables, const std::vector<std::int32_t>& pools,
          std::uint64_t seed);
+  Repair(const Repair&) = delete;
+  Repair& operator=(const Repair&) = delete;
 
-  // Whether its tables are small enough: they have a line for each step and a column for each place.
-  static bool Fits(const Grid& grid, const Task& task, const StepTables& tables);
+  // The size of its tables, which have a line for each step and a column for each place.
+  static std::int64_t Cells(const Grid& grid, const Task& task, const StepTables& tables);
 
   // Returns whether there is no conflict left, before so many states were looked at.
   bool Find(std::int64_t effort);
@@ -50,7 +52,7 @@ class Repair {
     return static_cast<std::size_t>(mover) * (static_cast<std::size_t>(last_) + 1) + static_cast<std::size_t>(step);
   }
   PlaceIndex PlaceOf(MoverIndex mover, int step) const noexcept { return where_[Line(mover, step)]; }
-  // Calls `see` with each other mover at the place in that step.
+  // Calls `see` with each mover at the place in that step.
   template <typename See>
   void ForThoseAt(int step, PlaceIndex place, const See& see) const {
     for (MoverIndex i = first_at_[Cell(step, place)]; i != kNone; i = next_at_[Line(i, step)]) see(i);
@@ -59,10 +61,7 @@ class Repair {
   template <typename See>
   void ForConflicts(int step, PlaceIndex from, PlaceIndex to, const See& see) const;
 
-  const std::vector<std::int32_t>& Left(MoverIndex mover) const {
-    const PlaceIndex target = At(task_.targets, mover);
-    return target == kNone ? anywhere_ : tables_.at(target);
-  }
+  const std::vector<std::int32_t>& Left(MoverIndex mover) const { return *At(left_, mover); }
   int Alone(MoverIndex mover) const { return At(Left(mover), At(task_.starts, mover)); }
   int Delay(MoverIndex mover) const { return At(arrivals_, mover) - Alone(mover); }
   // Movers at the place after that step.
@@ -87,19 +86,19 @@ class Repair {
 
   const Grid& grid_;
   Task task_;
-  const StepTables& tables_;
   const std::vector<std::int32_t>& pools_;
   Random random_;
   MoverIndex count_;
   std::size_t places_;
   int last_;  // step, until which all have to be at their targets
   std::vector<std::int32_t> anywhere_;
-  std::vector<PlaceIndex> where_;     // by mover and step
-  std::vector<MoverIndex> first_at_;  // by step and place, a list of who is there:
-  std::vector<MoverIndex> next_at_;   // by mover and step
-  std::vector<int> arrivals_;         // by mover, step
-  std::vector<Movers> in_conflict_;   // by mover, with whom
-  std::int64_t conflicts_ = 0;        // pairs of movers
+  std::vector<const std::vector<std::int32_t>*> left_;  // by mover: steps to its target
+  std::vector<PlaceIndex> where_;                       // by mover and step
+  std::vector<MoverIndex> first_at_;                    // by step and place, a list of who is there:
+  std::vector<MoverIndex> next_at_;                     // by mover and step
+  std::vector<int> arrivals_;                           // by mover, step
+  std::vector<Movers> in_conflict_;                     // by mover, with whom
+  std::int64_t conflicts_ = 0;                          // pairs of movers
   std::int64_t sum_ = 0, least_sum_ = 0, looked_at_ = 0, end_ = 0;
 
   // Of the search: by step and place

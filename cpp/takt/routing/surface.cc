@@ -19,14 +19,17 @@ namespace {
 
 constexpr std::int64_t kStepEffort = 4'000'000;  // places looked at for a first plan; by mover and step
 constexpr std::int64_t kLeastSteps = 5'000;
-constexpr int kSeeds = 8;                              // first plans, of which the best is taken; with few movers
-constexpr std::int64_t kMoversPerSeed = 400;           // ... of 8 seeds: with more movers fewer seeds
-constexpr int kTurns = 6;                              // tries of prioritised planning
-constexpr std::int64_t kTurnStates = 4'000;            // states that those may take
-constexpr double kCrowded = 1.1;                       // of the lower bound: above, movers are in the way of others
-constexpr std::int64_t kStepShare = 5;                 // of the effort, for better steps, twice
-constexpr std::int64_t kMostEffort = 100'000'000'000;  // ... more would not end either
-constexpr std::int64_t kStepStates = 16;               // states of steps that take as long as one of Improve
+constexpr int kSeeds = 8;                     // first plans, of which the best is taken; with few movers
+constexpr std::int64_t kMoversPerSeed = 400;  // ... of 8 seeds: with more movers fewer seeds
+constexpr int kTurns = 6;                     // tries of prioritised planning
+constexpr std::int64_t kTurnStates = 4'000;   // states that those may take
+constexpr double kCrowded = 1.5;              // of the lower bound: above, movers are in the way of others
+constexpr int kShares = 6;                    // of the effort: see PlanSurface
+constexpr std::int64_t kStepStates = 16;      // states of steps that take as long as one of Improve
+constexpr std::int64_t kCellsPerState = 16;   // of tables that are made
+constexpr std::int64_t kMostCells = 2'000'000;
+constexpr std::int64_t kLeastPerMover = 250;           // states of steps; with less repair finds none
+constexpr std::int64_t kMostEffort = 100'000'000'000;  // for steps
 
 // Which mover of a pool takes which of its targets, by the times alone. Returns a mover that reaches none; kNone: all
 // do.
@@ -91,30 +94,33 @@ void MakeVisits(const Grid& grid, const SurfaceProblem& problem, SurfacePlan& pl
 class BetterSteps {
  public:
   using Offer = std::function<double(const std::vector<Configuration>&)>;
-  BetterSteps(const Grid& grid, const Task& task, const SurfaceProblem& problem, Offer offer)
+  BetterSteps(const Grid& grid, const Task& task, const StepTables& tables, const SurfaceProblem& problem, Offer offer)
       : grid_(grid),
         task_(task),
+        tables_(tables),
         problem_(problem),
         offer_(std::move(offer)),
-        tables_(MakeStepTables(grid, task)),
-        budget_(std::min(problem.effort / kStepShare, kMostEffort) * kStepStates) {}
+        cells_(Repair::Cells(grid, task, tables)),
+        budget_(std::clamp<std::int64_t>(problem.effort / kShares, 0, kMostEffort) * kStepStates) {}
 
-  // Returns the effort that it took.
-  std::int64_t Run(const std::vector<Configuration>& first) {
-    if (!Repair::Fits(grid_, task_, tables_)) return 0;
+  // Whether some may be found with that effort.
+  bool Worthwhile() const noexcept {
+    return cells_ <= std::min(kMostCells, budget_ * kCellsPerState) && budget_ >= kLeastPerMover * movers();
+  }
+  // With two shares of the effort.
+  void Run(const std::vector<Configuration>& first, double first_sum) {
     FindSome();
     if (best_) {
       ImproveBest();
     } else {
-      LookForTails(first);
+      LookForTails(first, first_sum);
     }
-    return spent_ / kStepStates;
   }
 
  private:
-  double Try(const std::vector<Configuration>& steps) {
-    spent_ += static_cast<std::int64_t>(task_.starts.size() * steps.size());
-    return offer_(steps);
+  std::int64_t movers() const noexcept { return static_cast<std::int64_t>(task_.starts.size()); }
+  std::int64_t Size(const std::vector<Configuration>& steps) const noexcept {
+    return movers() * static_cast<std::int64_t>(steps.size());
   }
   // By repair, of one seed after the other.
   void FindSome() {
@@ -122,39 +128,39 @@ class BetterSteps {
     for (std::uint64_t seed = problem_.seed; spent_ < budget_; ++seed) {
       auto one = std::make_unique<Repair>(grid_, task_, tables_, problem_.pools, seed);
       const bool found = one->Find(budget_ - spent_);
-      spent_ += one->looked_at() + 1;
+      spent_ += one->looked_at() + 1 + cells_ / kCellsPerState;
       if (!found) continue;
-      const double sum = Try(one->steps());
-      if (sum >= least) continue;
-      least = sum;
-      best_ = std::move(one);
+      const std::vector<Configuration> steps = one->steps();
+      spent_ += Size(steps);
+      const bool alone = one->sum() == one->least_sum();  // they cannot be fewer
+      if (const double sum = offer_(steps); sum < least) {
+        least = sum;
+        best_ = std::move(one);
+      }
+      if (alone) return;
     }
   }
   void ImproveBest() {
     constexpr int kParts = 8;       // each with less heat than the one before
     constexpr double kHeat = 0.02;  // of the mean of steps alone
-    const double heat = kHeat * static_cast<double>(best_->least_sum()) / static_cast<double>(task_.starts.size());
-    for (int k = 1; k <= kParts; ++k) {
-      const std::int64_t before = best_->looked_at();
+    const double heat = kHeat * static_cast<double>(best_->least_sum()) / static_cast<double>(movers());
+    for (int k = 1; k <= kParts && best_->sum() > best_->least_sum(); ++k) {
       best_->Improve(budget_ / kParts, heat * (kParts - k) / kParts);
-      spent_ += best_->looked_at() - before;
-      Try(best_->steps());
+      offer_(best_->steps());
     }
   }
   // From any step of the first ones on they are looked for anew.
-  void LookForTails(std::vector<Configuration> now) {
-    constexpr std::int64_t kCost = 3;  // states, by mover and step
-    double least = Try(now);
+  void LookForTails(std::vector<Configuration> now, double least) {
+    constexpr std::int64_t kCost = 4;  // states, by mover and step
     Random random(problem_.seed);
-    for (const std::int64_t end = spent_ + budget_; spent_ < end && now.size() > 1;) {
+    for (std::int64_t left = 2 * budget_ - spent_; now.size() > 1 && (left -= kCost * Size(now)) > 0;) {
       const auto at = now.begin() + static_cast<std::ptrdiff_t>(random.Below(now.size() - 1));
       const StepSearch tail =
           FindSteps(grid_, {.starts = *at, .targets = task_.targets}, tables_, random.Next(), kLeastSteps);
-      spent_ += kCost * static_cast<std::int64_t>(task_.starts.size() * now.size());
       if (!tail.steps) continue;
       std::vector<Configuration> steps(now.begin(), at);
       steps.insert(steps.end(), tail.steps->begin(), tail.steps->end());
-      const double sum = Try(steps);
+      const double sum = offer_(steps);
       if (sum >= least) continue;
       least = sum;
       now = std::move(steps);
@@ -163,10 +169,10 @@ class BetterSteps {
 
   const Grid& grid_;
   const Task& task_;
+  const StepTables& tables_;
   const SurfaceProblem& problem_;
   Offer offer_;
-  StepTables tables_;
-  std::int64_t budget_, spent_ = 0;  // states
+  std::int64_t cells_, budget_, spent_ = 0;  // states; the budget twice
   std::unique_ptr<Repair> best_;
 };
 
@@ -200,8 +206,9 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
     std::optional<std::vector<Legs>> legs = Compose(grid, steps);
     return legs ? offer(Plan{.legs = *std::move(legs), .targets = steps.back()}) : kForever;
   };
-  std::vector<Configuration> first;
-  double first_sum = kForever;
+  std::vector<Configuration> steps;  // the first ones
+  double steps_sum = kForever;
+  StepTables tables;
   Task swapped = task;
   const bool all_have_targets = std::find(task.targets.begin(), task.targets.end(), kNone) == task.targets.end();
   const bool one_pool = different.size() == 1 && *different.begin() != kNone;
@@ -210,15 +217,15 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
   }
   const auto movers = static_cast<std::int64_t>(std::max<std::size_t>(1, task.starts.size()));
   if (!best) {
-    const StepTables tables = MakeStepTables(grid, task);
+    tables = MakeStepTables(grid, task);
     const std::int64_t effort = std::max(kLeastSteps, kStepEffort / movers);
     const auto seeds = static_cast<std::uint64_t>(std::clamp<std::int64_t>(kMoversPerSeed / movers, 1, kSeeds));
     for (std::uint64_t k = 0; k < seeds; ++k) {
       StepSearch found = FindSteps(grid, task, tables, problem.seed + k, best ? kLeastSteps : effort);
       if (found.steps) {
-        if (const double sum = offer_steps(*found.steps); sum < first_sum) {
-          first_sum = sum;
-          first = *std::move(found.steps);
+        if (const double sum = offer_steps(*found.steps); sum < steps_sum) {
+          steps_sum = sum;
+          steps = *std::move(found.steps);
         }
       }
       if (!best) {
@@ -231,12 +238,23 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
   }
   offer(PlanInTurn(grid, task, alone, kTurns, kTurnStates));
   result.first_sum = SumOf(grid, *best);
-  std::int64_t effort = problem.effort;
-  if (!first.empty() && result.first_sum > kCrowded * result.lower_bound) {
-    effort -= BetterSteps(grid, task, problem, offer_steps).Run(first);
+  // Whoever has no target ends where the plan that improvements begin with leaves it.
+  const auto improve = [&](Plan plan, std::int64_t effort) {
+    return Improve(grid, task, alone, std::move(plan), {.effort = effort, .seed = problem.seed, .pools = pools});
+  };
+  std::int64_t left = problem.effort;
+  if (!steps.empty() && result.first_sum > kCrowded * result.lower_bound) {
+    if (BetterSteps better(grid, task, tables, problem, offer_steps); better.Worthwhile()) {
+      // A share for the first plan, two for better steps, one for the plan that these become; the rest for the better.
+      const std::int64_t share = problem.effort / kShares;
+      Plan first = improve(*std::exchange(best, std::nullopt), share);
+      better.Run(steps, steps_sum);
+      if (best) best = improve(*std::move(best), share);
+      offer(std::move(first));
+      left -= 4 * share;
+    }
   }
-  // Whoever has none of its own ends where the first plan leaves it.
-  Plan plan = Improve(grid, task, alone, *std::move(best), {.effort = effort, .seed = problem.seed, .pools = pools});
+  Plan plan = improve(*std::move(best), left);
   result.outcome = Outcome::kPlanned;
   result.sum = SumOf(grid, plan);
   result.targets = std::move(plan.targets);

@@ -107,7 +107,6 @@ TEST(Repair, StepsOfRandomWorldsCanBeCarriedOut) {
     const World world = AnyWorld(random, trial);
     const Grid grid(world.width, world.height, 120, 118, kOfSquares, world.blocked);
     const StepTables tables = MakeStepTables(grid, world.task);
-    ASSERT_TRUE(Repair::Fits(grid, world.task, tables));
     Repair repair(grid, world.task, tables, world.pools, random.Next());
     if (!repair.Find(100'000)) continue;
     ++found;
@@ -159,6 +158,22 @@ TEST(Repair, ClosesNoRing) {
   ASSERT_TRUE(repair.Find(100'000));
   EXPECT_EQ(Fault(world, repair.steps()), "");
   EXPECT_GT(repair.sum(), 4);
+}
+
+TEST(Repair, KnowsRingsOfAnyLength) {
+  // A border of 62 places, all filled, each mover bound for the next place: nothing can move.
+  World world{.width = 17, .height = 16, .blocked = std::vector<bool>(272, true)};
+  for (int x = 0; x < 17; ++x) world.task.starts.push_back(x);
+  for (int y = 1; y < 16; ++y) world.task.starts.push_back(17 * y + 16);
+  for (int x = 15; x >= 0; --x) world.task.starts.push_back(17 * 15 + x);
+  for (int y = 14; y > 0; --y) world.task.starts.push_back(17 * y);
+  world.task.targets = world.task.starts;
+  std::rotate(world.task.targets.begin(), world.task.targets.begin() + 1, world.task.targets.end());
+  for (const PlaceIndex place : world.task.starts) world.blocked[static_cast<std::size_t>(place)] = false;
+  const Grid grid(world.width, world.height, 120, 118, kOfSquares, world.blocked);
+  const StepTables tables = MakeStepTables(grid, world.task);
+  Repair repair(grid, world.task, tables, world.pools, 1);
+  EXPECT_FALSE(repair.Find(20'000));
 }
 
 }  // namespace

@@ -335,6 +335,17 @@ TEST(Surface, ThreeQuartersFilled) {
   EXPECT_TRUE(CanBeCarriedOut(PlanAndCheck(problem)));
 }
 
+TEST(Surface, CrowdedPlacesAreMuchQuickerThanAtFirst) {
+  Random random(13);
+  SurfaceProblem problem = Empty(7, 7);
+  problem.starts = RandomPlaces(problem, 36, random);
+  problem.targets = RandomPlaces(problem, 36, random);
+  problem.effort = 60'000;
+  const SurfacePlan plan = PlanAndCheck(problem);
+  EXPECT_TRUE(CanBeCarriedOut(plan));
+  EXPECT_LT(plan.sum, 0.6 * plan.first_sum);  // 0.79 without better steps
+}
+
 TEST(Surface, InterchangeableTargetsComeNearTheBestAssignment) {
   Random random(5);
   SurfaceProblem problem = Empty(6, 6);
