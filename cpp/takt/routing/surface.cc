@@ -1,17 +1,15 @@
 #include "takt/routing/surface.h"
 
 #include <algorithm>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
 
 #include "takt/routing/assignment.h"
+#include "takt/routing/better_steps.h"
 #include "takt/routing/compose.h"
 #include "takt/routing/improve.h"
-#include "takt/routing/repair.h"
 #include "takt/routing/steps.h"
 
 namespace takt::routing {
@@ -24,12 +22,7 @@ constexpr std::int64_t kMoversPerSeed = 400;  // ... of 8 seeds: with more mover
 constexpr int kTurns = 6;                     // tries of prioritised planning
 constexpr std::int64_t kTurnStates = 4'000;   // states that those may take
 constexpr double kCrowded = 1.5;              // of the lower bound: above, movers are in the way of others
-constexpr int kShares = 6;                    // of the effort: see PlanSurface
-constexpr std::int64_t kStepStates = 16;      // states of steps that take as long as one of Improve
-constexpr std::int64_t kCellsPerState = 16;   // of tables that are made
-constexpr std::int64_t kMostCells = 2'000'000;
-constexpr std::int64_t kLeastPerMover = 250;           // states of steps; with less repair finds none
-constexpr std::int64_t kMostEffort = 100'000'000'000;  // for steps
+constexpr int kShares = 6;                    // of the effort: see below
 
 // Which mover of a pool takes which of its targets, by the times alone. Returns a mover that reaches none; kNone: all
 // do.
@@ -89,92 +82,6 @@ void MakeVisits(const Grid& grid, const SurfaceProblem& problem, SurfacePlan& pl
     }
   }
 }
-
-// Better steps than the first ones. `offer` returns the sum of the arrivals [s] that steps become.
-class BetterSteps {
- public:
-  using Offer = std::function<double(const std::vector<Configuration>&)>;
-  BetterSteps(const Grid& grid, const Task& task, const StepTables& tables, const SurfaceProblem& problem, Offer offer)
-      : grid_(grid),
-        task_(task),
-        tables_(tables),
-        problem_(problem),
-        offer_(std::move(offer)),
-        cells_(Repair::Cells(grid, task, tables)),
-        budget_(std::clamp<std::int64_t>(problem.effort / kShares, 0, kMostEffort) * kStepStates) {}
-
-  // Whether some may be found with that effort.
-  bool Worthwhile() const noexcept {
-    return cells_ <= std::min(kMostCells, budget_ * kCellsPerState) && budget_ >= kLeastPerMover * movers();
-  }
-  // With two shares of the effort.
-  void Run(const std::vector<Configuration>& first, double first_sum) {
-    FindSome();
-    if (best_) {
-      ImproveBest();
-    } else {
-      LookForTails(first, first_sum);
-    }
-  }
-
- private:
-  std::int64_t movers() const noexcept { return static_cast<std::int64_t>(task_.starts.size()); }
-  std::int64_t Size(const std::vector<Configuration>& steps) const noexcept {
-    return movers() * static_cast<std::int64_t>(steps.size());
-  }
-  // By repair, of one seed after the other.
-  void FindSome() {
-    double least = kForever;
-    for (std::uint64_t seed = problem_.seed; spent_ < budget_; ++seed) {
-      auto one = std::make_unique<Repair>(grid_, task_, tables_, problem_.pools, seed);
-      const bool found = one->Find(budget_ - spent_);
-      spent_ += one->looked_at() + 1 + cells_ / kCellsPerState;
-      if (!found) continue;
-      const std::vector<Configuration> steps = one->steps();
-      spent_ += Size(steps);
-      const bool alone = one->sum() == one->least_sum();  // they cannot be fewer
-      if (const double sum = offer_(steps); sum < least) {
-        least = sum;
-        best_ = std::move(one);
-      }
-      if (alone) return;
-    }
-  }
-  void ImproveBest() {
-    constexpr int kParts = 8;       // each with less heat than the one before
-    constexpr double kHeat = 0.02;  // of the mean of steps alone
-    const double heat = kHeat * static_cast<double>(best_->least_sum()) / static_cast<double>(movers());
-    for (int k = 1; k <= kParts && best_->sum() > best_->least_sum(); ++k) {
-      best_->Improve(budget_ / kParts, heat * (kParts - k) / kParts);
-      offer_(best_->steps());
-    }
-  }
-  // From any step of the first ones on they are looked for anew.
-  void LookForTails(std::vector<Configuration> now, double least) {
-    constexpr std::int64_t kCost = 4;  // states, by mover and step
-    Random random(problem_.seed);
-    for (std::int64_t left = 2 * budget_ - spent_; now.size() > 1 && (left -= kCost * Size(now)) > 0;) {
-      const auto at = now.begin() + static_cast<std::ptrdiff_t>(random.Below(now.size() - 1));
-      const StepSearch tail =
-          FindSteps(grid_, {.starts = *at, .targets = task_.targets}, tables_, random.Next(), kLeastSteps);
-      if (!tail.steps) continue;
-      std::vector<Configuration> steps(now.begin(), at);
-      steps.insert(steps.end(), tail.steps->begin(), tail.steps->end());
-      const double sum = offer_(steps);
-      if (sum >= least) continue;
-      least = sum;
-      now = std::move(steps);
-    }
-  }
-
-  const Grid& grid_;
-  const Task& task_;
-  const StepTables& tables_;
-  const SurfaceProblem& problem_;
-  Offer offer_;
-  std::int64_t cells_, budget_, spent_ = 0;  // states; the budget twice
-  std::unique_ptr<Repair> best_;
-};
 
 }  // namespace
 
@@ -244,11 +151,12 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
   };
   std::int64_t left = problem.effort;
   if (!steps.empty() && result.first_sum > kCrowded * result.lower_bound) {
-    if (BetterSteps better(grid, task, tables, problem, offer_steps); better.Worthwhile()) {
-      // A share for the first plan, two for better steps, one for the plan that these become; the rest for the better.
-      const std::int64_t share = problem.effort / kShares;
+    // A share for the first plan, two for better steps, one for the plan that these become; the rest for the better.
+    const std::int64_t share = problem.effort / kShares;
+    BetterSteps better(grid, task, tables, pools, {.effort = share, .seed = problem.seed});
+    if (better.Worthwhile()) {
       Plan first = improve(*std::exchange(best, std::nullopt), share);
-      better.Run(steps, steps_sum);
+      better.Run(std::move(steps), steps_sum, offer_steps);
       if (best) best = improve(*std::move(best), share);
       offer(std::move(first));
       left -= 4 * share;
