@@ -69,7 +69,7 @@ bool MakeBlend(const Context& c, const Stretch& before, const Stretch& after, do
                      RampOf(c, before, after)) == path::Problem::kNone;
 }
 
-// The slowest speed, squared, that the limits ask for on a blend; negative where it cannot be gone.
+// The least velocity, squared, that the limits allow on a blend; negative where there is no way to follow it.
 double SquareOn(const Context& c, const State& s, const Stretch& blend) {
   double square = std::numeric_limits<double>::infinity();
   kinematics::Joints near = c.ahead.end_joints;

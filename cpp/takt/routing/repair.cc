@@ -58,7 +58,7 @@ void Repair::ForConflicts(int step, PlaceIndex from, PlaceIndex to, const See& s
   ForThoseAt(step + 1, to, see);
   if (from == to) return;
   ForThoseAt(step, to, [&](MoverIndex other) {
-    // Those that each leave a place for the next: do they end where this one begins?
+    // A chain of movers, each of which enters the place that the next one leaves: does it lead back to `from`?
     PlaceIndex at = to, next = PlaceOf(other, step + 1);
     for (MoverIndex k = 0; k < count_ && next != at; ++k) {
       if (next == from) {
@@ -210,7 +210,7 @@ void Repair::Add(Movers& movers, MoverIndex one) {
   if (std::find(movers.begin(), movers.end(), one) == movers.end()) movers.push_back(one);
 }
 
-// Those that are near where some of them are, at nearly the same time.
+// Movers near some of them, within a few steps.
 void Repair::AddThoseNear(Movers& movers, std::size_t most) {
   constexpr int kSteps = 4;
   for (int draw = 0; draw < kMostDraws && movers.size() < most; ++draw) {
@@ -234,7 +234,7 @@ Repair::Movers Repair::SomeInConflict() {
   Movers movers{all[random_.Below(all.size())]};
   const std::size_t most = std::min(2 + random_.Below(kMostMovers - 1), static_cast<std::size_t>(count_));
   switch (random_.Below(3)) {
-    case 0:  // those that are in conflict with each other
+    case 0:  // movers in conflict with each other
       for (int draw = 0; draw < kMostDraws && movers.size() < most; ++draw) {
         const Movers& others = At(in_conflict_, movers[random_.Below(movers.size())]);
         if (!others.empty()) Add(movers, others[random_.Below(others.size())]);
@@ -262,7 +262,7 @@ Repair::Movers Repair::SomeDelayed() {
     MoverIndex late = 0;
     while (late + 1 < count_ && (at -= Delay(late)) >= 0) ++late;
     movers.push_back(late);
-    // Those that are where it could go to be there earlier.
+    // Movers on a shorter path of it.
     const std::vector<std::int32_t>& left = Left(late);
     for (int draw = 0; kind == 0 && draw < kMostDraws && movers.size() < most; ++draw) {
       int step = static_cast<int>(random_.Below(static_cast<std::size_t>(std::max(1, At(arrivals_, late)))));

@@ -1,11 +1,11 @@
-// Steps for many movers, found by repair. At first each takes the way with the fewest conflicts with those before it;
+// Steps for many movers, found by repair. At first each takes the path with the fewest conflicts with those before it;
 // then movers in conflict are planned anew, a few at a time, until there is none (MAPF-LNS2: Li et al., AAAI 2022).
 // After that the sum of the arrivals is made less in the same way (MAPF-LNS: Li et al., IJCAI 2021). Where many places
 // are filled these are far fewer steps than FindSteps finds; but the search is not complete.
 //
 // Two movers are in conflict if they are at one place at a time, exchange places, or take part in a ring in which each
-// enters the place of the next. A mover that enters a place in the step in which another one leaves it is in none:
-// Compose lets it wait until the place is empty.
+// enters the place of the next. To enter a place in the step in which another mover leaves it is no conflict: Compose
+// lets the mover wait until the place is empty.
 #pragma once
 
 #include <cstddef>

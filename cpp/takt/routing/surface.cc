@@ -145,7 +145,7 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
   }
   offer(PlanInTurn(grid, task, alone, kTurns, kTurnStates));
   result.first_sum = SumOf(grid, *best);
-  // Whoever has no target ends where the plan that improvements begin with leaves it.
+  // A mover without a target ends where the plan that is improved leaves it.
   const auto improve = [&](Plan plan, std::int64_t effort) {
     return Improve(grid, task, alone, std::move(plan), {.effort = effort, .seed = problem.seed, .pools = pools});
   };
