@@ -187,6 +187,8 @@ def test_why_something_waits() -> None:
     assert words("mover", values_of("mover", delay=5), name_of).waits == "waits for its master"
     assert words("mover", values_of("mover", delay=8), name_of).waits == "waits until nothing moves on a track"
     assert words("mover", values_of("mover", delay=9), name_of).waits == "waits until it has left its formation"
+    place = words("mover", values_of("mover", delay=10, blocker=2), name_of)
+    assert place.waits == "waits for its next place, which right visits before"
     axis = words("axis", values_of("axis", state=2, limited_by=1, buffered_commands=2, override_factor=0.5), name_of)
     assert (axis.state, axis.waits) == ("DiscreteMotion", "")
     assert axis.more == "held back by its limit of velocity, 2 commands behind it, override 50 %"

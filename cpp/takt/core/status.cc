@@ -91,6 +91,7 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kMoverTooLarge, "MoverTooLarge", "the mover is larger than those the track is for"},
     ErrorInfo{ErrorId::kTrackGeometry, "TrackGeometry", "the track cannot be so"},
     ErrorInfo{ErrorId::kGapTooSmall, "GapTooSmall", "movers of this size, turned so, would touch at that gap"},
+    ErrorInfo{ErrorId::kRoute, "Route", "the route over the free surface cannot be so"},
     ErrorInfo{ErrorId::kObjectMoves, "ObjectMoves", "what is in the group has to rest for this"},
     ErrorInfo{ErrorId::kStators, "Stators", "the stators cannot be so"},
     ErrorInfo{ErrorId::kEnvironmentUsed, "EnvironmentUsed",

@@ -85,6 +85,7 @@ enum class ErrorId : std::uint16_t {
   kMoverTooLarge = 3049,      // the mover is larger than those the track is for
   kTrackGeometry = 3050,      // a track cannot be so; the value of the feedback says why
   kGapTooSmall = 3051,        // movers would touch at that gap; the value of the feedback is the least that would do
+  kRoute = 3052,              // a route over the free surface cannot be so; the value of the feedback says why
   kObjectMoves = 3060,        // movers have to rest for this
   kStators = 3061,            // stators cannot be so; the value of the feedback says why
   kEnvironmentUsed = 3062,    // the environment is in an enabled group, or its boundary is being made

@@ -138,6 +138,9 @@ bool Releases(const mover::Disable&) noexcept {
 bool Releases(const mover::StopExternalSetpointGeneration&) noexcept {
   return true;
 }
+bool Releases(const mover::HoldRoutes& c) noexcept {
+  return c.hold;
+}
 bool Releases(const track::Disable&) noexcept {
   return true;
 }
@@ -192,6 +195,8 @@ const std::vector<Entry>& Entries() {
       Make<MachineCommand, cam::DropCam>(kMachine, "drop_cam"),
       Make<MachineCommand, cam::ReadCam>(kMachine, "read_cam"),
       Make<MachineCommand, cam::CamBuilt>(kMachine, "cam_built"),
+      Make<MachineCommand, mover::StartRoutes>(kMachine, "start_routes"),
+      Make<MachineCommand, mover::HoldRoutes>(kMachine, "hold_routes"),
       Make<axis::Command, axis::Power>(kAxis, "power"),
       Make<axis::Command, axis::Reset>(kAxis, "reset"),
       Make<axis::Command, axis::Straighten>(kAxis, "straighten"),
@@ -345,6 +350,8 @@ const std::vector<Entry>& Entries() {
       Make<mover::Command, mover::RemoveFromGroup>(kMover, "remove_from_group"),
       Make<mover::Command, mover::JoinFormation>(kMover, "join_formation"),
       Make<mover::Command, mover::LeaveFormation>(kMover, "leave_formation"),
+      Make<mover::Command, mover::SetRoute>(kMover, "set_route"),
+      Make<mover::Command, mover::ContinueRoute>(kMover, "continue_route"),
       Make<track::Command, track::AppendLine>(kTrack, "append_line"),
       Make<track::Command, track::AppendCircle>(kTrack, "append_circle"),
       Make<track::Command, track::AppendPosition>(kTrack, "append_position"),

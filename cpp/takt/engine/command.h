@@ -51,9 +51,9 @@ void describe(Description<FailAllAxes>&);
 void describe(Description<Release>&);
 void describe(Description<Renew>&);
 
-using MachineCommand =
-    std::variant<StopAll, EmergencyStop, ReleaseEmergencyStop, FailAllAxes, Release, Renew, cam::BeginCam,
-                 cam::AddCamPoints, cam::AddCamSegments, cam::BuildCam, cam::DropCam, cam::ReadCam, cam::CamBuilt>;
+using MachineCommand = std::variant<StopAll, EmergencyStop, ReleaseEmergencyStop, FailAllAxes, Release, Renew,
+                                    cam::BeginCam, cam::AddCamPoints, cam::AddCamSegments, cam::BuildCam, cam::DropCam,
+                                    cam::ReadCam, cam::CamBuilt, mover::StartRoutes, mover::HoldRoutes>;
 // Behind those of the machine itself, in the order of ComponentKinds().
 using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command, conveyor::Command,
                                  conveyor::PoseCommand, pickplace::Command, mover::Command, track::Command,

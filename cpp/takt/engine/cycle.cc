@@ -148,6 +148,11 @@ void UseTracks(World& w) {
   planar::AdvanceTracks(w.grounds);
 }
 
+mover::Everyone AllMovers(World& w) {
+  const auto context = [](void* owner, std::size_t i) noexcept { return MoverContext(*static_cast<World*>(owner), i); };
+  return {&w, context, w.mover_states, w.routes};
+}
+
 void FailMovers(World& w, ErrorId error) {
   for (std::size_t i = 0; i < w.movers.size(); ++i) mover::Fail(MoverContext(w, i), error, w.mover_states[i]);
 }
@@ -234,6 +239,11 @@ struct MachineApplier {
   void Report(FeedbackState state, ErrorId error = ErrorId::kNone) const {
     world.feedback.Report({ticket, world.cycle.count, state, false, error, 0});
   }
+  void Report(const planar::Verdict& why) const {
+    const bool good = why.error == ErrorId::kNone;
+    world.feedback.Report({ticket, world.cycle.count, good ? FeedbackState::kDone : FeedbackState::kError, false,
+                           why.error, why.value, why.object});
+  }
   void operator()(const StopAll& c) const {
     // A group takes its members to rest.
     for (std::size_t i = 0; i < world.groups.size(); ++i) {
@@ -309,6 +319,10 @@ struct MachineApplier {
   void operator()(const Renew& c) const {
     ToOwner(c.ticket, axis::Renew, flexcam::Renew, group::Renew, pickplace::Renew);
   }
+
+  void operator()(const mover::StartRoutes& c) const { Report(mover::Start(AllMovers(world), c)); }
+
+  void operator()(const mover::HoldRoutes& c) const { Report(mover::Hold(AllMovers(world), c)); }
 
   // Commands that make cams.
   template <typename OfCams>
@@ -395,14 +409,16 @@ void Apply(World& w, const Command& command) noexcept {
   const auto refuse = [&](ErrorId error) {
     w.feedback.Report({command.ticket, w.cycle.count, FeedbackState::kError, false, error, 0});
   };
+  const bool emergency = w.emergency.on(w.cycle.count);
   if (const auto* for_machine = std::get_if<MachineCommand>(&command.body)) {
+    if (emergency && AsksToMove(command)) return refuse(ErrorId::kEmergencyStop);
     return std::visit(MachineApplier{w, command.ticket}, *for_machine);
   }
   const std::size_t kind = command.body.index() - 1;
   const std::uint32_t component = command.target - 1;  // none has the machine's number less one
   if (component < w.first_of[kind] || component >= w.first_of[kind + 1]) return refuse(ErrorId::kUnknownTarget);
   const std::size_t i = component - w.first_of[kind];
-  if (w.emergency.on(w.cycle.count) && AsksToMove(command)) return refuse(ErrorId::kEmergencyStop);
+  if (emergency && AsksToMove(command)) return refuse(ErrorId::kEmergencyStop);
   if (const auto* for_axis = std::get_if<axis::Command>(&command.body)) {
     // What stops a follower stops its leader, which may be the group's (AX-101, GR-03).
     const bool of_leader =
@@ -482,6 +498,7 @@ bool HasPlanar(const World& w) {
 // All movers: behind the axes that they follow, before those that follow them.
 void StepMovers(World& w) {
   if (!HasPlanar(w)) return;
+  mover::FollowRoutes(AllMovers(w));
   RefreshStreets(w);
   ShowAxesToMovers(w);
   ShowMovers(w);  // commands have changed some

@@ -64,9 +64,13 @@ bool Asks(const mover::Command& command) {
   return std::visit(
       []<typename T>(const T&) {
         return !kIsOneOf<T, mover::Reset, mover::SetPosition, mover::AddToGroup, mover::RemoveFromGroup,
-                         mover::LeaveFormation>;
+                         mover::LeaveFormation, mover::SetRoute>;
       },
       command);
+}
+
+bool Asks(const MachineCommand& command) {
+  return std::holds_alternative<mover::StartRoutes>(command) || std::holds_alternative<mover::HoldRoutes>(command);
 }
 
 bool Asks(const part::Command& command) {

@@ -11,6 +11,7 @@
 #include "takt/group/failures.h"
 #include "takt/group/survey.h"
 #include "takt/mover/command_mode.h"
+#include "takt/mover/routes.h"
 #include "takt/planar/problem.h"
 #include "takt/planar/send.h"
 #include "takt/track/sketch.h"
@@ -78,6 +79,11 @@ std::string Rounded(double value) {
   std::string text = FormatReal(std::round(value * 1000) / 1000);
   if (text.ends_with(".0")) text.resize(text.size() - 2);
   return text;
+}
+
+std::string RouteSentence(double value) {
+  const std::string_view why = mover::MessageOf(static_cast<mover::RouteProblem>(value));
+  return std::string(why.empty() ? ErrorText(ErrorId::kRoute) : why);
 }
 
 std::string GapSentence(double least) {
@@ -281,6 +287,7 @@ std::string Sentence(const FeedbackEvent& event) {
   if (event.error == ErrorId::kGapTooSmall) return GapSentence(event.value);
   if (event.error == ErrorId::kCommandMode) return ModeSentence(event.value);
   if (event.error == ErrorId::kNoRoute) return std::string(NoWaySentence(event.value));
+  if (event.error == ErrorId::kRoute) return RouteSentence(event.value);
   const std::string text(ErrorText(event.error));
   return of_path && event.value > 0 ? text + InElement(static_cast<std::uint32_t>(event.value)) : text;
 }

@@ -50,7 +50,7 @@ std::uint32_t CamNamed(const Machine& machine, const std::string& name) {
 }  // namespace
 
 mover::Context MoverContext(World& w, std::size_t i) {
-  const mover::Fleet fleet{w.movers, w.mover_states, w.bodies};
+  const mover::Fleet fleet{w.movers, w.mover_states, w.bodies, &w.routes};
   const auto index = static_cast<std::uint32_t>(i);
   return {mover::ParamsIn(fleet, w.cycle, index), w.cycle, w.planner, w.feedback, w.streets, w.grounds, index, fleet};
 }
@@ -69,6 +69,7 @@ World::World(const Machine& machine)
       part_outputs(machine.parts.size()),
       part_faults(machine.parts.size()),
       surface(part::Make(machine.coordinate_systems, machine.parts)),
+      routes(machine.movers.size()),
       streets(machine.movers.size(), CopiedNames(machine.tracks), &surface),
       tracks_now(machine.tracks.size()),
       tracks(machine.tracks, &surface),
@@ -93,6 +94,8 @@ World::World(const Machine& machine)
   TypeOf<track::Works>();
   TypeOf<track::Sketch>();
   TypeOf<cam::StoreState>();
+  TypeOf<mover::SurfaceRoute>();
+  TypeOf<mover::Visit>();
   TouchTypes(static_cast<const track::Command*>(nullptr));
   TouchTypes(static_cast<const MachineCommand*>(nullptr));
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
@@ -275,6 +278,7 @@ std::uint64_t World::StateHash() const noexcept {
   for (const part::Inputs& inputs : part_inputs) hash = HashOf(inputs, hash);
   for (const mover::State& state : mover_states) hash = HashOf(state, hash);
   for (const mover::Inputs& inputs : mover_inputs) hash = HashOf(inputs, hash);
+  hash = mover::HashOf(routes, hash);
   if (!streets.names.empty()) {
     for (const planar::Rider& rider : streets.riders) hash = HashOf(rider, hash);
   }

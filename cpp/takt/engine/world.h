@@ -24,6 +24,7 @@
 #include "takt/flexcam/module.h"
 #include "takt/group/group.h"
 #include "takt/mover/mover.h"
+#include "takt/mover/routes.h"
 #include "takt/part/part.h"
 #include "takt/pickplace/module.h"
 #include "takt/planargroup/groups.h"
@@ -148,6 +149,7 @@ struct World {
   std::vector<mover::Inputs> mover_inputs;
   std::vector<mover::State> mover_states;
   std::vector<mover::Body> bodies;  // by star of a formation
+  mover::SurfaceRoutes routes;      // over the free surface
   std::vector<mover::Outputs> mover_outputs;
   mover::Streets streets;
   std::vector<mover::TrackNow> tracks_now;         // of this cycle

@@ -595,6 +595,9 @@ msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine:
   m.part = o.part;
   m.formation = o.formation;
   m.commands = Signed(o.commands);
+  m.on_route = o.on_route;
+  m.route_granted = Signed(o.route_granted);
+  m.route_visit = Signed(o.route_visit);
   return m;
 }
 

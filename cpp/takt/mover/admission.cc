@@ -63,24 +63,44 @@ template <typename T>
 constexpr bool kAlways = kIsOneOf<T, Enable, Disable, Reset, Halt, HaltX, HaltY, HaltZ, HaltA, HaltB, HaltC,
                                   HaltOnTrack, StopExternalSetpointGeneration, Wait, Release>;
 
+// Does `what` within the terms of a command.
+template <typename What>
+Answer AskFor(const Context& c, Ticket ticket, const Command& command, State& s, const What& what) {
+  if (!HasGoodNumbers(command)) return Refused(ErrorId::kParameter);
+  const Terms terms = TermsOf(c, command, s);
+  if (terms.error != ErrorId::kNone) return Refused(terms.error, terms.object);
+  const Context within = With(c, terms.params);
+  const LimitedBy limited_by = s.limited_by;
+  const Answer answer = what(Given{within, ticket, s});
+  if (answer.status.failed()) {
+    s.limited_by = limited_by;  // a refused command leaves it
+  } else if (terms.sets) {
+    s.formation.whole = terms.whole;
+  }
+  return answer;
+}
+
+Answer AskFor(const Context& c, Ticket ticket, const Command& command, State& s) {
+  return AskFor(c, ticket, command, s, [&](const Given& given) {
+    return std::visit(
+        [&]<typename T>(const T& body) {
+          return !kAlways<T> && IsAway(c, s) ? Refused(ErrorId::kPartDisabled) : CarryOut(given, body);
+        },
+        command);
+  });
+}
+
 }  // namespace
 
+Answer MoveAlong(const Context& c, const MoveToPosition& move, State& s) noexcept {
+  return AskFor(c, 0, move, s, [&](const Given& given) {
+    if (const ErrorId why = WhyNot(s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
+    return IsAway(c, s) ? Refused(ErrorId::kPartDisabled) : MoveTo(given, move);
+  });
+}
+
 bool Begin(const Context& c, Ticket ticket, const Command& command, State& s, ObjectInfo* in_the_way) noexcept {
-  if (!HasGoodNumbers(command)) {
-    Report(c, ticket, FeedbackState::kError, ErrorId::kParameter, 0, s);
-    return false;
-  }
-  const Terms terms = TermsOf(c, command, s);
-  const Context within = With(c, terms.params);
-  const Given given{within, ticket, s};
-  const LimitedBy limited_by = s.limited_by;
-  const Answer answer = std::visit(
-      [&]<typename T>(const T& body) {
-        if (terms.error != ErrorId::kNone) return Refused(terms.error, terms.object);
-        return !kAlways<T> && IsAway(c, s) ? Refused(ErrorId::kPartDisabled) : CarryOut(given, body);
-      },
-      command);
-  if (answer.status.failed()) s.limited_by = limited_by;  // a refused command leaves it
+  const Answer answer = AskFor(c, ticket, command, s);
   if (in_the_way && MayBeGone(answer)) {
     *in_the_way = answer.object;
     return false;
@@ -91,9 +111,8 @@ bool Begin(const Context& c, Ticket ticket, const Command& command, State& s, Ob
     Report(c, ticket, FeedbackState::kError, answer.status.error, value, s, answer.object);
     return false;
   }
-  if (terms.sets) s.formation.whole = terms.whole;
   NoteLimit(ticket, command, s);
-  Report(c, ticket, FeedbackState::kActive, ErrorId::kNone, answer.value, s);
+  Report(c, ticket, answer.waits ? FeedbackState::kBusy : FeedbackState::kActive, ErrorId::kNone, answer.value, s);
   if (!answer.goes_on) Report(c, ticket, FeedbackState::kDone, ErrorId::kNone, 0, s);
   return true;
 }
@@ -116,6 +135,7 @@ void Apply(const Context& c, Ticket ticket, const Command& command, State& s) no
   }
   GoBeside(ticket, s);
   if (!TookOver(ticket, s)) return;
+  End(c, kRoute, FeedbackState::kAborted, ErrorId::kNone, s);
   End(c, kPassing, FeedbackState::kAborted, ErrorId::kNone, s);
   End(c, kWait, FeedbackState::kAborted, ErrorId::kNone, s);
   AbortBuffered(c, s);

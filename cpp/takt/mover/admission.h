@@ -1,5 +1,6 @@
 // Commands as they arrive: what carrying them out has in common. Each family has a file of its own beside this one:
-// power.cc, moves.cc, by_coordinate.cc, on_tracks.cc, gear.cc, setpoints.cc, buffer.cc, membership.cc, formation.cc.
+// power.cc, moves.cc, by_coordinate.cc, on_tracks.cc, gear.cc, setpoints.cc, buffer.cc, membership.cc, formation.cc,
+// routes.cc.
 #pragma once
 
 #include <algorithm>
@@ -22,6 +23,7 @@ struct Answer {
   Status status;
   double value = 0;     // s that it takes, as planned; refused: what the error says of it
   bool goes_on = true;  // it is done later
+  bool waits = false;   // and does nothing yet
   ObjectInfo object{};  // that is in the way
 };
 
@@ -105,6 +107,8 @@ planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const Stat
 planar::Way WayOf(TurnDirection direction) noexcept;
 // A move of X and Y in the plane, whatever the mode.
 Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept;
+// As a mover on a route moves on: its coordinate system is that where it is, and nothing is reported.
+Answer MoveAlong(const Context& c, const MoveToPosition& move, State& s) noexcept;
 // One of C, if it may do what `ask` says.
 Answer Turn(const Given& g, const MoveC& command, Ask ask) noexcept;
 
@@ -148,5 +152,7 @@ Answer CarryOut(const Given& g, const AddToGroup& command) noexcept;
 Answer CarryOut(const Given& g, const RemoveFromGroup& command) noexcept;
 Answer CarryOut(const Given& g, const JoinFormation& command) noexcept;
 Answer CarryOut(const Given& g, const LeaveFormation& command) noexcept;
+Answer CarryOut(const Given& g, const SetRoute& command) noexcept;
+Answer CarryOut(const Given& g, const ContinueRoute& command) noexcept;
 
 }  // namespace takt::mover

@@ -450,4 +450,56 @@ void describe(Description<LeaveFormation>& d) {
   d.about("Leaves the formation, which must rest: the mover stays where it is.");
 }
 
+void describe(Description<Visit>& d) {
+  using V = Visit;
+  d.about("A place on a route over the free surface. Times as planned, from the start of the routes on; all, or none.");
+  d.required<&V::x>(unit::mm, kPlaces, "X of its middle.");
+  d.required<&V::y>(unit::mm, kPlaces, "Y of it.");
+  d.defaulted<&V::after>("Number of the mover, from 1, that visits the place before this one; 0: none.");
+  d.defaulted<&V::after_visit>(kVisits, "The visit of that mover which has to be over.");
+  d.defaulted<&V::entry_time>(unit::s, kTimes, "From when on it cannot come to rest before the place any more.");
+  d.defaulted<&V::exit_time>(unit::s, kTimes, "When no part of it covers the place any more.");
+  d.defaulted<&V::departure_time>(unit::s, kTimes, "Where a straight motion from rest begins: when.");
+  d.defaulted<&V::arrival_time>(unit::s, kTimes, "Where one ends: when.");
+}
+
+void describe(Description<SetRoute>& d) {
+  using S = SetRoute;
+  d.about(
+      "Tells the mover which places of the free surface it is to visit one after the other, each beside the one before "
+      "along X or Y. It begins with start_routes. Without visits: takes back what it was told and has not begun. "
+      "Visits are numbered through over all "
+      "routes of a mover; up to 512 in one route, of which a command has up to 48.");
+  d.required<&S::first>(
+      kVisits,
+      "Number of the first one, where the mover is at rest: its route_visit, or, if it was taken off its route, a "
+      "further one of that; of one on its way, a visit of its route so far where it can still come to rest.");
+  d.defaulted<&S::continues>("These follow on those of the command before.");
+  d.required<&S::visits>(
+      "The places: x, y [mm]; after and after_visit: number of the mover, from 1, that visits it before, and of that "
+      "visit; entry_time, exit_time, departure_time and arrival_time [s] as planned, from the start of the routes on.");
+}
+
+void describe(Description<ContinueRoute>& d) {
+  d.about("Goes on along the route that a halt, a fault or another command has taken it off, from a rest on it.");
+}
+
+void describe(Description<StartRoutes>& d) {
+  d.about(
+      "Lets movers begin the routes that they were told by set_route, all of them at once, or none. Those on their way "
+      "change over; those behind them must do so, too, and what they are bound for already comes first. A place is "
+      "entered when the mover that visits it before has left it, "
+      "or goes ahead in the same direction.");
+  DescribeDynamics(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
+  d.defaulted<&StartRoutes::movers>("Numbers of the movers, from 1; none: all that were told a route.");
+}
+
+void describe(Description<HoldRoutes>& d) {
+  d.about(
+      "Lets movers on routes come to rest in the next places where they can, and none in the way of another one: "
+      "route_granted. They go on when it is taken back, or with new routes.");
+  d.defaulted<&HoldRoutes::hold>("False: takes it back.");
+  d.defaulted<&HoldRoutes::movers>("Numbers of the movers, from 1; none: all.");
+}
+
 }  // namespace takt::mover

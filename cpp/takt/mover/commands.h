@@ -316,12 +316,50 @@ struct JoinFormation {
 };
 struct LeaveFormation {};
 
-using Command = std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC,
-                             JoinTrack, LeaveTrack, MoveOnTrack, AdoptTrackOrientation, StartExternalSetpointGeneration,
-                             SetExternalSetpoint, StopExternalSetpointGeneration, Wait, Release, AddToGroup,
-                             RemoveFromGroup, GearInPosOnTrack, GearInPosOnTrackWithMasterMover, JoinFormation,
-                             LeaveFormation, MoveX, MoveY, MoveRelativeX, MoveRelativeY, MoveRelativeC, MoveVelocityX,
-                             MoveVelocityY, MoveVelocityC, HaltX, HaltY, HaltZ, HaltA, HaltB, HaltC, HaltOnTrack>;
+// A place on a route over the free surface, and when the mover is to be there as planned: s since the start of routes.
+struct Visit {
+  double x = 0, y = 0;                     // mm, of its middle
+  std::uint32_t after = 0;                 // number of the mover that visits the place before, from 1; 0: none
+  std::uint64_t after_visit = 0;           // the visit of that one which has to be over
+  std::optional<double> entry_time{};      // from when on it cannot come to rest before the place any more
+  std::optional<double> exit_time{};       // when it has left it
+  std::optional<double> departure_time{};  // a straight motion from rest begins here
+  std::optional<double> arrival_time{};    // one ends here
+};
+inline constexpr std::size_t kVisitsPerCommand = 48;
+
+// Places that the mover is to visit one after the other, once routes are started (StartRoutes).
+struct SetRoute {
+  std::uint64_t first = 0;  // number of the first of them, that where it is or that where its new route begins
+  bool continues = false;   // these follow on those of the command before
+  Few<Visit, kVisitsPerCommand> visits;
+};
+struct ContinueRoute {};  // that it was taken off
+
+using MoverNumbers = Few<std::uint32_t, 1000>;  // from 1, in the order of the machine file
+
+// To movers at once: what each was told by SetRoute. Its target is the machine.
+struct StartRoutes {
+  std::optional<double> velocity{};      // mm/s
+  std::optional<double> acceleration{};  // mm/s²
+  std::optional<double> deceleration{};  // mm/s²
+  std::optional<double> jerk{};          // mm/s³
+  MoverNumbers movers{};                 // none: all that were told one
+};
+
+// Its target is the machine, too.
+struct HoldRoutes {
+  bool hold = true;       // false: they go on
+  MoverNumbers movers{};  // none: all
+};
+
+using Command =
+    std::variant<Enable, Disable, Reset, Halt, SetPosition, MoveToPosition, MoveZ, MoveA, MoveB, MoveC, JoinTrack,
+                 LeaveTrack, MoveOnTrack, AdoptTrackOrientation, StartExternalSetpointGeneration, SetExternalSetpoint,
+                 StopExternalSetpointGeneration, Wait, Release, AddToGroup, RemoveFromGroup, GearInPosOnTrack,
+                 GearInPosOnTrackWithMasterMover, JoinFormation, LeaveFormation, MoveX, MoveY, MoveRelativeX,
+                 MoveRelativeY, MoveRelativeC, MoveVelocityX, MoveVelocityY, MoveVelocityC, HaltX, HaltY, HaltZ, HaltA,
+                 HaltB, HaltC, HaltOnTrack, SetRoute, ContinueRoute>;
 
 template <typename T, typename... Kinds>
 inline constexpr bool kIsOneOf = (std::is_same_v<T, Kinds> || ...);
@@ -374,5 +412,10 @@ void describe(Description<AddToGroup>&);
 void describe(Description<RemoveFromGroup>&);
 void describe(Description<JoinFormation>&);
 void describe(Description<LeaveFormation>&);
+void describe(Description<Visit>&);
+void describe(Description<SetRoute>&);
+void describe(Description<ContinueRoute>&);
+void describe(Description<StartRoutes>&);
+void describe(Description<HoldRoutes>&);
 
 }  // namespace takt::mover

@@ -9,6 +9,7 @@
 #include "takt/mover/coordinate.h"
 #include "takt/mover/course.h"
 #include "takt/mover/follow.h"
+#include "takt/mover/follow_route.h"
 #include "takt/mover/formation.h"
 #include "takt/mover/gear.h"
 #include "takt/mover/ground.h"
@@ -337,6 +338,13 @@ void PublishDelay(const Context& c, const State& s, Outputs& out) {
     out.delay = Delay::kPart;
     out.delay_since = s.since;
     Block(ObjectKind::kPart, s.part, out);
+  } else if (const RestInPlace rest = WhyResting(c, s); rest.held) {
+    out.delay = Delay::kRelease;
+    out.delay_since = rest.since;
+  } else if (rest.mover != planar::kNobody) {
+    out.delay = Delay::kPlace;
+    out.delay_since = rest.since;
+    Block(ObjectKind::kMover, rest.mover, out);
   }
 }
 
@@ -457,6 +465,12 @@ void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& ou
   out.coordinate_system = c.streets.parts->none() ? 0 : s.system + 1;
   out.part = s.part == planar::kNoPart ? 0 : s.part + 1;
   out.commands = s.history.count;
+  out.on_route = IsOnRoute(s);
+  if (c.fleet.routes) {
+    const SurfaceRoute& route = c.fleet.routes->of[c.index];
+    out.route_visit = route.passed;
+    out.route_granted = route.granted;
+  }
 }
 
 void describe(Description<Inputs>& d) {

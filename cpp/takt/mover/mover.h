@@ -18,6 +18,8 @@
 
 namespace takt::mover {
 
+struct SurfaceRoutes;  // route.h
+
 // What a star can do with its planets (mover/formation.h): X and Y or C alone, and both at once.
 struct Body {
   // With room for so many planets.
@@ -32,7 +34,8 @@ struct Body {
 struct Fleet {
   std::span<const MoverParams> params{};
   std::span<const State> states{};
-  std::span<Body> bodies{};  // what follows from the planets of each
+  std::span<Body> bodies{};         // what follows from the planets of each
+  SurfaceRoutes* routes = nullptr;  // of all
 };
 
 // What every stage gets besides the mover itself.

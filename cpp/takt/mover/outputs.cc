@@ -10,7 +10,7 @@ void describe(Enumeration<Delay>& e) {
   e.value(Delay::kMover, "mover", "Another one is in its way: waits_for.");
   e.value(Delay::kTrackEnd, "track_end", "Its way ends here.");
   e.value(Delay::kTime, "time", "It is told to wait for some time.");
-  e.value(Delay::kRelease, "release", "It is told to wait for a release.");
+  e.value(Delay::kRelease, "release", "It is told to wait for a release, or its route is being held.");
   e.value(Delay::kMaster, "master",
           "It waits for its master, an axis or a mover, to come where it may go, or to go on: blocker.");
   e.value(Delay::kPart, "part", "It waits for a part that is on its way, or not enabled: blocker.");
@@ -18,6 +18,7 @@ void describe(Enumeration<Delay>& e) {
   e.value(Delay::kTrack, "track", "A track that is Moving is in its way: blocker.");
   e.value(Delay::kFormation, "formation",
           "What is buffered waits until the mover has left its formation: blocker is the star.");
+  e.value(Delay::kPlace, "place", "Another mover visits the next place of its route before: blocker.");
 }
 
 void describe(Description<Outputs>& d) {
@@ -89,6 +90,9 @@ void describe(Description<Outputs>& d) {
   d.internal<&O::formation>(
       "Number of the star of the formation that it is in, itself or another mover, from 1; 0: none.");
   d.internal<&O::commands>("So many commands have come, external set points apart.");
+  d.internal<&O::on_route>("It is on its way along a route over the free surface.");
+  d.internal<&O::route_granted>("Number of the last visit of its route that is its turn.");
+  d.internal<&O::route_visit>("Number of the last visit of its routes whose place it has reached.");
 }
 
 }  // namespace takt::mover

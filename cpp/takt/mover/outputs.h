@@ -18,12 +18,13 @@ enum class Delay : std::uint8_t {
   kMover,      // another one is in its way: waits_for
   kTrackEnd,   // its way ends here
   kTime,       // a wait for some time
-  kRelease,    // one for a release
+  kRelease,    // one for a release; its route is being held
   kMaster,     // its master is where it may not go, or is held up itself
   kPart,       // a part of the surface is on its way, or not enabled
   kDeadlock,   // the movers ahead of it wait for one another
   kTrack,      // a track that is Moving is in its way
   kFormation,  // what is buffered waits until it has left its formation
+  kPlace,      // another one visits the next place of its route before
 };
 
 struct Outputs {
@@ -70,8 +71,11 @@ struct Outputs {
   // Numbers, from 1, of the coordinate system that positions are in, and of the part that its middle is on; 0: none.
   std::uint32_t coordinate_system = 0;
   std::uint32_t part = 0;
-  std::uint32_t formation = 0;  // number of the star of the formation that it is in, itself or another; 0: none
-  std::uint64_t commands = 0;   // so many have come
+  std::uint32_t formation = 0;      // number of the star of the formation that it is in, itself or another; 0: none
+  std::uint64_t commands = 0;       // so many have come
+  bool on_route = false;            // over the free surface
+  std::uint64_t route_granted = 0;  // number of the last visit that is its turn
+  std::uint64_t route_visit = 0;    // number of the last visit of its routes whose place it has reached
 };
 
 void describe(Enumeration<Delay>&);

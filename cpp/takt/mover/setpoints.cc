@@ -1,5 +1,6 @@
 // Set points from outside.
 #include "takt/mover/admission.h"
+#include "takt/mover/follow_route.h"
 #include "takt/mover/on_parts.h"
 
 namespace takt::mover {
@@ -11,7 +12,7 @@ Answer CarryOut(const Given& g, const StartExternalSetpointGeneration& command) 
   const ErrorId why = WhyNot(s, alone ? Ask::kExternalAbsolute : Ask::kExternalRelative);
   if (why != ErrorId::kNone) return Refused(why);
   if (s.external.mode != SetpointMode::kNone) return Refused(ErrorId::kCommandMode);
-  if (alone && !IsResting(g.c, s)) return Refused(ErrorId::kCommandMode);
+  if (alone ? !IsResting(g.c, s) : IsOnRoute(s)) return Refused(ErrorId::kCommandMode);
   s.external = {};
   s.external.mode = command.mode;
   if (alone) {  // it stands, until the first one comes

@@ -126,6 +126,7 @@ enum Slot : std::size_t {
   kWait,
   kPassing,
   kFormation,
+  kRoute,
   kSlots
 };
 

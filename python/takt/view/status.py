@@ -73,7 +73,7 @@ WORDS: dict[str, tuple[str, ...]] = {
     ),
     "mover": (
         *("state", "command_mode", "error", "limited_by", "waits_for", "deadlocked", "delay", "delay_since"),
-        *("buffered", "track", "group", "in_sync", "part", "coordinate_system"),
+        *("buffered", "blocker", "track", "group", "in_sync", "part", "coordinate_system"),
     ),
     "track": ("state", "operation_mode", "error", "mover_count", "closed_loop"),
     "planar_group": ("state", "error", "mover_count", "track_count"),
@@ -230,6 +230,7 @@ def _mover(v: Values, name_of: NamesOf, more: list[str], waits: list[str]) -> in
             "part": "waits for a part",
             "track": "waits until nothing moves on a track",
             "formation": "waits until it has left its formation",
+            "place": f"waits for its next place, which {name_of('mover', int(v['blocker']))} visits before",
         }
         waits.append(words.get(delay, "waits to be released"))
     return int(v["delay_since"]) if waits else 0

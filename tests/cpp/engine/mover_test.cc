@@ -80,7 +80,9 @@ std::vector<mover::Command> GoodMoverCommands() {
           mover::HaltA{},
           mover::HaltB{},
           mover::HaltC{},
-          mover::HaltOnTrack{}};
+          mover::HaltOnTrack{},
+          mover::SetRoute{.visits = {{mover::Visit{}}, 1}},
+          mover::ContinueRoute{}};
 }
 
 Command To(std::uint32_t mover, const mover::Command& body) {

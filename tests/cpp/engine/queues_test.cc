@@ -88,6 +88,7 @@ TEST(CommandQueue, TakesWhatLetsGoOfEveryKind) {
       {{"machine", "emergency_stop"}, {""}},
       {{"machine", "fail_all_axes"}, {""}},
       {{"machine", "release"}, {"{ticket: 7}"}},
+      {{"machine", "hold_routes"}, {"", "{movers: [1]}"}},
       {{"axis", "halt"}, {"", "{deceleration: 10}"}},
       {{"axis", "stop"}, {"", "{hold: true}"}},
       {{"axis", "power"}, {"{enable: false}"}},

@@ -525,10 +525,13 @@ TEST(Messages, MoverStateKeepsEveryNumber) {
           FIELD(mover_state, part),
           FIELD(mover_state, formation),
           FIELD(mover_state, commands),
+          FIELD(mover_state, on_route),
+          FIELD(mover_state, route_granted),
+          FIELD(mover_state, route_visit),
       },
       machine, "shuttle");
   EXPECT_EQ(static_cast<int>(planar::ObjectState::kResetting), msgs::mover_state::STATE_RESETTING);
-  EXPECT_EQ(static_cast<int>(mover::Delay::kRelease), msgs::mover_state::DELAY_RELEASE);
+  EXPECT_EQ(static_cast<int>(mover::Delay::kPlace), msgs::mover_state::DELAY_PLACE);
   EXPECT_EQ(static_cast<int>(mover::CommandMode::kFormation), msgs::mover_state::MODE_FORMATION);
 }
 #undef FIELD
