@@ -42,13 +42,13 @@ def test_a_stream_of_orders(stators: int, count: int, seconds: float) -> None:
                 continue
             there += name in orders
             cell = chance.choice(free_cells(engine, orders, 2 * stators))
-            orders[name] = engine.route({name: at(cell)}, effort=300)
+            orders[name] = engine.route({name: at(cell)}, may_move=True, effort=300)
         engine.run(0.02)
     for order in orders.values():
         order.wait()
         ((name, target),) = order.targets.items()
         assert math.dist((engine.mover(name).x, engine.mover(name).y), target) < 1e-6
-        assert 0 < order.arrived_s[name] < 20
+        assert 0 < order.arrived_s[name] < count
     assert not watch.overlaps
     assert there > 3 * seconds
 

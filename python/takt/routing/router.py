@@ -2,7 +2,8 @@
 
 A new plan begins where each mover can come to rest: the visits up to there, which are granted already, come before all
 others at their places. They end by themselves, and what follows is a plan for movers that stand: so the order of visits
-is still one in which nobody waits for ever.
+is still one in which nobody waits for ever. The engine carries routes out; if movers are further on than was expected
+when new ones come to it, it refuses them, holds all of them, and they are planned anew from there.
 
 A mover that fails, or is halted, stands in the way. All others go as far as they can come to rest out of its way; those
 behind it that cannot, because it covers a place that they are bound for, go back to the place that they have passed.
@@ -20,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from takt.errors import TimeoutError
 from takt.feedback import DEFAULT_TIMEOUT_S
+from takt.routing.on_way import Before, OnWay, answers_within, set_route
 from takt.routing.raster import NEAR, Point, Raster, is_there, make_raster
 from takt.routing.streets import RoutingError
 from takt.routing.surface import (
@@ -35,14 +37,13 @@ from takt.routing.surface import (
     orders_of,
 )
 from takt.routing.surface_journey import dynamics_of
-from takt.routing.traveller import Before, Traveller, answers_within
 
 if TYPE_CHECKING:
+    from takt.feedback import Feedback
     from takt.mover import Mover
     from takt.session import Session
 
-CYCLES = 8  # until a command is carried out, in process, and until movers are looked at again
-MOVERS_A_CYCLE = 16  # that are looked at: with more, not in every cycle
+CYCLES = 8  # until routes are carried out, in process
 
 
 @dataclass
@@ -52,6 +53,23 @@ class _Goal:
     order: SurfaceOrder
     pool: object
     target: Point | None  # none yet: any of those of its pool that are left
+
+
+@dataclass
+class _Started:
+    """Routes that were given to the engine, which may refuse them."""
+
+    start: Feedback
+    told: list[Feedback]
+    before: dict[str, OnWay]  # movers on their way until then
+
+    @property
+    def busy(self) -> bool:
+        return self.start.busy
+
+    @property
+    def done(self) -> bool:
+        return self.start.done and not any(one.error for one in self.told)
 
 
 class SurfaceOrder:
@@ -123,12 +141,15 @@ class SurfaceRouter:
         self.plans = 0  # that were made
         self._planned: SurfacePlan | None = None  # the last one
         self.waited_s: dict[str, dict[str, float]] = defaultdict(lambda: defaultdict(float))  # mover, for whom
-        self._on_way: dict[str, Traveller] = {}
+        self._on_way: dict[str, OnWay] = {}
         self._goals: dict[str, _Goal] = {}
-        self._back: dict[str, Traveller] = {}  # those that come to rest out of the way; none is granted more meanwhile
+        self._back: dict[str, OnWay] = {}  # those that come to rest out of the way; none is granted more meanwhile
         self._failed: set[str] = set()  # of these, those that stay where they come to rest
         self._raster: Raster | None = None
         self._dynamics: dict[str, Any] = {}
+        self._pending: list[_Started] = []  # routes that the engine has not answered yet
+        self._held = False  # routes are being held
+        self._too_late = False  # routes came too late: they are planned anew
         self._surface: tuple[object, ...] = ()
         self._seen_s = session.now
         self._later_s = answers_within(session, CYCLES * session.period)
@@ -196,58 +217,75 @@ class SurfaceRouter:
     def waits(self) -> dict[str, str]:
         """By mover: what it waits for, if it stands on its way."""
         reasons = {}
+        names = list(self.session.movers)
         for name, one in self._on_way.items():
             mover = one.mover
             if mover.waits_for:
-                reasons[name] = f"waits for {list(self.session.movers)[mover.waits_for - 1]}, in its way"
+                reasons[name] = f"waits for {names[mover.waits_for - 1]}, in its way"
             elif name in self._back:
                 reasons[name] = "goes out of the way of what stands"
-            elif not one.in_motion and not one.there:
-                if self._back:
-                    reasons[name] = f"waits until {', '.join(self._back)} {_are(self._back)} out of the way"
-                elif (holder := one.held_by) is not None:
-                    x, y = one.points[one.granted + 1]
-                    reasons[name] = f"waits for the place ({x:.6g}, {y:.6g}), which {holder.name} has before"
+            elif self._back and not one.in_motion and not one.there:
+                reasons[name] = f"waits until {', '.join(self._back)} {_are(self._back)} out of the way"
+            elif mover.delay.value == "place" and one.granted < one.last:
+                x, y = one.points[one.granted + 1]
+                reasons[name] = f"waits for the place ({x:.6g}, {y:.6g}), which {names[mover.blocker - 1]} has before"
         return reasons
 
     # --- every cycle ---
 
     def scan(self) -> None:
-        """Lets movers go on whose turn it is."""
-        now = self.session.now
-        passed = now - self._seen_s
-        if passed < min(len(self._on_way) // MOVERS_A_CYCLE, CYCLES - 2) * self.session.period:
-            return
-        self._seen_s = now
-        if not self._on_way and not self._back:
+        """Sees who is there, who waits for whom, and who fails."""
+        passed, self._seen_s = self.session.now - self._seen_s, self.session.now
+        if not (self._on_way or self._back or self._pending) or not self._are_started():
             return
         failed: dict[str, str] = {}
         for name, one in self._on_way.items():
-            if name in self._back:
-                continue
-            one.look()
-            if (sentence := one.fault()) is not None:
+            if name not in self._back and (sentence := one.fault()) is not None:
                 failed[name] = sentence
-        surface = self._surface_now()
-        if failed or surface != self._surface:
+        if failed or self._surface_now() != self._surface:
             for name, sentence in failed.items():
                 self._fail(name, sentence)
                 self._failed.add(name)
             self._plan_round()
+        elif self._too_late:
+            self._too_late = False
+            self._plan_round()
         if self._back:
             self._see_to_those_that_go_back()
-        if not self._back:
-            for one in self._on_way.values():
-                one.grant()
+        names = list(self.session.movers)
         for name, one in self._on_way.items():
-            if name not in self._back:
-                one.go_on(self._dynamics)
-                if one.rests and not one.there and (holder := one.held_by) is not None:
-                    self.waited_s[name][holder.name] += passed
+            if one.mover.delay.value == "place":
+                self.waited_s[name][names[one.mover.blocker - 1]] += passed
         self._look_whether_there()
 
+    def _are_started(self) -> bool:
+        """The engine has answered. If it has refused the last routes, all are held, and planned anew."""
+        if any(one.busy for one in self._pending):
+            return False
+        if not self._pending:
+            return True
+        ways = self._pending[0].before
+        for one, after in zip(self._pending, [*self._pending[1:], None], strict=True):
+            if one.done:
+                ways = self._on_way if after is None else after.before
+        refused, self._pending = not self._pending[-1].done, []
+        self._held &= refused
+        self._on_way = ways
+        for way in ways.values():
+            way.bound = way.last
+        if refused:
+            self._hold(ways)
+            self._too_late = True
+        return not refused
+
+    def _hold(self, names: Iterable[str]) -> None:
+        numbers = [number for number, name in enumerate(self.session.movers, 1) if name in set(names)]
+        if numbers:
+            self.session.command("machine", "hold_routes", {"movers": numbers})
+        self._held = True
+
     def _look_whether_there(self) -> None:
-        if self._back:
+        if self._back or self._pending:
             return
         for name in [name for name, one in self._on_way.items() if one.there]:
             del self._on_way[name]
@@ -276,21 +314,29 @@ class SurfaceRouter:
     def _commitments(self) -> dict[str, int]:
         """By mover on its way, the visit that it goes to in any case: where it can come to rest, or further, so that
         those behind it get to theirs."""
+        if self._held:
+            return {name: one.granted for name, one in self._on_way.items()}
         found = {name: one.stops_at(self._dynamics, self._later_s) for name, one in self._on_way.items()}
-        names = {one: name for name, one in self._on_way.items()}
         again = True
         while again:
             again = False
             for name, one in self._on_way.items():
-                for visit in range(one.passed + 1, found[name] + 1):
-                    before = one.before[visit]
-                    if before is None or before[0] is one or before[0] not in names:
+                for place in range(one.passed + 1, found[name] + 1):
+                    if (behind := self._behind(one, place)) is None:
                         continue
-                    other, its = before
-                    if other.passed <= its and found[names[other]] <= its:
-                        found[names[other]] = its + 1
+                    other, its = behind
+                    ahead = self._on_way[other]
+                    if ahead.passed <= its < ahead.last and found[other] <= its:
+                        found[other] = its + 1
                         again = True
         return found
+
+    def _behind(self, one: OnWay, place: int) -> tuple[str, int] | None:
+        """The mover on its way that visits this place before, and the place on its own way."""
+        before = one.before[place]
+        if before is None or before[0] == one.mover.name or before[0] not in self._on_way:
+            return None
+        return before[0], before[1] - self._on_way[before[0]].first
 
     def _standing(self, raster: Raster, starts: Iterable[str]) -> dict[int, str]:
         """By place: the mover that stands there."""
@@ -311,11 +357,6 @@ class SurfaceRouter:
             in_reach = not here or mover.coordinate_system == here
             if in_reach and can_move(mover) and self._is_in_place(mover, raster):
                 wanted.add(name)
-        if self._later_s > CYCLES * self.session.period:  # while a plan is made they go on
-            for name, one in self._on_way.items():
-                one.granted = commitments[name]
-                one.sent = min(one.sent, one.granted)
-                one.go_on(self._dynamics)
         starts: dict[str, Point] = {}
         for name, mover in self.session.movers.items():
             if name not in wanted:
@@ -336,41 +377,62 @@ class SurfaceRouter:
 
     def _install(self, plan: SurfacePlan, commitments: Mapping[str, int]) -> None:
         raster = plan.raster
-        before_all: dict[int, list[tuple[Traveller, int]]] = defaultdict(list)  # by place, visits that are granted
-        made: list[Traveller] = []
-        shifts: list[int] = []
-        old_to_new: dict[Traveller, tuple[Traveller, int]] = {}
+        before_all: dict[int, list[Before]] = defaultdict(list)  # by place, visits that are granted
+        made: dict[str, OnWay] = {}
         for name, visits in zip(plan.names, plan.visits, strict=True):
             points = [raster.middle(visit.place) for visit in visits]
             old = self._on_way.get(name)
-            if old is None:
-                one, shift = Traveller(self.session.mover(name), points), 0
-            else:
-                first, shift = old.passed, commitments[name] - old.passed
-                one = Traveller(old.mover, [*old.points[first : commitments[name]], *points])
-                one.granted = shift
-                one.sent = min(old.sent - first, shift)
-                one.feedback, one.told = old.feedback, old.told
-                old_to_new[old] = one, first
-            made.append(one)
-            shifts.append(shift)
-        for old, (one, first) in old_to_new.items():
-            for k in range(1, one.granted + 1):
-                one.before[k] = _renamed(old.before[first + k], old_to_new)
-            for k in range(one.granted):
-                before_all[_place(raster, one.points[k])].append((one, k))
-        for one, shift, visits in zip(made, shifts, plan.visits, strict=True):
-            for k, visit in enumerate(visits[1:], 1):
+            made[name] = self._from_now(name, old, commitments.get(name, 0), points)
+            one = made[name]
+            for k in range(one.bound):
+                before_all[_place(raster, one.points[k])].append((name, one.first + k))
+        for name, visits in zip(plan.names, plan.visits, strict=True):
+            one = made[name]
+            for k, visit in enumerate(visits[1:], one.bound + 1):
                 if visit.before is not None:
-                    other, its = visit.before
-                    one.before[shift + k] = made[other], shifts[other] + its
+                    other = made[plan.names[visit.before[0]]]
+                    one.before[k] = other.mover.name, other.first + other.bound + visit.before[1]
                 else:
-                    one.before[shift + k] = _last(before_all[visit.place])
-        self._on_way = {one.mover.name: one for one in made if not one.there}
+                    one.before[k] = _last(before_all[visit.place], made)
+        self._tell({name: one for name, one in made.items() if name in self._on_way or one.last > 0}, dynamics_of(plan))
         self._raster = raster
-        self._dynamics = dynamics_of(plan)
+        self._dynamics = {**dynamics_of(plan), "reference": raster.reference}
         self._surface = self._surface_now()
         self._planned = plan
+
+    def _from_now(self, name: str, old: OnWay | None, at: int, points: Sequence[Point]) -> OnWay:
+        """Its way up to the place where it is bound for already, and these from there."""
+        mover = self.session.mover(name)
+        if old is None:
+            one = OnWay(mover, points, mover.route_visit)
+            one.bound = 0
+            return one
+        passed = old.passed
+        one = OnWay(mover, [*old.points[passed:at], *points], old.first + passed)
+        one.before[: at - passed + 1] = old.before[passed : at + 1]
+        one.bound = at - passed
+        return one
+
+    def _tell(self, ways: dict[str, OnWay], dynamics: Mapping[str, float]) -> None:
+        """Has the engine carry these out, from where movers are bound for already."""
+        numbers = {name: number for number, name in enumerate(self.session.movers, 1)}
+        told: list[Feedback] = []
+        for name, one in ways.items():
+            visits: list[dict[str, Any]] = []
+            for k in range(one.bound, one.last + 1):
+                x, y = one.points[k]
+                visits.append({"x": x, "y": y})
+                before = one.before[k]
+                if k > one.bound and before is not None and before[0] != name:
+                    visits[-1] |= {"after": numbers[before[0]], "after_visit": before[1]}
+            given = set_route(one.mover, one.first + one.bound, visits)
+            one.feedback = given[0]
+            told += given
+        if ways:
+            movers = [numbers[name] for name in ways]
+            start = self.session.command("machine", "start_routes", {**dynamics, "movers": movers})
+            self._pending.append(_Started(start, told, self._on_way))
+        self._on_way = ways
 
     def _take_targets(self) -> None:
         """Who goes where, where movers may exchange their targets."""
@@ -410,7 +472,7 @@ class SurfaceRouter:
             return
         self._surface = self._surface_now()
         for name, one in list(self._on_way.items()):
-            if one.rests and not one.in_motion and not raster.free[_place(raster, one.points[one.passed])]:
+            if one.rests and not raster.free[_place(raster, one.points[one.passed])]:
                 self._fail(name, f"mover {name}: the surface on which it waited is there no more")
                 del self._on_way[name]
         self._bring_into_places(raster)
@@ -459,10 +521,12 @@ class SurfaceRouter:
 
     def _end_routes(self) -> None:
         """All come to rest as soon as they can in places."""
-        for name, visit in self._commitments().items():
-            one = self._on_way[name]
-            del one.points[visit + 1 :], one.before[visit + 1 :], one.directions[visit:]
-            one.granted, one.sent = visit, min(one.sent, visit)
+        dynamics = {key: value for key, value in self._dynamics.items() if key != "reference"}
+        ends = self._commitments()
+        ways = {
+            name: self._from_now(name, one, ends[name], [one.points[ends[name]]]) for name, one in self._on_way.items()
+        }
+        self._tell(ways, dynamics)
 
     def _check_targets(self, goals: Mapping[str, _Goal], raster: Raster) -> None:
         """RoutingError: these cannot be."""
@@ -493,7 +557,7 @@ class SurfaceRouter:
                 x, y = raster.middle(place)
                 straight = min(abs(mover.x - x), abs(mover.y - y)) < NEAR
                 if straight and raster.free[place] and place not in shut and place not in bound:
-                    found[name] = Traveller(mover, [(x, y)])
+                    found[name] = OnWay(mover, [(x, y)], mover.route_visit)
                     bound.add(place)
                     break
             else:
@@ -509,7 +573,6 @@ class SurfaceRouter:
         """These, and whoever is bound for places behind them, come to rest and go back to the place they have passed;
         all others go as far as they have to."""
         commitments = self._commitments()
-        names = {one: name for name, one in self._on_way.items()}
         back = set(caught)
         again = True
         while again:
@@ -517,29 +580,25 @@ class SurfaceRouter:
             for name, one in self._on_way.items():
                 if name in back:
                     continue
-                for visit in range(one.passed + 1, commitments[name] + 1):
-                    before = one.before[visit]
-                    if before is not None and names.get(before[0]) in back and before[0].passed <= before[1]:
+                for place in range(one.passed + 1, commitments[name] + 1):
+                    behind = self._behind(one, place)
+                    if behind is not None and behind[0] in back and self._on_way[behind[0]].passed <= behind[1]:
                         back.add(name)
                         again = True
                         break
         for name, one in self._on_way.items():
             if name in back and name not in self._back:
                 able = one.mover.state.value == "Enabled" and name not in self._failed
-                one.feedback = one.mover.halt() if able and (one.in_motion or not one.rests) else None
+                one.feedback = one.mover.halt() if able and (one.in_motion or one.mover.on_route) else None
                 one.halts = one.feedback is not None
-                one.told = None
                 self._back[name] = one
-            elif name not in self._back:
-                one.granted = commitments[name]
-                one.sent = min(one.sent, one.granted)
+        self._hold([name for name in self._on_way if name not in self._back])
         if raster is not None:
             self._raster = raster
 
     def _see_to_those_that_go_back(self) -> None:
         left = False
         for name, one in list(self._back.items()):
-            one.look(one.granted)
             mover, feedback = one.mover, one.feedback
             if one.in_motion or mover.state.value in ("Disabling", "ErrorPending") or (one.halts and one.is_told):
                 left = True
@@ -565,10 +624,7 @@ class SurfaceRouter:
         if left:
             return
         for name, one in self._back.items():
-            rested = Traveller(one.mover, [one.points[one.passed]])
-            for other in self._on_way.values():
-                other.before = [None if b is not None and b[0] is one else b for b in other.before]
-            self._on_way[name] = rested
+            self._on_way[name] = OnWay(one.mover, [one.points[one.passed]], one.first + one.passed)
         self._back = {}
         self._plan_round()
 
@@ -594,16 +650,9 @@ def router_for(
     return made
 
 
-def _renamed(before: Before | None, renamed: Mapping[Traveller, tuple[Traveller, int]]) -> Before | None:
-    if before is None or before[0] not in renamed:
-        return None
-    one, first = renamed[before[0]]
-    return (one, before[1] - first) if before[1] >= first else None
-
-
-def _last(visits: Sequence[Before]) -> Before | None:
+def _last(visits: Sequence[Before], ways: Mapping[str, OnWay]) -> Before | None:
     """The last of the visits of one place, each of which has the one before."""
-    earlier = {one.before[visit] for one, visit in visits}
+    earlier = {ways[name].before[number - ways[name].first] for name, number in visits}
     return next((visit for visit in visits if visit not in earlier), None)
 
 

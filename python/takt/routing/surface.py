@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 from takt import _core
 from takt.counted import counted
 from takt.names import names_in
+from takt.routing.on_way import DYNAMICS, STANDS
 from takt.routing.raster import APART, Point, Raster, extent_of, make_raster
 from takt.routing.streets import RoutingError
-from takt.routing.traveller import DYNAMICS, STANDS
 
 if TYPE_CHECKING:
     from takt.mover import Mover

@@ -1,153 +1,200 @@
-"""Movers on their planned routes over the free surface: as far as the order of visits allows (traveller.py), not by the
-clock: a mover that is late holds up those behind it.
+"""Movers on their planned routes over the free surface.
+
+The engine carries them out, by the order of visits and not by the clock: a mover that is late holds up those behind it.
+Here it is told the plan, and looked at.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from takt import _core
 from takt.errors import TimeoutError
-from takt.feedback import DEFAULT_TIMEOUT_S
+from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
+from takt.routing.on_way import STANDS, VISITS_A_COMMAND, why_not_on
+from takt.routing.raster import NEAR, Point
 from takt.routing.streets import RoutingError
 from takt.routing.surface import SurfacePlan, Targets, Visit, plan_surface
-from takt.routing.timetable import Leg, Timetable
-from takt.routing.traveller import Traveller, answers_within
 
 if TYPE_CHECKING:
     from takt.session import Session
 
-
-def dynamics_of(plan: SurfacePlan) -> dict[str, Any]:
-    """What all commands of a plan have in common."""
-    return {**plan.dynamics, "deceleration": plan.dynamics["acceleration"], "reference": plan.raster.reference}
+COMMANDS_A_CYCLE = 16
 
 
-def travellers_of(session: Session, plan: SurfacePlan) -> list[Traveller]:
-    made = [
-        Traveller(session.mover(name), [plan.raster.middle(visit.place) for visit in visits])
-        for name, visits in zip(plan.names, plan.visits, strict=True)
-    ]
-    for one, visits in zip(made, plan.visits, strict=True):
-        one.before = [None if visit.before is None else (made[visit.before[0]], visit.before[1]) for visit in visits]
-        one.timetable = _timetable(plan, one.mover.name, visits)
-    return made
-
-
-def _timetable(plan: SurfacePlan, name: str, visits: Sequence[Visit]) -> Timetable:
-    legs, first = [], 0
-    for leg in plan.legs[name]:
-        last = first + round(math.dist(leg.start, leg.end) / plan.raster.pitch)
-        legs.append(Leg(leg.departure_s, leg.arrival_s, first, last))
-        first = last
-    return Timetable(legs, [visit.entry_s for visit in visits], [visit.left_s for visit in visits])
+def dynamics_of(plan: SurfacePlan) -> dict[str, float]:
+    """What all motions of a plan have in common."""
+    return {**plan.dynamics, "deceleration": plan.dynamics["acceleration"]}
 
 
 class SurfaceJourney:
-    """A plan that is carried out. `scan` in every cycle, or `wait`.
+    """A plan that is carried out, by the engine itself. `scan` in every cycle, or `wait`.
 
-    If a mover is halted, disabled, or refuses a command, RoutingError says so, and all others come to rest where it was
-    their turn. Once it can move again, `wait` goes on: the order is still good.
+    If a mover is halted, disabled, or refuses to go on, RoutingError says so, and all others come to rest in the next
+    places where they can. Once it can move again, `wait` goes on: the order is still good.
     """
 
     def __init__(self, session: Session, plan: SurfacePlan) -> None:
         self.session = session
         self.plan = plan
         self.started_s = session.now
-        self._all = travellers_of(session, plan)
-        self._left = [one for one in self._all if one.directions]
+        self._numbers = {name: number for number, name in enumerate(session.movers, 1)}
+        self._left = [name for name, visits in zip(plan.names, plan.visits, strict=True) if len(visits) > 1]
+        self._arrived_s = {name: 0.0 if name not in self._left else math.nan for name in plan.names}
+        self._untold: list[tuple[str, dict[str, Any]]] = []
+        self._told: list[tuple[str, Feedback]] = []
+        self._feedbacks: dict[str, Feedback] = {}  # of the routes
+        self._start: Feedback | None = None  # None: not all are told
         self._interrupted = False
-        self._dynamics = dynamics_of(plan)
-        # The entries of a plan are early by surface_early_s already.
-        self._later_s = answers_within(session, session.period - _core.surface_early_s)
-        for one in self._left:
-            one.check_on_way()
+        for name, visits in zip(plan.names, plan.visits, strict=True):
+            self._check_start(name, plan.raster.middle(visits[0].place))
+        self._tell_anew()
 
     @property
     def arrived_s(self) -> dict[str, float]:
         """By mover: s from the start on, when it was where it stays; NaN: it is not yet."""
-        return {t.mover.name: t.arrived_s for t in self._all}
+        return dict(self._arrived_s)
 
     @property
     def duration_s(self) -> float:
         """s until the last one was there."""
-        return max(self.arrived_s.values(), default=0.0)
+        return max(self._arrived_s.values(), default=0.0)
 
     def scan(self) -> bool:
-        """Lets movers go on whose turn it is. True: all are there."""
+        """Looks who is there. True: all are."""
         if self._interrupted:
             self._go_on_again()
-        now_s = self.session.now - self.started_s
-        for one in self._left:
-            one.look()
         self._check()
-        for one in self._left:
-            one.grant()
-        for one in self._left:
-            one.go_on(self._dynamics, now_s, self._later_s)
-            if one.there:
-                one.arrived_s = self.session.now - self.started_s
-        self._left = [one for one in self._left if math.isnan(one.arrived_s)]
+        if self._left and self._start is None:
+            self._tell()
+        for name in [name for name in self._left if name in self._feedbacks and self._feedbacks[name].done]:
+            self._left.remove(name)
+            self._arrived_s[name] = self._feedbacks[name].cycle * self.session.period - self.started_s
         return not self._left
 
+    def _check_start(self, name: str, point: Point) -> None:
+        mover = self.session.mover(name)
+        if (off := math.dist((mover.x, mover.y), point)) > NEAR:
+            raise RoutingError(f"mover {name} is {off:.6g} mm off its route: plan anew", name)
+
+    def _routes(self) -> Iterator[tuple[str, dict[str, Any]]]:
+        """Commands that give each mover its route."""
+        first = {name: self.session.mover(name).route_visit for name in self.plan.names}
+        for name, visits in zip(self.plan.names, self.plan.visits, strict=True):
+            if name not in self._left:
+                continue
+            told = self._visits_of(name, visits, first)
+            for k in range(0, len(told), VISITS_A_COMMAND):
+                yield name, {"first": first[name] + k, "continues": k > 0, "visits": told[k : k + VISITS_A_COMMAND]}
+
+    def _tell(self) -> None:
+        """Gives each mover its route, so many in a cycle as the engine takes, and then starts all at once."""
+        now, self._untold = self._untold[:COMMANDS_A_CYCLE], self._untold[COMMANDS_A_CYCLE:]
+        for name, route in now:
+            given = self.session.mover(name).set_route(**route)
+            self._told.append((name, given))
+            self._feedbacks.setdefault(name, given)
+        if not self._untold:
+            movers = [self._numbers[name] for name in self._feedbacks]
+            self._start = self.session.command("machine", "start_routes", {**dynamics_of(self.plan), "movers": movers})
+
+    def _tell_anew(self) -> None:
+        self._untold = list(self._routes())
+        self._told, self._feedbacks, self._start = [], {}, None
+
+    def _visits_of(self, name: str, visits: Sequence[Visit], first: Mapping[str, int]) -> list[dict[str, Any]]:
+        plan, told = self.plan, []
+        for visit in visits:
+            x, y = plan.raster.middle(visit.place)
+            # The entries of a plan are early by surface_early_s, for a program that looks now and then.
+            times = {"entry_time": visit.entry_s + _core.surface_early_s, "exit_time": visit.left_s}
+            told.append({"x": x, "y": y, **{key: max(value, 0.0) for key, value in times.items()}})
+            if visit.before is not None and visit.before[0] != plan.names.index(name):
+                other = plan.names[visit.before[0]]
+                told[-1] |= {"after": self._numbers[other], "after_visit": first[other] + visit.before[1]}
+        at = 0
+        for leg in plan.legs[name]:
+            told[at]["departure_time"] = leg.departure_s
+            at += round(math.dist(leg.start, leg.end) / plan.raster.pitch)
+            told[at]["arrival_time"] = leg.arrival_s
+        return told
+
     def _check(self) -> None:
-        for one in self._left:
-            if (sentence := one.fault()) is not None:
+        for name, given in self._told:
+            if given.error:
+                self._tell_anew()
+                raise RoutingError(f"mover {name}: {given.sentence}", name)
+        if self._start is not None and self._start.error:
+            sentence, culprit = self._start.sentence, self._start.object
+            self._tell_anew()
+            raise RoutingError(sentence, culprit.name if culprit else "")
+        if self._start is not None and self._start.done:
+            self._told = []
+        for name in self._feedbacks:
+            if name in self._left and (why := self._fault(name)) is not None:
                 self._come_to_rest()
-                raise RoutingError(sentence, one.mover.name)
+                raise RoutingError(why, name)
+
+    def _fault(self, name: str) -> str | None:
+        """Why it does not go its way any more."""
+        feedback = self._feedbacks[name]
+        return None if feedback.busy or feedback.done else why_not_on(self.session.mover(name), feedback)
 
     def _come_to_rest(self) -> None:
-        """Each where it was its turn; `scan` goes on from there."""
-        self._interrupted = True
-        for one in self._left:
-            one.grant()
-            if one.is_told:
-                one.stop_where_granted(self._dynamics)
+        """In places; `scan` goes on from there."""
+        self._interrupted = self._start is not None
+        if self._interrupted:
+            self._hold(True)
+
+    def _hold(self, hold: bool) -> None:
+        self.session.command("machine", "hold_routes", {"hold": hold, "movers": [self._numbers[n] for n in self._left]})
 
     def _go_on_again(self) -> None:
-        for one in self._left:
-            if one.feedback is not None and not one.feedback.busy and not one.feedback.done:
-                if one.in_motion:
-                    raise RoutingError(f"mover {one.mover.name} is still in motion")
-                one.look()  # it went on while it braked
-                one.check_on_way()
-                one.stay()
+        for name in self._left:
+            feedback, mover = self._feedbacks[name], self.session.mover(name)
+            if feedback.busy or feedback.done:
+                continue
+            if math.hypot(mover.velocity_x, mover.velocity_y) > STANDS:
+                raise RoutingError(f"mover {name} is still in motion")
+            self._feedbacks[name] = mover.continue_route()
+        self._hold(False)
         self._interrupted = False
 
     def wait(self, timeout: float = DEFAULT_TIMEOUT_S) -> SurfaceJourney:
         """Lets engine time pass until all are there.
 
         If that is not within `timeout` [s] (TimeoutError, says which are late and why) or is broken off, all come to
-        rest where it was their turn, and a further `wait` goes on.
+        rest in the next places where they can, and a further `wait` goes on.
         """
         try:
             self.session.wait(self.scan, timeout)
         except TimeoutError:
-            late = [t.mover.name + self._reason(t) for t in self._left]
+            late = [name + self._reason(name) for name in self._left]
             self._come_to_rest()
             raise TimeoutError(f"not there within {timeout:g} s: {', '.join(late)}") from None
         except BaseException:
             if not self._interrupted:
                 self._come_to_rest()
             raise
-        self.session._catch_up(max((t.feedback.cycle for t in self._all if t.feedback), default=0))
+        self.session._catch_up(max((feedback.cycle for feedback in self._feedbacks.values()), default=0))
         return self
 
-    def _reason(self, one: Traveller) -> str:
-        if one.mover.waits_for:
-            return f" (waits for {list(self.session.movers)[one.mover.waits_for - 1]})"
-        if (holder := one.held_by) is not None:
-            return f" (its next place is that of {holder.name} first)"
+    def _reason(self, name: str) -> str:
+        mover, names = self.session.mover(name), list(self.session.movers)
+        if mover.waits_for:
+            return f" (waits for {names[mover.waits_for - 1]})"
+        if mover.delay.value == "place":
+            return f" (its next place is that of {names[mover.blocker - 1]} first)"
         return ""
 
     def halt(self) -> None:
         """Brings all to rest that are not there yet. `wait` goes on."""
-        going = [t for t in self._left if t.mover.state.value == "Enabled"]
-        for feedback in [t.mover.halt() for t in going]:
+        going = [self.session.mover(name) for name in self._left]
+        for feedback in [mover.halt() for mover in going if mover.state.value == "Enabled"]:
             feedback.wait_final()
-        self._interrupted = True
+        self._interrupted = self._start is not None
 
 
 def move_on_surface(
