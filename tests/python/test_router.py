@@ -256,6 +256,45 @@ def test_stops_of_the_machine_end_the_orders(verb: str, arguments: dict[str, boo
     assert not watch.overlaps
 
 
+@pytest.mark.parametrize("on_way", [False, True])
+def test_movers_that_cannot_go_when_their_routes_come(on_way: bool) -> None:
+    """PL-72: what is published is of the cycle before; the order fails with the reason, the others are carried out."""
+    engine = engine_of({"a": (0, 0), "b": (0, 3), "c": (0, 5)}, square(3))
+    if on_way:
+        engine.route({"b": at((5, 3))})
+        engine.run(0.1)
+    engine.mover("a").disable()
+    order = engine.route({"a": at((5, 0)), "c": at((5, 5))})
+    engine.wait(lambda: order.done, 10)
+    assert order.failed["a"] == "mover a cannot be moved on the surface: it is Disabled"
+    assert set(order.arrived_s) == {"c"}
+    if on_way:
+        assert is_at(engine.mover("b"), (5, 3))
+    # Set points from outside that others start in that cycle, too.
+    engine.mover("a").enable().wait()
+    engine.mover("a").start_external_setpoint_generation(mode="relative")
+    order = engine.route({"a": at((5, 0)), "b": at((0, 3))})
+    engine.wait(lambda: order.done, 10)
+    assert "a" in order.failed
+    assert "b" in order.arrived_s
+
+
+def test_routes_of_others_end_the_orders() -> None:
+    """PL-72: a mover that another client gives a route goes there, and its order has failed."""
+    engine = engine_of({"a": (0, 0), "b": (0, 3)}, square(3))
+    order = engine.route({"a": at((5, 0)), "b": at((5, 3))})
+    engine.run(0.1)
+    a = engine.mover("a")
+    points = [{"x": x, "y": 60.0} for x in (420.0, 540.0)]
+    theirs = a.set_route(first=3, visits=points)
+    engine.command("machine", "start_routes", {"movers": [1]}).wait()
+    engine.wait(lambda: order.done, 10)
+    assert set(order.failed) == {"a"}
+    theirs.wait()
+    assert is_at(a, (4, 0))
+    assert is_at(engine.mover("b"), (5, 3))
+
+
 def test_those_behind_it_go_back_and_round() -> None:
     """A leader in a lane, and three behind it that were granted places beyond it: none waits for ever."""
     starts = {name: (x, 0) for x, name in enumerate("dcba")}

@@ -44,6 +44,8 @@ if TYPE_CHECKING:
     from takt.session import Session
 
 CYCLES = 8  # until routes are carried out, in process
+COMMANDS_A_CYCLE = 16  # that the engine takes
+MOST_REFUSALS = 5  # of routes, one after the other
 
 
 @dataclass
@@ -70,6 +72,10 @@ class _Started:
     @property
     def done(self) -> bool:
         return self.start.done and not any(one.error for one in self.told)
+
+    @property
+    def refusal(self) -> Feedback:
+        return next((one for one in self.told if one.error), self.start)
 
 
 class SurfaceOrder:
@@ -150,6 +156,7 @@ class SurfaceRouter:
         self._pending: list[_Started] = []  # routes that the engine has not answered yet
         self._held = False  # routes are being held
         self._too_late = False  # routes came too late: they are planned anew
+        self._refusals = 0  # in a row
         self._surface: tuple[object, ...] = ()
         self._seen_s = session.now
         self._later_s = answers_within(session, CYCLES * session.period)
@@ -236,18 +243,17 @@ class SurfaceRouter:
     def scan(self) -> None:
         """Sees who is there, who waits for whom, and who fails."""
         passed, self._seen_s = self.session.now - self._seen_s, self.session.now
-        if not (self._on_way or self._back or self._pending) or not self._are_started():
+        busy = self._on_way or self._back or self._pending or self._too_late
+        if not busy or not self._are_started():
             return
         failed: dict[str, str] = {}
         for name, one in self._on_way.items():
             if name not in self._back and (sentence := one.fault()) is not None:
                 failed[name] = sentence
-        if failed or self._surface_now() != self._surface:
+        if failed or self._too_late or self._surface_now() != self._surface:
             for name, sentence in failed.items():
                 self._fail(name, sentence)
                 self._failed.add(name)
-            self._plan_round()
-        elif self._too_late:
             self._too_late = False
             self._plan_round()
         if self._back:
@@ -268,15 +274,27 @@ class SurfaceRouter:
         for one, after in zip(self._pending, [*self._pending[1:], None], strict=True):
             if one.done:
                 ways = self._on_way if after is None else after.before
-        refused, self._pending = not self._pending[-1].done, []
-        self._held &= refused
-        self._on_way = ways
+        last, self._pending = self._pending[-1], []
+        self._held &= not last.done
+        self._on_way = {**ways, **self._back}
         for way in ways.values():
             way.bound = way.last
-        if refused:
-            self._hold(ways)
-            self._too_late = True
-        return not refused
+        if last.done:
+            self._refusals = 0
+            return True
+        self._refusals += 1
+        if self._refusals > MOST_REFUSALS:
+            self._give_up(last.refusal)
+        self._hold(self._on_way)
+        self._too_late = True
+        return False
+
+    def _give_up(self, refusal: Feedback) -> None:
+        """The engine takes no routes from here: orders fail, that of the mover which it names, or all."""
+        named = refusal.object
+        names = [named.name] if named is not None and named.name in self._goals else list(self._goals)
+        for name in names:
+            self._fail(name, f"mover {name}: {refusal.sentence}")
 
     def _hold(self, names: Iterable[str]) -> None:
         numbers = [number for number, name in enumerate(self.session.movers, 1) if name in set(names)]
@@ -316,7 +334,8 @@ class SurfaceRouter:
         those behind it get to theirs."""
         if self._held:
             return {name: one.granted for name, one in self._on_way.items()}
-        found = {name: one.stops_at(self._dynamics, self._later_s) for name, one in self._on_way.items()}
+        later_s = max(self._later_s, (len(self._on_way) / COMMANDS_A_CYCLE + 4) * self.session.period)
+        found = {name: one.stops_at(self._dynamics, later_s) for name, one in self._on_way.items()}
         again = True
         while again:
             again = False
