@@ -86,6 +86,7 @@ struct SurfaceRoute {
 
   Visits draft;             // told, and not started
   Ticket draft_ticket = 0;  // of the command that told it; 0: none
+  bool takes = false;       // for a look at all: it begins now
 
   std::uint64_t last() const noexcept { return visits.empty() ? passed : visits.last(); }
 };

@@ -20,20 +20,10 @@ namespace {
 
 constexpr double kRounded = 1e-6;  // s
 
-// The routes that movers were told, and that are to begin now.
-struct Drafts {
-  const SurfaceRoutes& routes;
-  std::span<const std::uint32_t> listed;  // numbers of movers; none: all
-
-  bool Has(std::size_t mover) const {
-    const bool takes = listed.empty() || std::ranges::find(listed, mover + 1) != listed.end();
-    return takes && routes.of[mover].draft_ticket != 0;
-  }
-  // The last visit that a mover gets to then.
-  std::uint64_t LastOf(std::size_t mover) const {
-    return Has(mover) ? routes.of[mover].draft.last() : routes.of[mover].last();
-  }
-};
+// The last visit that a mover gets to when those that are to begin have begun.
+std::uint64_t LastOf(const SurfaceRoute& r) {
+  return r.takes ? r.draft.last() : r.last();
+}
 
 Answer RefusedRoute(RouteProblem problem) {
   return Refused(ErrorId::kRoute, {}, static_cast<double>(problem));
@@ -99,31 +89,32 @@ bool HasGoodTimes(const Visits& visits) {
   return true;
 }
 
-RouteProblem WhyNotVisits(const Drafts& drafts, const SurfaceRoute& r) {
+RouteProblem WhyNotVisits(const SurfaceRoutes& routes, const SurfaceRoute& r) {
   for (std::uint64_t k = r.draft.first() + 1; k <= r.draft.last(); ++k) {
     const Visit& visit = r.draft[k];
-    if (visit.after > drafts.routes.of.size()) return RouteProblem::kNoMover;
-    if (visit.after != 0 && visit.after_visit > drafts.LastOf(visit.after - 1)) return RouteProblem::kNoVisit;
+    if (visit.after > routes.of.size()) return RouteProblem::kNoMover;
+    if (visit.after != 0 && visit.after_visit > LastOf(routes.of[visit.after - 1])) return RouteProblem::kNoVisit;
   }
   return HasGoodTimes(r.draft) ? RouteProblem::kNone : RouteProblem::kTimes;
 }
 
 // What it is bound for already must come free as things go on.
-RouteProblem WhyNotKept(const Drafts& drafts, const Context& c, const SurfaceRoute& r) {
+RouteProblem WhyNotKept(const Context& c, const SurfaceRoute& r) {
   for (std::uint64_t k = r.passed + 1; k <= r.draft.first(); ++k) {
     const std::optional<std::uint32_t> before = Before(c, r.visits[k]);
     if (!before) continue;
+    const SurfaceRoute& other = RouteOf(c, *before);
     const std::uint64_t its = r.visits[k].after_visit;
-    if (RouteOf(c, *before).passed <= its && drafts.LastOf(*before) <= its) return RouteProblem::kBehind;
+    if (other.passed <= its && LastOf(other) <= its) return RouteProblem::kBehind;
   }
   return RouteProblem::kNone;
 }
 
 // A mover keeps its route behind those that change over: what they leave before, they leave still.
-bool StaysBehind(const Drafts& drafts, const Context& c, const SurfaceRoute& r) {
+bool StaysBehind(const Context& c, const SurfaceRoute& r) {
   for (std::uint64_t k = r.passed + 1; k <= r.last(); ++k) {
     const std::optional<std::uint32_t> before = Before(c, r.visits[k]);
-    if (!before || !drafts.Has(*before)) continue;
+    if (!before || !RouteOf(c, *before).takes) continue;
     const Visits& draft = RouteOf(c, *before).draft;
     const std::uint64_t its = r.visits[k].after_visit;
     if (its >= draft.first() && (its > draft.first() || its == draft.last())) return false;
@@ -131,29 +122,35 @@ bool StaysBehind(const Drafts& drafts, const Context& c, const SurfaceRoute& r) 
   return true;
 }
 
-planar::Verdict WhyNotStart(const Everyone& all, const Drafts& drafts, const RouteDynamics& dynamics) {
-  for (const std::uint32_t number : drafts.listed) {
+// Notes which movers begin what they were told.
+planar::Verdict FindThoseThatBegin(const Everyone& all, std::span<const std::uint32_t> listed) {
+  for (SurfaceRoute& r : all.routes.of) r.takes = listed.empty() && r.draft_ticket != 0;
+  for (const std::uint32_t number : listed) {
     if (number == 0 || number > all.routes.of.size()) return {ErrorId::kParameter};
-    if (all.routes.of[number - 1].draft_ticket == 0) return RefusedRoute(RouteProblem::kNoneTold, number - 1);
+    SurfaceRoute& r = all.routes.of[number - 1];
+    if (r.draft_ticket == 0) return RefusedRoute(RouteProblem::kNoneTold, number - 1);
+    r.takes = true;
   }
-  bool told = false;
+  const bool none = std::ranges::none_of(all.routes.of, &SurfaceRoute::takes);
+  return none ? planar::Verdict{ErrorId::kRoute, {}, static_cast<double>(RouteProblem::kNoneTold)} : planar::Verdict{};
+}
+
+planar::Verdict WhyNotStart(const Everyone& all, const RouteDynamics& dynamics) {
   for (std::size_t i = 0; i < all.routes.of.size(); ++i) {
     const SurfaceRoute& r = all.routes.of[i];
     const State& s = all.states[i];
     const Context c = all.of(i);
     const bool on_way = IsOnRoute(s);
-    if (!drafts.Has(i)) {
-      if (on_way && !StaysBehind(drafts, c, r)) return RefusedRoute(RouteProblem::kMissing, i);
+    if (!r.takes) {
+      if (on_way && !StaysBehind(c, r)) return RefusedRoute(RouteProblem::kMissing, i);
       continue;
     }
-    told = true;
     if (const ErrorId why = WhyNotAble(s); why != ErrorId::kNone) return {why, ObjectAt(ObjectKind::kMover, i)};
     RouteProblem problem = on_way ? WhyNotChange(c, s, r, dynamics) : WhyNotBegin(c, s, r);
-    if (problem == RouteProblem::kNone) problem = WhyNotVisits(drafts, r);
-    if (problem == RouteProblem::kNone && on_way) problem = WhyNotKept(drafts, c, r);
+    if (problem == RouteProblem::kNone) problem = WhyNotVisits(all.routes, r);
+    if (problem == RouteProblem::kNone && on_way) problem = WhyNotKept(c, r);
     if (problem != RouteProblem::kNone) return RefusedRoute(problem, i);
   }
-  if (!told) return {ErrorId::kRoute, {}, static_cast<double>(RouteProblem::kNoneTold)};
   return {};
 }
 
@@ -248,15 +245,16 @@ Answer CarryOut(const Given& g, const ContinueRoute&) noexcept {
 planar::Verdict Start(const Everyone& all, const StartRoutes& command) noexcept {
   if (!InRange(command)) return {ErrorId::kParameter};
   const RouteDynamics dynamics{command.velocity, command.acceleration, command.deceleration, command.jerk};
-  const Drafts drafts{all.routes, command.movers.all()};
-  if (const planar::Verdict why = WhyNotStart(all, drafts, dynamics); why.error != ErrorId::kNone) return why;
+  planar::Verdict why = FindThoseThatBegin(all, command.movers.all());
+  if (why.error == ErrorId::kNone) why = WhyNotStart(all, dynamics);
+  if (why.error != ErrorId::kNone) return why;
   // One that was taken off its route cannot go on behind visits that come no more.
   for (std::size_t i = 0; i < all.routes.of.size(); ++i) {
     SurfaceRoute& r = all.routes.of[i];
-    if (!drafts.Has(i) && !IsOnRoute(all.states[i]) && !StaysBehind(drafts, all.of(i), r)) r.visits.Clear(r.passed);
+    if (!r.takes && !IsOnRoute(all.states[i]) && !StaysBehind(all.of(i), r)) r.visits.Clear(r.passed);
   }
   for (std::size_t i = 0; i < all.routes.of.size(); ++i) {
-    if (drafts.Has(i)) BeginDraft(all.of(i), dynamics, all.states[i], all.routes.of[i]);
+    if (all.routes.of[i].takes) BeginDraft(all.of(i), dynamics, all.states[i], all.routes.of[i]);
   }
   return {};
 }
