@@ -497,7 +497,7 @@ void describe(Description<StartRoutes>& d) {
 void describe(Description<HoldRoutes>& d) {
   d.about(
       "Lets movers on routes come to rest in the next places where they can, and none in the way of another one: "
-      "route_granted. They go on when it is taken back, or with new routes.");
+      "route_granted. They go on when it is taken back.");
   d.defaulted<&HoldRoutes::hold>("False: takes it back.");
   d.defaulted<&HoldRoutes::movers>("Numbers of the movers, from 1; none: all.");
 }

@@ -236,9 +236,12 @@ bool AimsAt(const SurfaceRoute& r, const Visit& place) {
 }
 
 void GoStraightOn(const Context& c, bool rests, State& s, SurfaceRoute& r) {
+  // It was to go further before.
+  const std::uint64_t bound = std::min(r.sent, r.granted);
+  const bool ends_here = bound <= r.passed || bound < r.sent;
+  if (!rests && ends_here && r.aims && !AimsAt(r, r.visits[bound])) return Send(c, bound, s, r);
   std::uint64_t from = r.passed;
   if (!rests && r.passed >= r.sent) {
-    if (r.aims && !AimsAt(r, r.visits[r.sent])) return Send(c, r.sent, s, r);  // it was to go further before
     if (r.sent <= r.begin) return;
     from = r.sent - 1;  // in this direction it goes already
   }

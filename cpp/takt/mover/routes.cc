@@ -178,7 +178,8 @@ void BeginDraft(const Context& c, const RouteDynamics& dynamics, State& s, Surfa
   r.aims = on_way && r.aims;
   r.leg = at;
   r.timed = r.visits[at].departure_time.has_value();
-  r.leaves = r.held = false;
+  r.leaves = false;
+  r.held &= on_way;
   r.late = 0;
   r.look_again = 0;
   r.pause = 0;
@@ -298,6 +299,7 @@ planar::Verdict Hold(const Everyone& all, const HoldRoutes& command) noexcept {
   for (const std::uint32_t number : numbers) {
     if (number == 0 || number > all.routes.of.size()) return {ErrorId::kParameter};
   }
+  all.Each([](const Context& c, State& s, SurfaceRoute& r) { Look(c, s, r); });
   for (std::size_t i = 0; i < all.routes.of.size(); ++i) {
     SurfaceRoute& r = all.routes.of[i];
     const bool listed = numbers.empty() || std::ranges::find(numbers, i + 1) != numbers.end();

@@ -53,7 +53,8 @@ class OnWay:
     @property
     def granted(self) -> int:
         """The last place that is its turn."""
-        return min(max(self.mover.route_granted - self.first, 0), self.bound)
+        passed = min(max(self.mover.route_visit - self.first, 0), self.bound)
+        return max(min(self.mover.route_granted - self.first, self.bound), passed)
 
     @property
     def in_motion(self) -> bool:

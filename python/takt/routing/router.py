@@ -275,16 +275,20 @@ class SurfaceRouter:
             if one.done:
                 ways = self._on_way if after is None else after.before
         last, self._pending = self._pending[-1], []
-        self._held &= not last.done
         self._on_way = {**ways, **self._back}
         for way in ways.values():
             way.bound = way.last
         if last.done:
             self._refusals = 0
+            self._release()
             return True
         self._refusals += 1
         if self._refusals > MOST_REFUSALS:
+            self._refusals = 0
             self._give_up(last.refusal)
+            if not self._goals:  # all go on as they were told before
+                self._release()
+                return True
         self._hold(self._on_way)
         self._too_late = True
         return False
@@ -297,10 +301,18 @@ class SurfaceRouter:
             self._fail(name, f"mover {name}: {refusal.sentence}")
 
     def _hold(self, names: Iterable[str]) -> None:
-        numbers = [number for number, name in enumerate(self.session.movers, 1) if name in set(names)]
-        if numbers:
+        if numbers := self._numbers(names):
             self.session.command("machine", "hold_routes", {"movers": numbers})
-        self._held = True
+            self._held = True
+
+    def _release(self) -> None:
+        if self._held and (numbers := self._numbers(self._on_way)):
+            self.session.command("machine", "hold_routes", {"hold": False, "movers": numbers})
+        self._held = False
+
+    def _numbers(self, names: Iterable[str]) -> list[int]:
+        wanted = set(names)
+        return [number for number, name in enumerate(self.session.movers, 1) if name in wanted]
 
     def _look_whether_there(self) -> None:
         if self._back or self._pending:

@@ -229,6 +229,7 @@ TEST(Routes, ChangeOver) {
   const Ticket b = rig.Give("b", "set_route", Visits(b_at, {{{1, 2}}, {{2, 2}, 1, a_at}, {{2, 1}}}));
   EXPECT_EQ(rig.Do("machine", "start_routes", "{velocity: 500}").state, FeedbackState::kDone);
   for (const Ticket old : {rig.a, rig.b}) EXPECT_EQ(rig.answers[old].state, FeedbackState::kAborted);
+  rig.Do("machine", "hold_routes", "{hold: false}");
   for (const Ticket ticket : {a, b, rig.c}) EXPECT_EQ(rig.End(ticket).state, FeedbackState::kDone);
   rig.ExpectAt("a", {4, 2});
   rig.ExpectAt("b", {2, 1});
@@ -346,6 +347,43 @@ TEST(Routes, AreLeftAsTheyWereByARefusal) {
   EXPECT_EQ(rig.Mover("a").route_visit, 0u);
   rig.Do("a", "move_to_position", "{x: 300, y: 60}");
   EXPECT_EQ(rig.End(rig.Give("a", "continue_route")).state, FeedbackState::kDone);
+}
+
+// In every cycle: where it is almost at rest before a place that it is just granted, too.
+TEST(Routes, AreHeldInEveryCycle) {
+  for (int cycles = 290; cycles < 310; ++cycles) {
+    SCOPED_TRACE(cycles);
+    Rig rig(Surface({{"a", {0, 0}}, {"b", {2, 0}}}));
+    rig.Give("b", "set_route", Visits(0, {{{2, 0}}, {{2, 1}}}));
+    const Ticket a = rig.Give("a", "set_route", Visits(0, {{{0, 0}}, {{1, 0}}, {{2, 0}, 2, 0}, {{3, 0}}, {{4, 0}}}));
+    rig.Give("machine", "start_routes", "{velocity: 600}");
+    rig.Run(cycles);
+    rig.Give("machine", "hold_routes");
+    rig.Run(1000);
+    EXPECT_EQ(rig.Mover("a").route_visit, rig.Mover("a").route_granted);
+    EXPECT_EQ(rig.Mover("a").x, MiddleOf(static_cast<int>(rig.Mover("a").route_visit)));
+    rig.Do("machine", "hold_routes", "{hold: false}");
+    EXPECT_EQ(rig.End(a).state, FeedbackState::kDone);
+  }
+}
+
+// New routes for movers that are held leave them held; one that is not on its way begins at once.
+TEST(Routes, StayHeldUntilItIsTakenBack) {
+  Crossing rig;
+  rig.Do("machine", "start_routes", "{movers: [1]}");
+  rig.Run(100);
+  rig.Do("machine", "hold_routes");
+  rig.Run(600);
+  EXPECT_EQ(rig.Do("machine", "start_routes", "{movers: [3]}").state, FeedbackState::kDone);
+  EXPECT_EQ(rig.End(rig.c).state, FeedbackState::kDone);
+  const auto at = static_cast<int>(rig.Mover("a").route_visit);
+  const Ticket a = rig.Give("a", "set_route", Visits(at, {{{2, at}}, {{2, at + 1}}, {{2, at + 2}}, {{2, at + 3}}}));
+  EXPECT_EQ(rig.Do("machine", "start_routes", "{movers: [1]}").state, FeedbackState::kDone);
+  rig.Run(600);
+  EXPECT_EQ(rig.answers[a].state, FeedbackState::kActive);
+  EXPECT_EQ(static_cast<int>(rig.Mover("a").route_visit), at);
+  rig.Do("machine", "hold_routes", "{hold: false}");
+  EXPECT_EQ(rig.End(a).state, FeedbackState::kDone);
 }
 
 // Those that follow one that is held come to rest in places, too, and go on with it.
