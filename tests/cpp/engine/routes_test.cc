@@ -70,6 +70,12 @@ class Rig : public PartsRig {
       return Mover(m.name).velocity_x == 0 && Mover(m.name).velocity_y == 0;
     });
   }
+  void ExpectInPlaces() const {
+    for (const mover::MoverParams& mover : machine.movers) {
+      EXPECT_NEAR(std::remainder(Mover(mover.name).x - 60, kPitch), 0, 1e-6) << mover.name;
+      EXPECT_NEAR(std::remainder(Mover(mover.name).y - 60, kPitch), 0, 1e-6) << mover.name;
+    }
+  }
   std::string Refusal(const std::string& target, const std::string& verb, const std::string& arguments = "{}") {
     return SentenceNaming(Do(target, verb, arguments), machine);
   }
@@ -219,6 +225,9 @@ TEST(Routes, ChangeOver) {
   rig.Give("a", "set_route", Visits(2, {{{2, 2}}}));
   EXPECT_THAT(rig.Refusal("machine", "start_routes"), HasSubstr("has no new route: mover b"));
   EXPECT_TRUE(rig.Mover("a").on_route);
+  // b is bound for the crossing, and a would stay there.
+  rig.Give("b", "set_route", Visits(2, {{{2, 2}}, {{3, 2}}}));
+  EXPECT_THAT(rig.Refusal("machine", "start_routes"), HasSubstr("that one does not leave it: mover b"));
   // a turns off at the crossing, b goes round it.
   rig.Do("machine", "hold_routes");
   const auto a_at = static_cast<int>(rig.Mover("a").route_granted),
@@ -324,6 +333,39 @@ TEST(Routes, KeepTheOrderWhateverTheTimes) {
   EXPECT_EQ(rig.overlaps, 0);
 }
 
+// One that was sent over a crossing by time, behind another one that is halted then: it stops before the crossing.
+TEST(Routes, StopBeforeAPlaceThatIsNotGranted) {
+  for (int cycles = 1; cycles < 300; cycles += 20) {
+    SCOPED_TRACE(cycles);
+    Rig rig(Surface({{"a", {4, 0}}, {"b", {0, 2}}}));
+    std::string a = "{first: 0, visits: [{x: 540, y: 60, departure_time: 0}", b = "{first: 0, visits: [";
+    for (int k = 1; k < 5; ++k) {
+      a += ", {x: 540, y: " + std::to_string(60 + 120 * k) + ", exit_time: " + std::to_string(0.1 * k) + "}";
+    }
+    a.insert(a.size() - 1, ", arrival_time: 0.6");
+    for (int k = 0; k < 7; ++k) {
+      b += "{x: " + std::to_string(60 + 120 * k) + ", y: 300, entry_time: " + std::to_string(0.15 * k);
+      b += k == 0   ? ", departure_time: 0}, "
+           : k == 4 ? ", after: 1, after_visit: 2}, "
+           : k == 6 ? ", arrival_time: 1}"
+                    : "}, ";
+    }
+    rig.Give("a", "set_route", a + "]}");
+    const Ticket route = rig.Give("b", "set_route", b + "]}");
+    EXPECT_EQ(rig.Do("machine", "start_routes").state, FeedbackState::kDone);
+    rig.Run(cycles);
+    EXPECT_EQ(rig.Mover("b").target_x, MiddleOf(6));  // all of it, though the crossing is not granted yet
+    rig.Do("a", "halt");
+    rig.Run(1500);
+    const bool crossed = rig.Mover("a").y > 300 + 1.5 * kSide / 2;
+    if (!crossed) rig.ExpectAt("b", {3, 2});
+    EXPECT_EQ(rig.Mover("b").route_visit, rig.Mover("b").route_granted);
+    rig.Give("a", "continue_route");
+    EXPECT_EQ(rig.End(route).state, FeedbackState::kDone);
+    EXPECT_EQ(rig.overlaps, 0);
+  }
+}
+
 // What one that was taken off its route was to wait for is none any more: it cannot go on behind it.
 TEST(Routes, EndBehindOneThatHasAnother) {
   Crossing rig;
@@ -347,6 +389,37 @@ TEST(Routes, AreLeftAsTheyWereByARefusal) {
   EXPECT_EQ(rig.Mover("a").route_visit, 0u);
   rig.Do("a", "move_to_position", "{x: 300, y: 60}");
   EXPECT_EQ(rig.End(rig.Give("a", "continue_route")).state, FeedbackState::kDone);
+}
+
+// In the place of one that is about to leave it, too: that one goes on for so long.
+TEST(Routes, AreHeldBehindOneThatIsAboutToStart) {
+  for (int cycles = 100; cycles < 700; cycles += 12) {
+    SCOPED_TRACE(cycles);
+    Rig rig(Surface({{"r", {0, 0}}, {"o", {3, 0}}, {"x", {4, 0}}, {"z", {5, 0}}}));
+    const auto along = [](int from, int to, int before, int its) {  // behind another one, from place to place
+      std::vector<Step> steps = {{{from, 0}}};
+      for (int x = from + 1; x <= to; ++x) {
+        const int visit = x - its;
+        visit < 0 ? steps.push_back({{x, 0}}) : steps.push_back({{x, 0}, before, visit});
+      }
+      return steps;
+    };
+    std::vector<Ticket> routes = {rig.Give("z", "set_route", Visits(0, {{{5, 0}}, {{5, 1}}}))};
+    std::vector<Step> first = along(4, 9, 0, 100);
+    first[1].after = 4;
+    routes.push_back(rig.Give("x", "set_route", Visits(0, first)));
+    routes.push_back(rig.Give("o", "set_route", Visits(0, along(3, 8, 3, 4))));
+    routes.push_back(rig.Give("r", "set_route", Visits(0, along(0, 7, 2, 3))));
+    rig.Give("machine", "start_routes");
+    rig.Run(cycles);
+    rig.Do("machine", "hold_routes");
+    rig.Run(1500);
+    EXPECT_TRUE(rig.Rests());
+    rig.ExpectInPlaces();
+    rig.Do("machine", "hold_routes", "{hold: false}");
+    for (const Ticket route : routes) EXPECT_EQ(rig.End(route).state, FeedbackState::kDone);
+    EXPECT_EQ(rig.overlaps, 0);
+  }
 }
 
 // In every cycle: where it is almost at rest before a place that it is just granted, too.
@@ -565,7 +638,8 @@ TEST_P(RoutesOfWorlds, GetThereWithoutACollision) {
     switch (world.chance() % 3) {
       case 0:
         rig.Do("machine", "hold_routes");
-        rig.Run(static_cast<int>(world.chance() % 400));
+        rig.Run(world.chance() % 2 == 0 ? 600 : static_cast<int>(world.chance() % 400));
+        if (rig.Rests()) rig.ExpectInPlaces();
         rig.Do("machine", "hold_routes", "{hold: false}");
         break;
       default:
