@@ -340,11 +340,14 @@ def test_a_part_that_leaves_with_movers_on_their_way_to_it() -> None:
 
 
 def test_orders_over_lcm(tmp_path: Path) -> None:
+    """PL-72, EN-07: and the log of it is the same when it is run again, and says where movers were on their routes."""
     url = new_url()
     starts = {"a": (0, 0), "b": (5, 5), "c": (2, 0)}
-    with running(tmp_path, url, machine=machine(starts, square(3))), takt.connect(url) as session:
+    log = tmp_path / "run.lcm"
+    with running(tmp_path, url, "--log", str(log), machine=machine(starts, square(3))), takt.connect(url) as session:
         for feedback in [mover.enable() for mover in session.movers.values()]:
             feedback.wait()
+        session.move_on_surface({"a": at((0, 1)), "c": at((2, 1))}, timeout=20)
         first = session.route({"a": at((5, 4)), "b": at((0, 0))})
         session.run(0.2)
         second = session.route({"c": at((2, 5)), "b": at((0, 1))})
@@ -354,3 +357,8 @@ def test_orders_over_lcm(tmp_path: Path) -> None:
         cells = {"a": (5, 4), "b": (0, 1), "c": (2, 5)}
         # What is published may be of the cycle before the last command was done.
         session.wait(lambda: all(is_at(session.mover(name), cell) for name, cell in cells.items()), 1.0)
+    again = takt.replay(log)
+    assert again.same, again.sentence
+    recording = takt.read_log(log)
+    assert {bool(value) for value in recording["a"]["on_route"]} == {False, True}
+    assert recording["a"]["route_visit"][-1] > 5

@@ -11,7 +11,7 @@
 #include "takt/group/failures.h"
 #include "takt/group/survey.h"
 #include "takt/mover/command_mode.h"
-#include "takt/mover/routes.h"
+#include "takt/mover/route.h"
 #include "takt/planar/problem.h"
 #include "takt/planar/send.h"
 #include "takt/track/sketch.h"

@@ -468,8 +468,8 @@ void describe(Description<SetRoute>& d) {
   d.about(
       "Tells the mover which places of the free surface it is to visit one after the other, each beside the one before "
       "along X or Y. It begins with start_routes. Without visits: takes back what it was told and has not begun. "
-      "Visits are numbered through over all "
-      "routes of a mover; up to 512 in one route, of which a command has up to 48.");
+      "Visits are numbered through over all routes of a mover; up to 512 in one route, of which a command has up to "
+      "48.");
   d.required<&S::first>(
       kVisits,
       "Number of the first one, where the mover is at rest: its route_visit, or, if it was taken off its route, a "
@@ -481,15 +481,16 @@ void describe(Description<SetRoute>& d) {
 }
 
 void describe(Description<ContinueRoute>& d) {
-  d.about("Goes on along the route that a halt, a fault or another command has taken it off, from a rest on it.");
+  d.about(
+      "Resumes the route from which a halt, a fault or another command has taken the mover. It must rest on the "
+      "route.");
 }
 
 void describe(Description<StartRoutes>& d) {
   d.about(
       "Lets movers begin the routes that they were told by set_route, all of them at once, or none. Those on their way "
       "change over; those behind them must do so, too, and what they are bound for already comes first. A place is "
-      "entered when the mover that visits it before has left it, "
-      "or goes ahead in the same direction.");
+      "entered when the mover that visits it before has left it, or moves ahead in the same direction.");
   DescribeDynamics(d, unit::mm_s, unit::mm_s2, unit::mm_s3);
   d.defaulted<&StartRoutes::movers>("Numbers of the movers, from 1; none: all that were told a route.");
 }

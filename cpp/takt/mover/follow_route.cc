@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "takt/core/maths.h"
 #include "takt/mover/admission.h"
@@ -151,10 +152,6 @@ trajectory::Limits LimitsFor(const Context& c, const RouteDynamics& dynamics) {
   return LimitsOf(MoveTo(dynamics, {}), c.params.xy, unused);
 }
 
-void Leave(const Context& c, FeedbackState state, ErrorId error, const ObjectInfo& object, State& s) {
-  End(c, kRoute, state, error, s, object);
-}
-
 // Sends it straight on to the place of this visit.
 void Send(const Context& c, std::uint64_t visit, State& s, SurfaceRoute& r) {
   const Visit& to = r.visits[visit];
@@ -166,16 +163,16 @@ void Send(const Context& c, std::uint64_t visit, State& s, SurfaceRoute& r) {
     r.aim_y = to.y;
     return;
   }
-  // Nothing has changed; what moves may be gone by itself.
+  // A refused move changes nothing, and a mover that is in the way may leave.
   const bool waits = answer.status.error == ErrorId::kCollision && answer.object.kind == ObjectKind::kMover;
   if (waits) {
     r.pause = kAgainAfter;
   } else {
-    Leave(c, FeedbackState::kError, answer.status.error, answer.object, s);
+    End(c, kRoute, FeedbackState::kError, answer.status.error, s, answer.object);
   }
 }
 
-// mm that a leader goes from rest in the time that it takes to brake from full speed, on average.
+// Returns the distance [mm] that a leader covers from rest while a follower brakes from full speed, on average.
 double LeadOf(const trajectory::Limits& l) {
   const double ramp = l.acceleration / l.jerk;
   const double time = 1.05 * ((l.velocity / l.acceleration + ramp) / 2 + ramp);  // it may speed up yet
@@ -184,7 +181,7 @@ double LeadOf(const trajectory::Limits& l) {
   return std::min(l.acceleration * (since * since / 2 + ramp * ramp / 24), l.velocity * time);
 }
 
-// It rests behind a mover that goes the same way, and would have to brake for it. The guard lets it go no further than
+// It rests behind a mover with the same heading, and would have to brake for it. The guard lets it move no further than
 // it could stop behind where that is now: so it starts later by the time that takes at full speed.
 bool WouldRunUp(const Context& c, const State& s, const SurfaceRoute& r, std::uint64_t from) {
   const Visit& to = r.visits[from + 1];
@@ -236,19 +233,19 @@ bool AimsAt(const SurfaceRoute& r, const Visit& place) {
 }
 
 void GoStraightOn(const Context& c, bool rests, State& s, SurfaceRoute& r) {
-  // It was to go further before.
+  // Its motion leads further than its route does now.
   const std::uint64_t bound = std::min(r.sent, r.granted);
   const bool ends_here = bound <= r.passed || bound < r.sent;
   if (!rests && ends_here && r.aims && !AimsAt(r, r.visits[bound])) return Send(c, bound, s, r);
   std::uint64_t from = r.passed;
   if (!rests && r.passed >= r.sent) {
     if (r.sent <= r.begin) return;
-    from = r.sent - 1;  // in this direction it goes already
+    from = r.sent - 1;  // it moves in this direction already
   }
   std::uint64_t to = from;
   while (to < r.granted && HeadingAt(r, to) == HeadingAt(r, from)) ++to;
   if (to <= r.passed || (rests && WouldRunUp(c, s, r, from))) return;
-  if (!rests && AimsAt(r, r.visits[to])) {  // it goes there already
+  if (!rests && AimsAt(r, r.visits[to])) {  // its motion ends there already
     r.sent = to;
     return;
   }
@@ -262,10 +259,14 @@ void GoOn(const Context& c, State& s, SurfaceRoute& r) {
     return;
   }
   const bool rests = Rests(c, s, r);
-  if (r.passed == r.last() && rests) return Leave(c, FeedbackState::kDone, ErrorId::kNone, {}, s);
+  if (r.passed == r.last() && rests) return End(c, kRoute, FeedbackState::kDone, ErrorId::kNone, s);
   const bool held = rests && r.granted == r.passed;
   r.rests_since = !held ? 0 : r.rests_since != 0 ? r.rests_since : c.cycle.count;
-  if (rests && OffRoute(s, r) > 2 * kNear) return Leave(c, FeedbackState::kError, ErrorId::kRoute, {}, s);
+  if (rests && OffRoute(s, r) > 2 * kNear) {
+    const auto why = static_cast<double>(RouteProblem::kElsewhere);
+    Report(c, std::exchange(s.tickets[kRoute], 0), FeedbackState::kError, ErrorId::kRoute, why, s);
+    return;
+  }
   if (r.timed && !IsWatched(c)) {
     NotePassed(r, rests);
     const bool waits = r.held && !r.leaves;
@@ -304,7 +305,7 @@ void Disturb(SurfaceRoute& r) noexcept {
 void Look(const Context& c, State& s, SurfaceRoute& r) noexcept {
   const bool able = s.state == planar::ObjectState::kEnabled && s.mode == CommandMode::kFreeMovement &&
                     s.external.mode == SetpointMode::kNone && s.system == r.system;
-  if (!able) return Leave(c, FeedbackState::kAborted, ErrorId::kNone, {}, s);
+  if (!able) return End(c, kRoute, FeedbackState::kAborted, ErrorId::kNone, s);
   while (r.passed < r.sent && Along(s, r) >= PitchAt(r, r.passed) - kNear) ++r.passed;
 }
 

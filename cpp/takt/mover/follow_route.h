@@ -61,7 +61,7 @@ double OffRoute(const State& s, const SurfaceRoute& r) noexcept;
 // passed.
 double RestsAt(const Context& c, const State& s, const SurfaceRoute& r, const RouteDynamics& dynamics,
                double later = 0) noexcept;
-// The first visit, of those that are its turn, where it can come to rest.
+// Returns the first granted visit where it can come to rest.
 std::uint64_t StopsAt(const Context& c, const State& s, const SurfaceRoute& r) noexcept;
 // The present motion is none of the plan any more.
 void Disturb(SurfaceRoute& r) noexcept;

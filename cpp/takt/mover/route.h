@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "takt/core/describe_fwd.h"
@@ -123,6 +123,26 @@ struct SurfaceRoutes {
   std::vector<SurfaceRoute> of;
   std::uint64_t changes = 0;  // so many commands have changed any
 };
+
+// Why routes were refused: the value of a feedback with ErrorId::kRoute.
+enum class RouteProblem : std::uint8_t {
+  kNone,
+  kTooMany,    // more than kMostVisits
+  kNotNext,    // `first` of what continues is not the number behind the last one
+  kNotBeside,  // a place is not beside the one before, along X or Y
+  kTimes,      // a motion as planned without both times, or not straight
+  kNoMover,    // there is no mover `after`
+  kNoVisit,    // that mover has no visit `after_visit`
+  kNumber,     // `first` is not the number of the visit where it is
+  kElsewhere,  // the mover, at rest, is not in the place
+  kTooLate,    // it is bound for places further on, and cannot come to rest before
+  kBehind,     // it is bound for a place that a mover is to visit before, and that one does not get so far
+  kMissing,    // it is behind one that changes over, and has no new route
+  kNoneTold,   // no mover was told a route
+  kMoves,      // it has to rest for this
+  kNoRoute,    // it has no route that it could go on along
+};
+std::string_view MessageOf(RouteProblem problem) noexcept;
 
 void describe(Description<RouteDynamics>&);
 void describe(Description<SurfaceRoute>&);

@@ -19,6 +19,7 @@ STANDS = 1e-3  # mm/s
 DYNAMICS = ("velocity", "acceleration", "jerk")
 ANSWER_S = 0.1  # over LCM: from an observed state to the effect of the command that answers it
 VISITS_A_COMMAND = 48
+COMMANDS_A_CYCLE = 16  # that the engine takes
 Before = tuple[str, int]  # a visit of a mover, by its number
 
 
@@ -134,10 +135,10 @@ def why_not_on(mover: Mover, feedback: Feedback) -> str:
     return f"mover {mover.name} does not go its way any more: {feedback.sentence or 'it was halted'}"
 
 
-def set_route(mover: Mover, first: int, visits: Sequence[Mapping[str, Any]]) -> list[Feedback]:
-    """Gives a mover a route, in as many commands as it takes; the first is that of the route."""
+def parts_of_route(first: int, visits: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Arguments of as many set_route as a route takes; the feedback of the first is that of the route."""
     return [
-        mover.set_route(first=first + k, continues=k > 0, visits=list(visits[k : k + VISITS_A_COMMAND]))
+        {"first": first + k, "continues": k > 0, "visits": list(visits[k : k + VISITS_A_COMMAND])}
         for k in range(0, len(visits), VISITS_A_COMMAND)
     ]
 

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from takt.errors import TimeoutError
 from takt.feedback import DEFAULT_TIMEOUT_S
-from takt.routing.on_way import Before, OnWay, answers_within, set_route
+from takt.routing.on_way import COMMANDS_A_CYCLE, Before, OnWay, answers_within, parts_of_route
 from takt.routing.raster import NEAR, Point, Raster, is_there, make_raster
 from takt.routing.streets import RoutingError
 from takt.routing.surface import (
@@ -44,7 +44,6 @@ if TYPE_CHECKING:
     from takt.session import Session
 
 CYCLES = 8  # until routes are carried out, in process
-COMMANDS_A_CYCLE = 16  # that the engine takes
 MOST_REFUSALS = 5  # of routes, one after the other
 
 
@@ -456,7 +455,7 @@ class SurfaceRouter:
                 before = one.before[k]
                 if k > one.bound and before is not None and before[0] != name:
                     visits[-1] |= {"after": numbers[before[0]], "after_visit": before[1]}
-            given = set_route(one.mover, one.first + one.bound, visits)
+            given = [one.mover.set_route(**part) for part in parts_of_route(one.first + one.bound, visits)]
             one.feedback = given[0]
             told += given
         if ways:

@@ -13,15 +13,13 @@ from typing import TYPE_CHECKING, Any
 from takt import _core
 from takt.errors import TimeoutError
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback
-from takt.routing.on_way import STANDS, VISITS_A_COMMAND, why_not_on
+from takt.routing.on_way import COMMANDS_A_CYCLE, STANDS, parts_of_route, why_not_on
 from takt.routing.raster import NEAR, Point
 from takt.routing.streets import RoutingError
 from takt.routing.surface import SurfacePlan, Targets, Visit, plan_surface
 
 if TYPE_CHECKING:
     from takt.session import Session
-
-COMMANDS_A_CYCLE = 16
 
 
 def dynamics_of(plan: SurfacePlan) -> dict[str, float]:
@@ -83,11 +81,9 @@ class SurfaceJourney:
         """Commands that give each mover its route."""
         first = {name: self.session.mover(name).route_visit for name in self.plan.names}
         for name, visits in zip(self.plan.names, self.plan.visits, strict=True):
-            if name not in self._left:
-                continue
-            told = self._visits_of(name, visits, first)
-            for k in range(0, len(told), VISITS_A_COMMAND):
-                yield name, {"first": first[name] + k, "continues": k > 0, "visits": told[k : k + VISITS_A_COMMAND]}
+            if name in self._left:
+                for part in parts_of_route(first[name], self._visits_of(name, visits, first)):
+                    yield name, part
 
     def _tell(self) -> None:
         """Gives each mover its route, so many in a cycle as the engine takes, and then starts all at once."""

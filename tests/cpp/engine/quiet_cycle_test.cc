@@ -179,6 +179,56 @@ TEST(QuietCycle, AllocatesNothingLocksNothingCallsNobody) {
   EXPECT_EQ(system_calls, 0) << "the last one was number " << last_system_call;
 }
 
+// EN-04, PL-72: movers on routes that begin, are held, and are changed on the way.
+TEST(QuietCycle, AllocatesNothingForRoutes) {
+  LoadResult loaded =
+      LoadMachine("name: plane\naxes: []\nmovers: [{name: a}, {name: b, initial: {x: 120}}]\n", "plane.yaml");
+  ASSERT_TRUE(loaded.machine.has_value());
+  const Machine machine = *loaded.machine;
+  Engine engine(machine, {.publish = true, .journal = true});
+  const auto along = [](int first, int places, int from, bool behind) {
+    mover::SetRoute route{.first = static_cast<std::uint64_t>(first), .visits = {}};
+    for (int k = 0; k < places; ++k) {
+      mover::Visit visit{.x = 120.0 * (from + k)};
+      if (behind && k > 0) visit.after = 2, visit.after_visit = static_cast<std::uint64_t>(first + k - 1);
+      if (k == 0) visit.departure_time = 0;
+      if (k == places - 1) visit.arrival_time = 1;
+      route.visits.Add(visit);
+    }
+    return mover::Command(route);
+  };
+  const auto to = [](std::uint32_t target, const CommandBody& body) { return Command{.target = target, .body = body}; };
+  const auto all = [](const MachineCommand& body) { return Command{.body = body}; };
+  const std::vector<std::pair<int, Command>> commands = {
+      {0, to(1, mover::Command(mover::Enable{}))},
+      {0, to(2, mover::Command(mover::Enable{}))},
+      {20, to(1, along(0, 6, 0, true))},
+      {20, to(2, along(0, 7, 1, false))},
+      {30, all(mover::StartRoutes{.velocity = 600})},
+      {200, all(mover::HoldRoutes{})},
+      {700, to(1, mover::Command(mover::Halt{}))},
+      {750, to(1, mover::Command(mover::ContinueRoute{}))},
+      {800, all(mover::HoldRoutes{.hold = false})},
+      {801, all(mover::StartRoutes{})},
+  };
+  allocations = locks = 0;
+  std::uint64_t hash = 0;
+  watching = true;
+  for (int cycle = 0; cycle < 4000; ++cycle) {
+    for (const auto& [when, command] : commands) {
+      if (when == cycle) engine.Submit(command);
+    }
+    engine.RunCycle();
+    if (cycle % 100 == 0) hash ^= engine.StateHash();
+  }
+  watching = false;
+  EXPECT_EQ(allocations, 0);
+  EXPECT_EQ(locks, 0);
+  EXPECT_NE(hash, 0u);
+  EXPECT_EQ(engine.mover_outputs(0).route_visit, 5u);
+  EXPECT_EQ(engine.mover_outputs(1).route_visit, 6u);
+}
+
 // The watchers themselves see what they are there for.
 TEST(QuietCycle, WatchersSee) {
   std::thread thread([] {
