@@ -279,6 +279,24 @@ def test_movers_that_cannot_go_when_their_routes_come(on_way: bool) -> None:
     assert "b" in order.arrived_s
 
 
+def test_orders_that_the_engine_refuses_again_and_again() -> None:
+    """PL-72: a route of another client is behind a mover that has an order, and so that one may not change over."""
+    engine = engine_of({"a": (0, 0), "u": (5, 1), "b": (0, 5)}, square(3))
+    first = engine.route({"a": at((3, 0)), "b": at((5, 5))}, velocity=300)
+    engine.run(0.3)
+    visits = [{"x": x, "y": y} for x, y in map(at, [(5, 1), (5, 0), (4, 0), (3, 0)])]
+    visits[-1] |= {"after": 1, "after_visit": 2}
+    engine.mover("u").set_route(first=0, visits=visits)
+    engine.command("machine", "start_routes", {"movers": [2]}).wait()
+    second = engine.route({"a": at((3, 3))})
+    engine.run(2)
+    assert second.failed["a"].endswith("the mover is on its way, and has no new route: mover u")
+    assert first.done
+    assert engine._routers[0].plans < 10
+    engine.mover("u").halt().wait()
+    engine.route({"b": at((5, 4))}).wait()
+
+
 def test_routes_of_others_end_the_orders() -> None:
     """PL-72: a mover that another client gives a route goes there, and its order has failed."""
     engine = engine_of({"a": (0, 0), "b": (0, 3)}, square(3))
