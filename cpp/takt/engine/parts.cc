@@ -69,7 +69,7 @@ constexpr double kStride = 10;  // mm
 
 // A place on a track, where its part is to be.
 planar::Place PlaceOn(const World& w, std::uint32_t track, double s) {
-  return planar::At(*w.tracks.ways[track], s).place + w.tracks.goal(track).origin;
+  return planar::PlaceAt(*w.tracks.ways[track], s) + w.tracks.goal(track).origin;
 }
 
 // Whether a mover that stands on one track comes too near to another that goes between two places on the other track.
@@ -239,7 +239,8 @@ Hindrance HindranceOf(World& w, std::uint32_t part, std::uint32_t position) {
     const auto goes_along = [&](std::uint32_t k, bool) { return w.mover_states[k].part == part; };
     planar::Course brought;
     for (const planar::Area& area : cover.all()) planar::Add(Shifted(area, to.origin - from.origin), brought);
-    const std::uint32_t near = w.grounds.guard.Find(static_cast<std::uint32_t>(i), to.system, brought, goes_along);
+    const std::uint32_t near =
+        w.grounds.guard.Find(static_cast<std::uint32_t>(i), to.system, brought, goes_along, planar::Guard::None);
     if (near != planar::kNobody) return By(ErrorId::kPartMover, ObjectKind::kMover, near);
     for (const planar::Area& area : cover.all()) {
       const planar::Area there = Shifted(area, to.origin - from.origin);

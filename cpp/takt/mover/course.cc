@@ -189,7 +189,7 @@ ObjectInfo InTheTurn(const Context& c, const State& s, const CoordinateMove& tur
 ObjectInfo InTheCourse(const Context& c, const planar::Spot& at, double turned) noexcept {
   Course stands;
   planar::Add(AreaAt(c.params, at.origin, turned), stands);
-  return OneInTheWay(GuardOf(c).Find(c.index, at.system, stands, [](std::uint32_t, bool) { return false; }));
+  return OneInTheWay(GuardOf(c).Find(c.index, at.system, stands));
 }
 
 ObjectInfo TakeCourseOff(const Context& now, const State& s, const SetPoint& at) noexcept {

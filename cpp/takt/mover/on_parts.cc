@@ -202,7 +202,7 @@ ErrorId DiagnoseCover(const planar::Parts& parts, std::uint32_t system, const pl
   const double length = to - from, curvature = 1.01 * planar::PeakCurvature(*road.track, from, to);
   const double stray = curvature * length * length / 8;
   Area area = kind;
-  area.places = {planar::At(*road.track, from).place + road.origin, planar::At(*road.track, to).place + road.origin};
+  area.places = {planar::PlaceAt(*road.track, from) + road.origin, planar::PlaceAt(*road.track, to) + road.origin};
   area.count = length > 0 ? 2 : 1;
   area.margin = stray > kFlush ? stray : 0;
   const ErrorId why = DiagnoseCover(parts, system, area);

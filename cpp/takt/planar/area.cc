@@ -15,6 +15,7 @@ namespace {
 // All that the mover covers while it turns in its place is a circle through its corners.
 bool CoversCircle(const Area& area) {
   if (area.mover.any_angle) return true;
+  if (!(area.most_c > area.least_c)) return false;
   // Its corners are so far apart, seen from its centre: each has to come to where the next one began.
   const double corner = 2 * maths::Atan2(area.mover.height, area.mover.width);
   return (area.most_c - area.least_c) * kDegree >= std::max(corner, std::numbers::pi - corner);
@@ -203,8 +204,17 @@ bool Near(const Area& a, const Hull& hull_a, const Area& b, const Hull& hull_b, 
 }  // namespace
 
 Extent ExtentOf(const Area& area) noexcept {
-  const Hull hull = HullOf(area);
-  const double x = Reach(hull, Flat::UnitX()) + hull.radius, y = Reach(hull, Flat::UnitY()) + hull.radius;
+  double x = 0, y = 0;
+  if (area.most_c > area.least_c || area.mover.any_angle) {
+    const Hull hull = HullOf(area);
+    x = Reach(hull, Flat::UnitX()) + hull.radius;
+    y = Reach(hull, Flat::UnitY()) + hull.radius;
+  } else {  // as well, in less time
+    const Flat heading = Heading((area.least_c + area.most_c) / 2 * kDegree);
+    const Flat along = area.mover.width / 2 * heading, across = area.mover.height / 2 * Left(heading);
+    x = std::abs(along.x()) + std::abs(across.x()) + area.margin;
+    y = std::abs(along.y()) + std::abs(across.y()) + area.margin;
+  }
   Extent out{area.places[0], area.places[0]};
   for (std::size_t i = 1; i < area.count; ++i) {
     const Place& p = area.places[i];

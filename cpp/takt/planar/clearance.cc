@@ -165,7 +165,7 @@ double ClearGapAlong(const Track& track, const Footprint& mover, double turned, 
                      double least) noexcept {
   constexpr double kStride = 10, kStep = 1, kFine = 1e-3;  // mm
   const double reach = 2 * Radius(mover), most = 3 * reach;
-  const auto place = [&](double s) { return TrackPoint{.place = At(track, s).place, .direction = turned}; };
+  const auto place = [&](double s) { return TrackPoint{.place = PlaceAt(track, s), .direction = turned}; };
   const auto end = [&](double s) { return track.closed ? s : std::min(s, track.length); };
   for (double s = from; s <= to; s += kStride) {
     const double wanted = std::max(least, kStep);

@@ -98,20 +98,16 @@ double MostSpeed(const Braking& b) {
 }  // namespace
 
 void Add(const Area& area, Course& out) noexcept {
-  if (out.count == 0) out.extent = {area.places[0], area.places[0]};
   if (out.count < kCourseAreas) {
     out.areas[out.count++] = area;
   } else {
     out.areas[kCourseAreas - 1] = Around(out.areas[kCourseAreas - 1], area);
   }
-  const Area& last = out.areas[out.count - 1];
-  const double radius = RadiusOf(last);
-  Extent& extent = out.extent;
-  for (std::size_t i = 0; i < last.count; ++i) {
-    const Place& p = last.places[i];
-    extent.lower = {std::min(extent.lower.x, p.x - radius), std::min(extent.lower.y, p.y - radius)};
-    extent.upper = {std::max(extent.upper.x, p.x + radius), std::max(extent.upper.y, p.y + radius)};
-  }
+  const Extent& last = out.extents[out.count - 1] = ExtentOf(out.areas[out.count - 1]);
+  if (out.count == 1) out.extent = last;
+  Extent& all = out.extent;
+  all.lower = {std::min(all.lower.x, last.lower.x), std::min(all.lower.y, last.lower.y)};
+  all.upper = {std::max(all.upper.x, last.upper.x), std::max(all.upper.y, last.upper.y)};
 }
 
 void AddStretch(const Track& track, const Place& origin, double from, double to, const Area& kind,

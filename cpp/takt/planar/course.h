@@ -20,8 +20,9 @@ inline constexpr double kCourseSlack = 0.25;  // mm
 
 struct Course {
   std::array<Area, kCourseAreas> areas{};
+  std::array<Extent, kCourseAreas> extents{};  // of the areas
   std::uint32_t count = 0;
-  Extent extent{};  // of all areas, for any angle of the mover
+  Extent extent{};  // of all areas
 
   std::span<const Area> all() const noexcept { return {areas.data(), count}; }
 };
@@ -39,7 +40,7 @@ void EachArea(const Track& track, const Place& origin, double from, double to, c
   std::array<Place, 7> middles{};
   std::size_t count = 0;
   const auto place = [&](double s) {
-    const Place p = At(track, s).place;
+    const Place p = PlaceAt(track, s);
     middles[count++] = {p.x + origin.x, p.y + origin.y};
   };
   const auto show = [&] {
@@ -94,11 +95,10 @@ void EachStretch(const Network& network, const Route& route, double from, double
     return;
   }
   double begin = 0;
-  for (std::uint32_t k = 0; k < route.count; ++k) {
+  for (std::uint32_t k = 0; k < route.count && (k == 0 || to > begin); ++k) {
     const double length = network[route.tracks[k]].length;
     const bool is_last = k + 1 == route.count;
-    const bool reaches = (k == 0 || to > begin) && (is_last || from < begin + length);
-    if (reaches) {
+    if (is_last || from < begin + length) {
       look(route.tracks[k], std::clamp(from - begin, 0.0, length), std::clamp(to - begin, 0.0, length));
     }
     begin += length;

@@ -53,7 +53,7 @@ std::optional<Crossing> Meet(const Track& track, const CellPart& a, const CellPa
   // The longer one in halves, which turn by no more than its curvature allows.
   const CellPart& whole = first ? a : b;
   const double s = (whole.from + whole.to) / 2;
-  const Flat middle = ToFlat(At(track, s).place);
+  const Flat middle = ToFlat(PlaceAt(track, s));
   const double turn = std::min(whole.turn, 1.01 * PeakCurvature(track, whole.from, whole.to) * whole.length() / 2);
   const double off = OffOf(whole.length() / 2, turn);
   const CellPart halves[] = {{whole.from, s, whole.begin, middle, off, turn},

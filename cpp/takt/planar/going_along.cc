@@ -122,11 +122,13 @@ bool KeepsToLimits(const Network& network, const Rider& r, const KinematicState&
       if (back > caps.of[k].speed) return false;
     }
   }
-  const Caps caps = CapsAhead(network, StartOf(r, next, direction), until, most);
+  const Start start = StartOf(r, next, direction);
   const double fastest = std::max(direction * next.velocity, direction * Peak(next, jerk));
+  constexpr double kMore = 1 + 1e-8;
+  if (fastest <= most.limits.velocity * kMore && IsStraight(network, start, until)) return true;
+  const Caps caps = CapsAhead(network, start, until, most);
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < caps.count; ++k) least = std::min(least, caps.of[k].speed);
-  constexpr double kMore = 1 + 1e-8;
   if (fastest <= least * kMore) return true;
   // The speed rises until the acceleration is taken away, and then falls.
   const double peak = std::max(0.0, direction * next.acceleration / jerk);
@@ -149,7 +151,9 @@ bool KeepsToVectors(const Network& network, const Rider& r, const KinematicState
   const double lowest = std::min(r.at.position, braking.lowest), highest = std::max(r.at.position, braking.highest);
   KinematicState from = r.at;
   from.position = direction > 0 ? lowest : highest;
-  const Caps caps = CapsAhead(network, StartOf(r, from, direction), highest - lowest, most);
+  const Start start = StartOf(r, from, direction);
+  if (IsStraight(network, start, highest - lowest)) return true;
+  const Caps caps = CapsAhead(network, start, highest - lowest, most);
   Bend tightest;
   for (const Cap& cap : caps.all()) {
     tightest = {0, std::max(tightest.curvature, cap.curvature), std::max(tightest.rate, cap.rate)};

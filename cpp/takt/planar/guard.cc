@@ -1,15 +1,18 @@
 #include "takt/planar/guard.h"
 
+#include <algorithm>
 #include <bit>
-#include <cmath>
 
 namespace takt::planar {
 namespace {
 
 constexpr double kSquare = 320;  // mm
 
+// std::floor() is a call where the processor is any x86-64.
 std::int32_t SquareOf(double at) noexcept {
-  return static_cast<std::int32_t>(std::floor(at / kSquare));
+  const double square = at / kSquare;
+  const auto down = static_cast<std::int32_t>(square);
+  return square < down ? down - 1 : down;
 }
 
 }  // namespace
@@ -36,9 +39,10 @@ Guard::Squares Guard::SquaresOf(const Extent& extent) noexcept {
 }
 
 bool Guard::Overlap(const Course& a, const Course& b) noexcept {
-  for (const Area& one : a.all()) {
-    for (const Area& other : b.all()) {
-      if (Near(one, other, -kSame)) return true;
+  for (std::uint32_t i = 0; i < a.count; ++i) {
+    if (Apart(a.extents[i], b.extent, -kSame)) continue;
+    for (std::uint32_t k = 0; k < b.count; ++k) {
+      if (!Apart(a.extents[i], b.extents[k], -kSame) && Near(a.areas[i], b.areas[k], -kSame)) return true;
     }
   }
   return false;
@@ -58,7 +62,8 @@ void Guard::Set(std::uint32_t entry, std::uint32_t system, const Course& course)
                      one.to_x == to.to_x && one.to_y == to.to_y;
   one.course.count = course.count;
   one.course.extent = course.extent;
-  for (std::uint32_t i = 0; i < course.count; ++i) one.course.areas[i] = course.areas[i];
+  std::copy_n(course.areas.begin(), course.count, one.course.areas.begin());
+  std::copy_n(course.extents.begin(), course.count, one.course.extents.begin());
   if (stays) return;
   if (one.present) Unlink(entry);
   one.present = true;

@@ -47,9 +47,11 @@ class Guard {
   void ClearThere(std::uint32_t mover) noexcept;
 
   // The mover with the least number whose course, or area where it is brought, this one would overlap; kNobody: none.
-  // `passes`: of another mover, and whether it is about where that is brought: it does not count.
-  template <typename Passes>
-  std::uint32_t Find(std::uint32_t mover, std::uint32_t system, const Course& course, const Passes& passes) noexcept {
+  // Asked of another mover, and whether it is about where that is brought: `skips` before its course is looked at,
+  // `passes` if the courses overlap. Where one returns true, it does not count.
+  template <typename Skips, typename Passes>
+  std::uint32_t Find(std::uint32_t mover, std::uint32_t system, const Course& course, const Skips& skips,
+                     const Passes& passes) noexcept {
     std::uint32_t found = kNobody;
     EachNear(system, course.extent, [&](std::uint32_t entry) {
       const bool there = entry >= count_;
@@ -57,12 +59,17 @@ class Guard {
       if (other >= found || other == mover) return;
       const std::uint32_t body = figures_[other].body;
       if (body != 0 && body == figures_[mover].body) return;
+      if (skips(other, there)) return;
       if (Overlap(course, entries_[entry].course) && !passes(other, there)) found = other;
     });
     return found;
   }
+  static bool None(std::uint32_t /*other*/, bool /*there*/) noexcept { return false; }
+  std::uint32_t Find(std::uint32_t mover, std::uint32_t system, const Course& course) noexcept {
+    return Find(mover, system, course, None, None);
+  }
   std::uint32_t Find(std::uint32_t mover, const Course& course) noexcept {
-    return Find(mover, figures_[mover].system, course, [](std::uint32_t, bool) { return false; });
+    return Find(mover, figures_[mover].system, course);
   }
 
  private:

@@ -54,7 +54,7 @@ struct Strip {
     count = static_cast<std::size_t>(range / stride) + 2;
     for (std::size_t i = 0; i < count; ++i) {
       const double s = std::min(stride * static_cast<double>(i), range);
-      places[i] = At(*road.track, at_end ? road.length - s : s).place;
+      places[i] = PlaceAt(*road.track, at_end ? road.length - s : s);
       places[i].x += road.origin.x;
       places[i].y += road.origin.y;
     }
@@ -172,6 +172,21 @@ double LeadAtEnd(const Network& network, std::uint32_t ahead, std::uint32_t behi
 
 bool Route::Contains(std::uint32_t track) const noexcept {
   return std::ranges::find(all(), track) != all().end();
+}
+
+double LeaveBehind(const Network& network, double place, Route& route) noexcept {
+  const Road& here = network[route.first()];
+  if (here.closed) return here.length * std::floor(place / here.length);
+  double less = 0;
+  std::uint32_t gone = 0;
+  while (gone + 1 < route.count && place - less > network[route.tracks[gone]].length) {
+    less += network[route.tracks[gone++]].length;
+  }
+  if (gone == 0) return 0;
+  std::copy(route.tracks.begin() + gone, route.tracks.begin() + route.count, route.tracks.begin());
+  route.count -= gone;
+  std::fill(route.tracks.begin() + route.count, route.tracks.begin() + route.count + gone, 0u);
+  return less;
 }
 
 bool FindRoute(const Network& network, std::uint32_t from, std::uint32_t to, RouteSearch& search, Route& out) noexcept {

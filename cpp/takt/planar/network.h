@@ -87,6 +87,10 @@ struct Route {
   bool operator==(const Route&) const = default;
 };
 
+// Leaves out the tracks of a route that end before a place on it, mm from the start of the first one; of a closed track
+// whole turns. Returns how much less the place is then.
+double LeaveBehind(const Network& network, double place, Route& route) noexcept;
+
 // Memory of a search, for as many tracks as the network has.
 struct RouteSearch {
   std::vector<double> way;

@@ -183,9 +183,14 @@ bool RightOfWay::MayTake(std::uint32_t i, const KinematicState& next, const Brak
     return false;
   }
   if (forward && !closed) {
-    double end = 0;
-    for (const std::uint32_t track : r.route.all()) end += network_[track].length;
-    if (braking.highest > std::max(end, now.braking.highest) + kTolerance) return false;
+    double end = now.braking.highest;
+    const auto beyond = [&] { return braking.highest > end + kTolerance; };
+    double length = 0;
+    for (std::uint32_t k = 0; k < r.route.count && beyond(); ++k) {
+      length += network_[r.route.tracks[k]].length;
+      end = std::max(end, length);
+    }
+    if (beyond()) return false;
   }
   if (forward) {
     double apart = now.leader_offset;

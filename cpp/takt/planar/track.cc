@@ -7,6 +7,7 @@
 
 #include "takt/core/describe.h"
 #include "takt/path/place.h"
+#include "takt/path/vectors.h"
 #include "takt/planar/flat.h"
 
 namespace takt::planar {
@@ -29,11 +30,29 @@ TrackPoint OnGiven(const Piece& piece, double s) {
   return {place, piece.direction + curvature * s, curvature, 0};
 }
 
+struct OnPiece {
+  const Piece& piece;
+  double s;  // mm from its beginning
+};
+
+OnPiece PieceAt(const Track& track, double s) {
+  s = Within(track, s);
+  const auto end = std::lower_bound(track.ends.begin(), track.ends.end() - 1, s);
+  const Piece& piece = track.pieces[static_cast<std::size_t>(end - track.ends.begin())];
+  return {piece, s - piece.start};
+}
+
 }  // namespace
 
 TrackPoint At(const Piece& piece, double s) noexcept {
   s = std::clamp(s, 0.0, piece.segment.length);
   return piece.segment.shape == path::Shape::kQuintic ? OnQuintic(piece, s) : OnGiven(piece, s);
+}
+
+Place PlaceAt(const Piece& piece, double s) noexcept {
+  s = std::clamp(s, 0.0, piece.segment.length);
+  if (piece.segment.shape != path::Shape::kQuintic) return ToPlace(path::PlaceAt(piece.segment, s).value.head<2>());
+  return ToPlace(path::Place(piece.segment.place, path::ParameterAt(piece.segment, s)).head<2>());
 }
 
 double Within(const Track& track, double s) noexcept {
@@ -45,10 +64,13 @@ double Within(const Track& track, double s) noexcept {
 }
 
 TrackPoint At(const Track& track, double s) noexcept {
-  s = Within(track, s);
-  const auto end = std::lower_bound(track.ends.begin(), track.ends.end() - 1, s);
-  const Piece& piece = track.pieces[static_cast<std::size_t>(end - track.ends.begin())];
-  return At(piece, s - piece.start);
+  const OnPiece at = PieceAt(track, s);
+  return At(at.piece, at.s);
+}
+
+Place PlaceAt(const Track& track, double s) noexcept {
+  const OnPiece at = PieceAt(track, s);
+  return PlaceAt(at.piece, at.s);
 }
 
 double SpeedBound(const TrackPoint& point, double lateral) noexcept {

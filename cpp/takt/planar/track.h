@@ -47,6 +47,7 @@ struct Piece {
 };
 // 0 <= s <= length of the segment.
 TrackPoint At(const Piece& piece, double s) noexcept;
+Place PlaceAt(const Piece& piece, double s) noexcept;  // that of At
 
 // A stretch of a track whose curvature, and its rate, vary little. Both are 0 where the track is straight.
 struct Bend {
@@ -74,6 +75,7 @@ Making MakeTrack(const Layout& layout, Track& out);
 
 // Where one is after s. A closed loop goes round, an open track ends at its ends. The track must have a length.
 TrackPoint At(const Track& track, double s) noexcept;
+Place PlaceAt(const Track& track, double s) noexcept;
 
 // 0 <= s <= length: round a closed loop, to the ends of an open track.
 double Within(const Track& track, double s) noexcept;

@@ -27,10 +27,9 @@ constexpr double kInStepSpeed = 1e-3;
 // mm: further than anything is planned on a loop.
 constexpr double kFarAhead = 1e5;
 
-// Returns whether two movers on tracks keep apart while both brake, though their courses overlap: one behind the other
-// along the track, or by the time at which each comes past.
-bool KeepApart(const Scene& scene, const Network& network, std::uint32_t i, const BrakingMover& own, std::uint32_t k,
-               const BrakingMover& its, double period_s) {
+// Returns whether two movers on tracks keep apart while both brake because one is behind the other along the track.
+bool KeepInOrder(const Scene& scene, const Network& network, std::uint32_t i, const BrakingMover& own, std::uint32_t k,
+                 const BrakingMover& its) {
   const auto in_order = [&](const BrakingMover& behind, const BrakingMover& ahead, double apart) {
     return ApartByOrder(network, behind.rider, behind.braking, behind.kind, ahead.braking, ahead.kind, apart);
   };
@@ -39,12 +38,8 @@ bool KeepApart(const Scene& scene, const Network& network, std::uint32_t i, cons
     const double apart = now.leader_offset;
     return of.rider.direction > 0 ? in_order(of, ahead, apart) : in_order(ahead, of, -apart);
   };
-  if (scene.now[i].leader == k) {
-    if (follows(scene.now[i], own, its)) return true;
-  } else if (scene.now[k].leader == i && follows(scene.now[k], its, own)) {
-    return true;
-  }
-  return ApartInTime(network, own, its, period_s);
+  if (scene.now[i].leader == k) return follows(scene.now[i], own, its);
+  return scene.now[k].leader == i && follows(scene.now[k], its, own);
 }
 
 }  // namespace
@@ -269,19 +264,22 @@ class Traffic::Step_ {
   }
   bool IsInOrder(std::uint32_t i, std::uint32_t k) const { return s_.now[i].leader == k || s_.now[k].leader == i; }
 
-  bool KeepsAway(std::uint32_t i, const Braking& braking, std::uint32_t k) const {
-    if (!riders_[k].on || !guard_->figure(k).on_track) return false;
-    return KeepApart(s_, network_, i, {riders_[i], braking, KindOf(i)}, k, {riders_[k], s_.now[k].braking, KindOf(k)},
-                     period());
-  }
+  bool IsOnTrack(std::uint32_t k) const { return riders_[k].on && guard_->figure(k).on_track; }
 
   // Whether the guard lets it take this step; then its course is that.
   bool PassesGuard(std::uint32_t i, const KinematicState& next, const Braking& braking) {
     const Course course = CourseOf(i, std::min({riders_[i].at.position, next.position, braking.lowest}),
                                    std::max({riders_[i].at.position, next.position, braking.highest}));
-    const std::uint32_t across = guard_->Find(i, guard_->figure(i).system, course, [&](std::uint32_t k, bool there) {
-      return !there && KeepsAway(i, braking, k);
-    });
+    const BrakingMover own{riders_[i], braking, KindOf(i)};
+    const auto other = [&](std::uint32_t k) { return BrakingMover{riders_[k], s_.now[k].braking, KindOf(k)}; };
+    const std::uint32_t across = guard_->Find(
+        i, guard_->figure(i).system, course,
+        [&](std::uint32_t k, bool there) {
+          return !there && IsInOrder(i, k) && IsOnTrack(k) && KeepInOrder(s_, network_, i, own, k, other(k));
+        },
+        [&](std::uint32_t k, bool there) {
+          return !there && IsOnTrack(k) && ApartInTime(network_, own, other(k), period());
+        });
     s_.now[i].across = across;
     if (across == kNobody) {
       guard_->Put(i, course);
@@ -297,9 +295,9 @@ class Traffic::Step_ {
     double ahead = WayToRest(r.pace.limits.velocity, r.pace.brakes());
     if (r.aim == Aim::kTarget) ahead = std::min(ahead, std::abs(EndOfWay(network_, r) - r.at.position));
     const double there = r.at.position + r.direction * ahead;
-    return guard_->Find(i, guard_->figure(i).system,
-                        CourseOf(i, std::min(r.at.position, there), std::max(r.at.position, there)),
-                        [&](std::uint32_t k, bool brought) { return !brought && IsInOrder(i, k); });
+    return guard_->Find(
+        i, guard_->figure(i).system, CourseOf(i, std::min(r.at.position, there), std::max(r.at.position, there)),
+        [&](std::uint32_t k, bool brought) { return !brought && IsInOrder(i, k); }, Guard::None);
   }
 
   // It brakes for a mover across its way, or waits for it.
@@ -541,15 +539,16 @@ std::uint32_t Traffic::FindAcross(const Cycle& cycle, const Network& network, st
   const Braking braking = Brake(own.at, BrakesOf(own));
   RightOfWay all(scene_, network, riders, cycle.period_s);
   bool begun = false;
-  return guard.Find(mover, guard.figure(mover).system, course, [&](std::uint32_t k, bool there) {
+  const auto passes = [&](std::uint32_t k, bool there) {
     const Rider& other = riders[k];
     if (there || !other.on || !guard.figure(k).on_track || (Rests(own.at) && Rests(other.at))) return false;
     if (!begun) all.Begin();
     begun = true;
-    const Braking its = Brake(other.at, BrakesOf(other));
-    return KeepApart(scene_, network, mover, {own, braking, kind}, k, {other, its, guard.figure(k).kind},
-                     cycle.period_s);
-  });
+    const Braking braking_k = Brake(other.at, BrakesOf(other));
+    const BrakingMover it{own, braking, kind}, its{other, braking_k, guard.figure(k).kind};
+    return KeepInOrder(scene_, network, mover, it, k, its) || ApartInTime(network, it, its, cycle.period_s);
+  };
+  return guard.Find(mover, guard.figure(mover).system, course, Guard::None, passes);
 }
 
 std::span<const std::uint32_t> Traffic::On(std::uint32_t track) const noexcept {

@@ -80,25 +80,39 @@ std::size_t BendAt(const Road& road, double s, std::int8_t direction) {
   return i;
 }
 
-// Along one track from s on; `gone`: the way to there. Returns the way to its end.
-double AlongTrack(const Road& road, double s, double gone, double until, const Pace& pace, Caps& caps) {
+// Calls look(way, bend) for the bends along one track from s on; `gone`: the way to there. Returns the way to its end.
+template <typename Look>
+double AlongTrack(const Road& road, double s, double gone, double until, const Look& look) {
   const std::vector<Bend>& bends = road.track->bends;
   for (std::size_t i = BendAt(road, s, 1); i < bends.size(); ++i) {
     const double way = gone + std::max(0.0, bends[i].from - s);
     if (way > until) return until;
-    caps.Add(way, SpeedIn(bends[i], pace), bends[i]);
+    look(way, bends[i]);
   }
   return gone + road.length - s;
 }
 
-double BackAlongTrack(const Road& road, double s, double gone, double until, const Pace& pace, Caps& caps) {
+template <typename Look>
+double BackAlongTrack(const Road& road, double s, double gone, double until, const Look& look) {
   double way = gone;
   for (std::size_t i = BendAt(road, s, -1) + 1; i-- > 0;) {
     if (way > until) return until;
-    caps.Add(way, SpeedIn(road.track->bends[i], pace), road.track->bends[i]);
+    look(way, road.track->bends[i]);
     way = gone + s - road.track->bends[i].from;
   }
   return gone + s;
+}
+
+// The same from a start on, to the end of its route; of a closed track to its end. Returns the way to there.
+template <typename Look>
+double Along(const Network& network, const Start& start, double until, const Look& look) {
+  const Road& road = network[start.route->first()];
+  const double s = std::clamp(start.s, 0.0, road.length);
+  double gone = start.direction > 0 ? AlongTrack(road, s, 0, until, look) : BackAlongTrack(road, s, 0, until, look);
+  for (std::uint32_t i = 1; i < start.route->count && gone < until; ++i) {
+    gone = AlongTrack(network[start.route->tracks[i]], 0, gone, until, look);
+  }
+  return gone;
 }
 
 }  // namespace
@@ -128,21 +142,24 @@ void Caps::Add(double way, double speed, const Bend& bend) noexcept {
 
 Caps CapsAhead(const Network& network, const Start& start, double until, const Pace& pace) noexcept {
   Caps caps;
-  const Road& road = network[start.route->first()];
-  const double s = std::clamp(start.s, 0.0, road.length);
-  double gone =
-      start.direction > 0 ? AlongTrack(road, s, 0, until, pace, caps) : BackAlongTrack(road, s, 0, until, pace, caps);
-  for (std::uint32_t i = 1; i < start.route->count && gone < until; ++i) {
-    gone = AlongTrack(network[start.route->tracks[i]], 0, gone, until, pace, caps);
-  }
+  const auto add = [&](double way, const Bend& bend) { caps.Add(way, SpeedIn(bend, pace), bend); };
+  double gone = Along(network, start, until, add);
   // A whole turn that adds no cap is like all turns behind it: long ways round a circle have few caps.
+  const Road& road = network[start.route->first()];
   std::size_t before = 0;
   while (road.closed && gone < until && !caps.cut && caps.count != before) {
     before = caps.count;
-    gone = start.direction > 0 ? AlongTrack(road, 0, gone, until, pace, caps)
-                               : BackAlongTrack(road, road.length, gone, until, pace, caps);
+    gone = start.direction > 0 ? AlongTrack(road, 0, gone, until, add)
+                               : BackAlongTrack(road, road.length, gone, until, add);
   }
   return caps;
+}
+
+bool IsStraight(const Network& network, const Start& start, double until) noexcept {
+  if (network[start.route->first()].closed) return false;
+  bool straight = true;
+  Along(network, start, until, [&](double, const Bend& bend) { straight = straight && !(bend.curvature > 0); });
+  return straight;
 }
 
 namespace {
@@ -320,6 +337,86 @@ Planned PlanWay(trajectory::Planner& planner, const Network& network, const Star
   ends = false;
   if (planner.Stop(from, most.limits, out).failed()) out = trajectory::Profile(KinematicState{});
   return Planned::kHard;
+}
+
+namespace {
+
+// What jerk adds to the time in which a speed changes.
+double AddedByJerk(double change, double acceleration, double jerk) {
+  const double ramp = acceleration / jerk;
+  return change > acceleration * ramp ? ramp : 2 * std::sqrt(change / jerk) - change / acceleration;
+}
+
+// Times of speeds that rise and fall, one after the other, with what jerk adds where they turn.
+class Rises {
+ public:
+  Rises(const trajectory::Limits& limits, double speed) : limits_(limits), turned_at_(speed), speed_(speed) {}
+
+  void To(double speed) {
+    if ((speed - speed_) * (speed_ - turned_at_) < 0) Turn();
+    time_ += std::abs(speed - speed_) / (speed > speed_ ? limits_.acceleration : limits_.deceleration);
+    speed_ = speed;
+  }
+  double End() {
+    Turn();
+    return time_;
+  }
+
+ private:
+  void Turn() {
+    const double change = std::abs(speed_ - turned_at_);
+    const double acceleration = speed_ > turned_at_ ? limits_.acceleration : limits_.deceleration;
+    const double share = change / (2 * std::max({speed_, turned_at_, 1e-9}));  // that the way grows less
+    time_ += AddedByJerk(change, acceleration, limits_.jerk) * share;
+    turned_at_ = speed_;
+  }
+
+  const trajectory::Limits& limits_;
+  double turned_at_, speed_, time_ = 0;
+};
+
+}  // namespace
+
+double TimeOfWay(const Network& network, const Start& start, double way, const Pace& pace) noexcept {
+  const double up = 2 * pace.limits.acceleration, down = 2 * pace.limits.deceleration;
+  Rises rises(pace.limits, start.speed);
+  Route route = *start.route;
+  Start from = start;
+  from.route = &route;
+  constexpr int kMostParts = 16;
+  double cruise = 0, square = start.speed * start.speed, left_over = way;
+  for (int part = 0; part < kMostParts && left_over > 0; ++part) {
+    from.s -= LeaveBehind(network, from.s, route);
+    const Caps caps = CapsAhead(network, from, left_over, pace);
+    const bool ends = !caps.cut;
+    // Of more caps than there is room for: up to the last one.
+    const std::size_t count = ends ? caps.count : caps.count - 1;
+    const double known = ends ? left_over : caps.of[count].way;
+    const auto length = [&](std::size_t k) { return (k + 1 < count ? caps.of[k + 1].way : known) - caps.of[k].way; };
+    const auto cap = [&](std::size_t k) { return caps.of[k].speed * caps.of[k].speed; };
+    std::array<double, kCaps + 1> squares;  // of the speeds at the borders
+    squares[count] = ends ? 0 : std::min(cap(count - 1), cap(count));
+    for (std::size_t k = count; k-- > 1;) {
+      squares[k] = std::min({cap(k - 1), cap(k), squares[k + 1] + down * length(k)});
+    }
+    squares[0] = square;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double before = squares[k];
+      const double behind = squares[k + 1] = std::min(squares[k + 1], before + up * length(k));
+      const double peak = std::clamp((up * (behind + down * length(k)) + down * before) / (up + down),
+                                     std::max(before, behind), std::max({cap(k), before, behind}));
+      const double level = length(k) - (peak - before) / up - (peak - behind) / down;
+      if (level > 0 && peak > 0) cruise += level / std::sqrt(peak);
+      rises.To(std::sqrt(peak));
+      rises.To(std::sqrt(behind));
+    }
+    square = squares[count];
+    if (!(known > 0)) break;
+    left_over -= known;
+    from.s += from.direction * known;
+  }
+  const double time = cruise + rises.End();
+  return way > left_over ? time * way / (way - left_over) : time;
 }
 
 }  // namespace takt::planar

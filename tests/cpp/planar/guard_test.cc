@@ -118,7 +118,7 @@ TEST(GuardProperty, FindsTheFirstInTheWay) {
           const bool there = known[k].there && known[k].system_there == system && overlap(asked, known[k].course_there);
           if (here || there) expected = k;
         }
-        EXPECT_EQ(guard.Find(mover, system, asked, [](std::uint32_t, bool) { return false; }), expected) << i;
+        EXPECT_EQ(guard.Find(mover, system, asked), expected) << i;
         found += expected != kNobody ? 1 : 0;
       }
     }

@@ -29,13 +29,15 @@ TEST(Traffic, AMoverAloneTakesNoLongerThanThePlannerNeeds) {  // PL-12, PL-15
     const double from = random.Between(0, length), to = random.Between(0, length);
     streets.Put(0, 0, from, pace);
     ASSERT_TRUE(streets.Send(0, 0, to));
+    trajectory::Planner planner;
+    const double expected = TimeAlone(planner, streets.network(), streets[0]);
     Watcher watcher(streets);
     streets.watch = [&] { watcher.Look(); };
     ASSERT_TRUE(streets.Run(30)) << trial;
     EXPECT_DOUBLE_EQ(streets[0].at.position, to);
-    trajectory::Planner planner;
     trajectory::Profile optimum;
     ASSERT_TRUE(planner.ToPosition({from, 0, 0}, to, 0, pace.limits, optimum).ok());
+    EXPECT_NEAR(expected, optimum.duration(), 1e-9) << trial;
     EXPECT_LE(streets.now(), optimum.duration() + 1.001 * testing::kPeriod) << trial;
     EXPECT_LE(watcher.speed, 1 + 1e-9);
     EXPECT_LE(watcher.acceleration, 1 + 1e-9);
@@ -231,6 +233,47 @@ TEST(Traffic, TakesCurvesNotMuchSlowerThanCanBe) {  // PL-15, PL-21
   // Against a bound that has to do with jerk only at both ends.
   EXPECT_LT(worst, 1.07);
   RecordProperty("worst", std::to_string(worst));
+}
+
+// Tracks with bends in a row, each mover told at rest or on its way.
+TEST(Traffic, SaysHowLongAWayTakes) {  // PL-12
+  testing::Random random(7);
+  trajectory::Planner planner;
+  double least = 10, most = 0;
+  for (int trial = 0; trial < Trials(100, 2); ++trial) {
+    std::vector<Layout> layouts;
+    const int tracks = random.Below(5) + 1;
+    double x = 0, y = 0;
+    for (int i = 0; i < tracks; ++i) {
+      Layout layout;
+      for (int k = 0; k < 3; ++k) {
+        const double length = random.Between(200, 900), aside = random.Between(-200, 200),
+                     gap = random.Between(200, 400);
+        layout.elements.push_back(testing::Line({x, y}, {x + length, y}));
+        x += length + gap;
+        y += aside;
+      }
+      layout.elements.push_back(testing::Line({x, y}, {x + 100, y}));
+      x += 100;
+      layouts.push_back(layout);
+    }
+    Pace pace = testing::PaceOf(random.Between(300, 3000), random.Between(3000, 20000), random.Between(5e4, 5e5));
+    if (random.Coin()) pace = testing::InPlane(pace);
+    Streets streets(layouts, 1);
+    streets.Put(0, 0, random.Between(0, 300), pace);
+    const auto last = static_cast<std::uint32_t>(tracks - 1);
+    ASSERT_TRUE(streets.Send(0, last, streets.track(last).length));
+    if (random.Coin()) streets.Run(random.Between(0, 0.3));
+    const double begin = streets.now(), expected = TimeAlone(planner, streets.network(), streets[0]);
+    ASSERT_TRUE(streets.Run(60)) << trial;
+    const double ratio = expected / (streets.now() - begin);
+    least = std::min(least, ratio);
+    most = std::max(most, ratio);
+    EXPECT_GT(ratio, 0.8) << trial;
+    EXPECT_LT(ratio, 1.08) << trial;
+  }
+  RecordProperty("least", std::to_string(least));
+  RecordProperty("most", std::to_string(most));
 }
 
 // Two tracks that join: the first to come goes first, the other waits outside, and both go on.
