@@ -378,6 +378,20 @@ class VirtualEngine {
     return list;
   }
 
+  // The number of the first visit of its route over the free surface, and the middles of all places, (n, 2) mm.
+  std::pair<std::uint64_t, py::array_t<double>> MoverRoute(std::size_t mover) {
+    const auto lock = Lock();
+    if (mover >= engine_.machine().movers.size()) throw std::out_of_range("no such mover");
+    const engine::RouteSnapshot route = engine_.mover_route(mover);
+    py::array_t<double> places({py::ssize_t{route.count}, py::ssize_t{2}});
+    auto rows = places.mutable_unchecked<2>();
+    for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
+      rows(i, 0) = route.all()[static_cast<std::size_t>(i)].x;
+      rows(i, 1) = route.all()[static_cast<std::size_t>(i)].y;
+    }
+    return {route.first, places};
+  }
+
   // Of the way as it is now: x, y and the direction in deg.
   TrackRow TrackAt(std::size_t track, double s) {
     const auto lock = Lock();
@@ -683,6 +697,7 @@ void BindEngine(py::module_& m) {
       .def("belt_objects", &E::BeltObjects, py::arg("belt"))
       .def("track_shape", &E::TrackShape, py::arg("track"))
       .def("mover_trail", &E::MoverTrail, py::arg("mover"))
+      .def("mover_route", &E::MoverRoute, py::arg("mover"))
       .def("mover_history", &E::MoverHistory, py::arg("mover"))
       .def("track_at", &E::TrackAt, py::arg("track"), py::arg("s"))
       .def("track_closest_to", &E::TrackClosestTo, py::arg("track"), py::arg("x"), py::arg("y"))

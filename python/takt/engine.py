@@ -29,7 +29,7 @@ from takt.mover import Mover
 from takt.names import shown
 from takt.network import network_of
 from takt.plant import Plant, axes_of
-from takt.recording import Recording
+from takt.recording import FloatArray, Recording
 from takt.saved import JournalEntry, Saved
 from takt.session import Recorder, Session
 from takt.tables import KINDS, fields_of_kind, make_recording
@@ -310,6 +310,9 @@ class Engine(Session):
 
     def _trail(self, mover: Mover) -> Iterable[int]:
         return self._core.mover_trail(list(self.movers).index(mover.name))
+
+    def _route(self, mover: Mover) -> tuple[int, FloatArray]:
+        return self._core.mover_route(list(self.movers).index(mover.name))
 
     def _track_at(self, track: Track, s: float) -> tuple[float, float, float, float]:
         return self._core.track_at(list(self.tracks).index(track.name), s)

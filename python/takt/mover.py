@@ -8,6 +8,7 @@ from takt._commands import MoverCommands, MoverOutputs
 from takt.component import Component
 from takt.errors import TaktError
 from takt.feedback import FeedbackState
+from takt.recording import FloatArray
 from takt.tables import named
 from takt.trail import TrackTrail
 
@@ -53,6 +54,12 @@ class Mover(Component, MoverCommands, MoverOutputs):
         stay: that alone. Empty: it is on no track. A track that it comes back to is named once."""
         tracks = list(self.session.tracks)
         return TrackTrail(dict.fromkeys(tracks[number] for number in self.session._trail(self)))
+
+    def surface_route(self) -> FloatArray:
+        """The places of its route over the free surface that are still before it, (n, 2) mm, the last one that it has
+        reached first; of those, `route_granted` - `route_visit` are its turn. Empty: it is not on its way."""
+        first, places = self.session._route(self)
+        return places[min(max(self.route_visit - first, 0), len(places)) :]
 
     def history(self) -> tuple[MoverRecord, ...]:
         """Its last 100 commands, the oldest first; external set points apart. Over LCM: those of all clients since this

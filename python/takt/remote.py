@@ -13,6 +13,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from takt import _core, msgs
 from takt.belt import Belt
 from takt.cam import Table
@@ -24,7 +26,7 @@ from takt.keys import Key, KeyFile, first_key_not_taken, no_key, not_the_key, re
 from takt.lying import objects_of
 from takt.mover import Mover
 from takt.network import open_network, usual_url
-from takt.recording import Recording
+from takt.recording import FloatArray, Recording
 from takt.remote_cams import RemoteCams
 from takt.remote_history import CommandLog
 from takt.remote_tracks import RemoteTracks
@@ -97,6 +99,7 @@ class RemoteSession(Session):
         self._key_trouble = ""  # why the engine's last description could not be believed
         self._belt_objects: dict[str, msgs.belt_objects] = {}
         self._trails: dict[str, msgs.mover_trail] = {}  # of movers on tracks
+        self._routes: dict[str, msgs.mover_route] = {}  # of movers on the free surface
         self._cams = RemoteCams(self)
         self._sent: dict[int, _Sent] = {}
         self._held: list[Feedback] = []  # level-sensitive commands that need heartbeats
@@ -116,6 +119,7 @@ class RemoteSession(Session):
             ("takt/command", self._on_command),
             ("takt/belt_objects/.*", self._on_objects),
             ("takt/mover_trails/.*", self._on_trail),
+            ("takt/mover_routes/.*", self._on_route),
             ("takt/cams", self._on_cam),
             *((f"{prefix}.*", self._on_state) for prefix in PREFIXES.values()),
         ):
@@ -302,6 +306,15 @@ class RemoteSession(Session):
                 self._trails[message.name] = message
                 self._hear(channel, message.sequence)
 
+    def _on_route(self, channel: str, data: bytes) -> None:
+        message = _decoded(msgs.mover_route, data)
+        if message is None:
+            return
+        with self._news:
+            if self._believable(message):
+                self._routes[message.name] = message
+                self._hear(channel, message.sequence)
+
     def _on_cam(self, channel: str, data: bytes) -> None:
         message = _decoded(msgs.cam_piece, data)
         if message is None:
@@ -459,6 +472,12 @@ class RemoteSession(Session):
             # What the mover has left meanwhile is not ahead any more.
             tracks = tracks[tracks.index(here) :] if here in tracks else [here]
         return [track - 1 for track in tracks]
+
+    def _route(self, mover: Mover) -> tuple[int, FloatArray]:
+        message = self._routes.get(mover.name)
+        if message is None or not (message.count and mover.on_route):
+            return 0, np.empty((0, 2))
+        return message.first, np.column_stack([message.x, message.y])
 
     def _track_at(self, track: Track, s: float) -> tuple[float, float, float, float]:
         return self._geometry.at(track, s)

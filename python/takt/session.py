@@ -35,7 +35,7 @@ from takt.part import Part
 from takt.pick_place import PickPlace
 from takt.planar_group import PlanarGroup
 from takt.pose import FreePose
-from takt.recording import Recording, split_signal
+from takt.recording import FloatArray, Recording, split_signal
 from takt.tables import KINDS, components_of
 from takt.track import Track
 
@@ -625,6 +625,10 @@ class Session(SessionWithCams):
     @abstractmethod
     def _trail(self, mover: Mover) -> Iterable[int]:
         """Numbers of the tracks, from 0, that a mover is to go along."""
+
+    @abstractmethod
+    def _route(self, mover: Mover) -> tuple[int, FloatArray]:
+        """The number of the first visit of a mover's route over the free surface, and all places, (n, 2) mm."""
 
     @abstractmethod
     def _track_at(self, track: Track, s: float) -> tuple[float, float, float, float]:

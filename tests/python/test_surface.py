@@ -500,6 +500,45 @@ def test_over_lcm(tmp_path: Path) -> None:
         assert (session.mover("a").x, session.mover("a").y) == pytest.approx(at((3, 3)), abs=1e-6)
 
 
+def follow_a_route(session: takt.Session) -> None:
+    """Over four places, held in the second; what the mover says of its route until it has left it."""
+    a = session.mover("a")
+    a.enable().wait()
+    assert a.surface_route().shape == (0, 2)
+    places = [at((0, 0)), at((1, 0)), at((2, 0)), at((2, 1))]
+    there = a.set_route(first=a.route_visit, visits=[{"x": x, "y": y} for x, y in places])
+    session.command("machine", "start_routes", {"velocity": 500}).wait()
+    session.wait(lambda: len(a.surface_route()) == 4 and a.x > 80, 5)
+    assert a.surface_route().tolist() == [list(place) for place in places]
+    session.command("machine", "hold_routes").wait()
+    session.wait(lambda: a.delay == "release", 5)
+    assert a.surface_route().tolist() == [list(place) for place in places[a.route_visit :]]
+    session.command("machine", "hold_routes", {"hold": False}).wait()
+    there.wait()
+    session.wait(lambda: len(a.surface_route()) == 0, 2)
+
+
+def test_what_a_mover_says_of_its_route() -> None:
+    follow_a_route(Engine(machine({"a": (0, 0)}, square(2))))
+
+
+def test_what_a_mover_says_of_its_route_over_lcm(tmp_path: Path) -> None:
+    url = new_url()
+    text = machine({"a": (0, 0)}, square(2))
+    with running(tmp_path, url, machine=text), takt.connect(url) as session:
+        follow_a_route(session)
+        with takt.connect(url) as later:  # joins while it is on its way
+            a = session.mover("a")
+            places = [at((2, 1)), at((1, 1)), at((0, 1))]
+            there = a.set_route(first=a.route_visit, visits=[{"x": x, "y": y} for x, y in places])
+            session.command("machine", "start_routes", {"velocity": 60}).wait()
+            with takt.connect(url) as late:
+                late.wait(lambda: len(late.mover("a").surface_route()) > 0, 3)
+                assert late.mover("a").surface_route()[-1].tolist() == list(places[-1])
+            assert later.mover("a").on_route
+            there.wait()
+
+
 # --- what cannot be ---
 
 

@@ -503,6 +503,35 @@ def test_the_plan_knows_tracks_that_commands_made_and_what_is_reserved(tmp_path:
         until(page, "() => window.takt.model.shapes.get('later').points.length === 0")
 
 
+def test_the_plan_knows_routes_and_how_far_they_are(tmp_path: Path, browser: Browser) -> None:
+    url = new_url()
+    stators = ", ".join(f"{{x: {240 * x}, y: {240 * y}}}" for x in range(3) for y in range(2))
+    text = "name: floor\naxes: []\nmovers: [{name: one, initial: {x: 60, y: 60}}]\n"
+    text += f"environments: [{{name: floor, stators: [{stators}]}}]\n"
+    with (
+        running(tmp_path, url, machine=text),
+        served(url) as address,
+        opened(browser, address, "#tab=plan") as page,
+        takt.connect(url) as session,
+    ):
+        one = session.mover("one")
+        one.enable().wait()
+        places = [[60, 60], [180, 60], [300, 60], [420, 60], [420, 180]]
+        there = one.set_route(first=one.route_visit, visits=[{"x": x, "y": y} for x, y in places])
+        session.command("machine", "start_routes", {"velocity": 300}).wait()
+        session.wait(lambda: one.x > 100, 5)
+        session.command("machine", "hold_routes").wait()
+        session.wait(lambda: one.delay == "release", 5)
+        ahead = f"window.takt.plan.surface.ahead('one', {one.route_visit}, {one.route_visit + 1})"
+        until(page, f"() => window.takt.model.routes.get('one')?.points.length === {2 * len(places)}")
+        found = page.evaluate(f"() => {ahead}")
+        assert found["granted"] + found["later"] == places[one.route_visit + 1 :]
+        assert len(found["granted"]) == 1
+        session.command("machine", "hold_routes", {"hold": False}).wait()
+        there.wait()
+        until(page, "() => window.takt.model.routes.get('one').points.length === 0")
+
+
 def test_cams_show_the_point_in_force(tmp_path: Path, browser: Browser) -> None:
     url = new_url()
     with (

@@ -14,6 +14,8 @@ namespace {
 
 // Lists of objects that may wait for each belt: they are long.
 constexpr std::size_t kObjectLists = 64;
+// Routes over the free surface that a cycle publishes: they are long.
+constexpr std::size_t kRoutesPerCycle = 8;
 
 // Every how many cycles something with this rate is due; 0: never.
 std::uint64_t Divisor(double rate_hz, double period_s) {
@@ -105,6 +107,8 @@ struct Engine::Impl {
         belt_objects(o.publish ? kObjectLists * machine.belts.size() : 2),
         mover_trails(o.publish ? 64 + 2 * machine.movers.size() : 2),
         trails(machine.movers.size()),
+        mover_routes(o.publish && !machine.movers.empty() ? 4 * kRoutesPerCycle : 2),
+        routes(machine.movers.size()),
         pick_places(machine, o, machine.pick_and_place, world.pick_place_outputs),
         movers(machine, o, machine.movers, world.mover_outputs),
         tracks(machine, o, machine.tracks, world.tracks.outputs),
@@ -273,6 +277,37 @@ struct Engine::Impl {
     }
   }
 
+  RouteSnapshot RouteOf(std::uint32_t mover) const noexcept {
+    RouteSnapshot out{.cycle = world.cycle.count, .index = mover};
+    if (!mover::IsOnRoute(world.mover_states[mover])) return out;
+    const mover::SurfaceRoute& route = world.routes.of[mover];
+    out.coordinate_system = world.streets.parts->none() ? 0 : route.system + 1;
+    out.first = route.begin;
+    for (std::uint64_t k = route.begin; k <= route.last() && out.count < out.places.size(); ++k) {
+      out.places[out.count++] = {route.visits[k].x, route.visits[k].y};
+    }
+    return out;
+  }
+
+  // Soon after it has changed, and periodically for later subscribers. Of many that begin at once some in each cycle.
+  void PublishRoutes() noexcept {
+    const auto repeat = static_cast<std::uint64_t>(1 / machine.cycle.period_s);  // a second
+    const auto count = static_cast<std::uint32_t>(movers.divisors.size());
+    std::size_t told = 0;
+    for (std::uint32_t k = 0, i = next_route; k < count && told < kRoutesPerCycle; ++k, i = i + 1 < count ? i + 1 : 0) {
+      if (movers.divisors[i] == 0) continue;
+      const mover::SurfaceRoute& route = world.routes.of[i];
+      SaidRoute now{.on = mover::IsOnRoute(world.mover_states[i]), .cycle = world.cycle.count};
+      if (now.on) now = {now.on, route.started, route.begin, route.last(), now.cycle};
+      SaidRoute& said = routes[i];
+      if (now.IsLike(said) && (!now.on || now.cycle - said.cycle < repeat)) continue;
+      next_route = i;
+      if (!mover_routes.TryPush(RouteOf(i))) return;
+      said = now;
+      ++told;
+    }
+  }
+
   void Publish() noexcept {
     figures.cycle = world.cycle.count;
     figures.commands_refused = refused.load(std::memory_order_relaxed);
@@ -292,6 +327,7 @@ struct Engine::Impl {
     std::apply([this](auto&... kind) { (PublishAll(kind), ...); }, kinds());
     PublishObjects();
     PublishTrails();
+    PublishRoutes();
     track_shapes.Publish(world.cycle.count, world.tracks, track_places);
     if (figures_divisor > 0 && world.cycle.count % figures_divisor == 0) figure_queue.TryPush(figures);
   }
@@ -319,6 +355,17 @@ struct Engine::Impl {
     std::uint64_t cycle = 0;
   };
   std::vector<Said> trails;  // by mover, as published last
+  SpscQueue<RouteSnapshot> mover_routes;
+  struct SaidRoute {
+    bool on = false;
+    std::uint64_t started = 0, begin = 0, last = 0;  // of SurfaceRoute
+    std::uint64_t cycle = 0;
+    bool IsLike(const SaidRoute& other) const noexcept {
+      return on == other.on && started == other.started && begin == other.begin && last == other.last;
+    }
+  };
+  std::vector<SaidRoute> routes;  // likewise
+  std::uint32_t next_route = 0;   // the mover that is looked at first
   OfKind<pickplace::Outputs> pick_places;
   OfKind<mover::Outputs> movers;
   OfKind<track::Outputs> tracks;
@@ -569,6 +616,12 @@ SpscQueue<TrackPlaces>& Engine::track_places() noexcept {
 }
 SpscQueue<TrailSnapshot>& Engine::mover_trails() noexcept {
   return impl_->mover_trails;
+}
+SpscQueue<RouteSnapshot>& Engine::mover_routes() noexcept {
+  return impl_->mover_routes;
+}
+RouteSnapshot Engine::mover_route(std::size_t mover) const noexcept {
+  return impl_->RouteOf(static_cast<std::uint32_t>(mover));
 }
 planar::Route Engine::mover_trail(std::size_t mover) const noexcept {
   return planar::TrailOf(impl_->world.streets.riders[mover]);

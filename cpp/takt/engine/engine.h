@@ -85,6 +85,8 @@ class Engine {
   const mover::State& mover_state(std::size_t mover) const noexcept;
   // The tracks that a mover is to go along (planar::TrailOf).
   planar::Route mover_trail(std::size_t mover) const noexcept;
+  // The places that a mover visits on its route over the free surface.
+  RouteSnapshot mover_route(std::size_t mover) const noexcept;
   const part::Outputs& part_outputs(std::size_t part) const noexcept;
   const track::Tracks& tracks() const noexcept;
   const planar::Grounds& grounds() const noexcept;
@@ -146,6 +148,7 @@ class Engine {
   SpscQueue<ObjectsSnapshot>& belt_objects() noexcept;
   SpscQueue<TrackPlaces>& track_places() noexcept;
   SpscQueue<TrailSnapshot>& mover_trails() noexcept;
+  SpscQueue<RouteSnapshot>& mover_routes() noexcept;
   SpscQueue<cam::CamPiece>& cam_pieces() noexcept;
   SpscQueue<EngineFigures>& figure_queue() noexcept;
   SpscQueue<JournalEntry>& journal() noexcept;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <tuple>
 
 #include "takt/axis/outputs.h"
@@ -15,6 +16,7 @@
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
 #include "takt/mover/outputs.h"
+#include "takt/mover/route.h"
 #include "takt/part/outputs.h"
 #include "takt/pickplace/outputs.h"
 #include "takt/planar/network.h"
@@ -60,6 +62,18 @@ struct TrailSnapshot {
   std::uint64_t cycle = 0;
   std::uint32_t index = 0;  // of the mover
   planar::Route trail;
+};
+
+// The places that a mover on a route over the free surface visits.
+struct RouteSnapshot {
+  std::uint64_t cycle = 0;
+  std::uint32_t index = 0;              // of the mover
+  std::uint32_t coordinate_system = 0;  // of the places, from 1; 0: none
+  std::uint64_t first = 0;              // number of the first visit
+  std::uint32_t count = 0;              // 0: it is not on its way along a route
+  std::array<planar::Place, mover::kMostKept + mover::kMostVisits> places{};
+
+  std::span<const planar::Place> all() const noexcept { return {places.data(), count}; }
 };
 
 struct JournalEntry {  // a command as it was applied

@@ -33,6 +33,11 @@ inline std::string TrailChannel(std::string_view name) {
   return "takt/mover_trails/" + std::string(name);
 }
 
+// The places of a mover's route over the free surface.
+inline std::string RouteChannel(std::string_view name) {
+  return "takt/mover_routes/" + std::string(name);
+}
+
 // The shape of a track.
 inline std::string ShapeChannel(std::string_view name) {
   return "takt/track_shapes/" + std::string(name);

@@ -611,6 +611,21 @@ msgs::mover_trail ToMessage(const engine::TrailSnapshot& snapshot, const engine:
   return m;
 }
 
+msgs::mover_route ToMessage(const engine::RouteSnapshot& snapshot, const engine::Machine& machine) {
+  msgs::mover_route m{};
+  m.cycle = Signed(snapshot.cycle);
+  m.time_ns = TimeNs(snapshot.cycle, machine);
+  m.name = machine.movers[snapshot.index].name;
+  m.coordinate_system = snapshot.coordinate_system;
+  m.first = Signed(snapshot.first);
+  for (const planar::Place& place : snapshot.all()) {
+    m.x.push_back(place.x);
+    m.y.push_back(place.y);
+  }
+  m.count = static_cast<std::int32_t>(m.x.size());
+  return m;
+}
+
 msgs::histogram ToMessage(const engine::Histogram& histogram) {
   msgs::histogram m{};
   std::transform(histogram.buckets.begin(), histogram.buckets.end(), m.buckets, Signed);

@@ -33,6 +33,7 @@
 #include "takt/msgs/journal_hashes.hpp"
 #include "takt/msgs/journal_start.hpp"
 #include "takt/msgs/machine_description.hpp"
+#include "takt/msgs/mover_route.hpp"
 #include "takt/msgs/mover_state.hpp"
 #include "takt/msgs/mover_trail.hpp"
 #include "takt/msgs/part_state.hpp"
@@ -55,6 +56,7 @@ void Add(const engine::TrackPlaces& places, const engine::Machine& machine, msgs
 msgs::pick_place_state ToMessage(const engine::PickPlaceSnapshot& snapshot, const engine::Machine& machine);
 msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine::Machine& machine);
 msgs::mover_trail ToMessage(const engine::TrailSnapshot& snapshot, const engine::Machine& machine);
+msgs::mover_route ToMessage(const engine::RouteSnapshot& snapshot, const engine::Machine& machine);
 msgs::pose_state ToMessage(const engine::PoseSnapshot& snapshot, const engine::Machine& machine);
 msgs::track_state ToMessage(const engine::TrackSnapshot& snapshot, const engine::Machine& machine);
 msgs::planar_group_state ToMessage(const engine::PlanarGroupSnapshot& snapshot, const engine::Machine& machine);

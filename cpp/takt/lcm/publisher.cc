@@ -53,6 +53,7 @@ Publisher::Publisher(engine::Engine& engine, Clients& clients, Outlet* network, 
   }
   for (const mover::MoverParams& mover : engine_.machine().movers) {
     trail_channels_.push_back({.name = TrailChannel(mover.name)});
+    route_channels_.push_back({.name = RouteChannel(mover.name)});
   }
   for (const track::TrackParams& track : engine_.machine().tracks) {
     shape_channels_.push_back({.name = ShapeChannel(track.name)});
@@ -103,6 +104,10 @@ bool Publisher::Drain() {
   any |= Take(engine_.mover_trails(), [this](const engine::TrailSnapshot& snapshot) {
     auto message = ToMessage(snapshot, engine_.machine());
     ToBoth(trail_channels_[snapshot.index], message);
+  });
+  any |= Take(engine_.mover_routes(), [this](const engine::RouteSnapshot& snapshot) {
+    auto message = ToMessage(snapshot, engine_.machine());
+    ToBoth(route_channels_[snapshot.index], message);
   });
   any |= Take(engine_.cam_pieces(), [this](const cam::CamPiece& piece) {
     auto message = ToMessage(piece, engine_.machine());

@@ -85,6 +85,7 @@ class Publisher {
   std::size_t first_kind_ = 0;                        // round robin: the kind drained first
   std::vector<Channel> object_channels_;              // by belt
   std::vector<Channel> trail_channels_;               // by mover
+  std::vector<Channel> route_channels_;               // by mover
   std::vector<Channel> shape_channels_;               // by track
   std::vector<msgs::track_shape> shapes_;             // complete, by track; sent again for later subscribers
   std::vector<msgs::track_shape> partial_shapes_;     // by track

@@ -28,7 +28,7 @@ from takt.view.machine import Machine, Source, drawn
 from takt.view.made import MadeCams
 from takt.view.overview import Overview
 from takt.view.ring import Ring
-from takt.view.shapes import Shapes
+from takt.view.shapes import Routes, Shapes
 
 QUEUE = 200_000  # messages that wait for the next tick, of all that must not get lost
 AT_ONCE = 2000  # messages of one tick, besides states
@@ -94,6 +94,7 @@ class Feed:
         self.engine: dict[str, Any] | None = None
         self.objects: dict[str, list[list[float]]] = {}  # what lies on belts
         self.shapes = Shapes()  # of tracks
+        self.routes = Routes()  # of movers
         self.links: dict[str, list[list[float]]] = {}  # poses of the links of groups
         self.trouble = ""  # what is wrong beside the engine, in a sentence
         self.messages = 0  # of the scope, so far
@@ -216,6 +217,7 @@ class Feed:
         self.machine, self.overview, self.ledger = machine, Overview(machine), Ledger(machine.by_name)
         self.engine, self.objects, self.links, self.messages = None, {}, {}, 0
         self.shapes = Shapes(machine.names["part"])
+        self.routes = Routes()
         self.made_cams = MadeCams(drawn)
         self.epoch += 1
         self._heard = time.monotonic()
@@ -224,6 +226,8 @@ class Feed:
             self._subscriptions.append(self._newest(f"takt/belt_objects/{belt}", self._on_objects))
         for track in machine.names["track"]:
             self._subscriptions.append(self._newest(f"takt/track_shapes/{track}", self._on_shape))
+        for mover in machine.names["mover"]:
+            self._subscriptions.append(self._newest(f"takt/mover_routes/{mover}", self._on_route))
 
     def _newest(self, channel: str, handler: Any) -> Any:
         """One message is enough until the next tick."""
@@ -278,6 +282,11 @@ class Feed:
         message = _decoded(msgs.track_shape, data)
         if message is not None:
             self.shapes.take(message)
+
+    def _on_route(self, _: str, data: bytes) -> None:
+        message = _decoded(msgs.mover_route, data)
+        if message is not None:
+            self.routes.take(message)
 
     def _place_links(self) -> None:
         assert self.machine is not None

@@ -64,6 +64,7 @@ class Page:
         self._revision = 0
         self._events = 0
         self._shapes = 0
+        self._routes = 0
         self._made_cams = 0
         self._waited = 0.0  # when the page was told last that it waits
         self._engine: Any = None
@@ -146,7 +147,7 @@ class Page:
                 await self._socket.send_text(json.dumps(waiting))
             return
         self._epoch, self._wanted, self._cursors, self._details = feed.epoch, {}, {}, ()
-        self._revision = self._events = self._shapes = self._made_cams = self._skipped = 0
+        self._revision = self._events = self._shapes = self._routes = self._made_cams = self._skipped = 0
         self._engine = None
         self.leave()
         self._commander = Commander(feed.network, feed.machine, self._answers.append)
@@ -194,6 +195,9 @@ class Page:
         if shapes := feed.shapes.since(self._shapes):
             header["shapes"] = shapes
         self._shapes = feed.shapes.count
+        if routes := feed.routes.since(self._routes):
+            header["routes"] = routes
+        self._routes = feed.routes.count
         if made := feed.made_cams.since(self._made_cams):
             header["cams"] = made
         self._made_cams = feed.made_cams.count

@@ -1,4 +1,4 @@
-"""The shapes of tracks as the engine says they are now, for the plan."""
+"""What the engine says of shapes for the plan: of tracks, and of routes over the free surface."""
 
 from __future__ import annotations
 
@@ -18,23 +18,41 @@ def track(name: str, part: str, closed: bool, places: Any) -> dict[str, Any]:
     return {"name": name, "part": part, "closed": closed, "points": points.ravel().tolist()}
 
 
-class Shapes:
-    """Newest shapes by name. What has not changed is told to a page once."""
+class Newest:
+    """The newest of each name. What has not changed is told to a page once."""
+
+    def __init__(self) -> None:
+        self.count = 0  # of changes
+        self._known: dict[str, tuple[int, dict[str, Any]]] = {}
+
+    def put(self, new: dict[str, Any]) -> None:
+        name = new["name"]
+        if name in self._known and self._known[name][1] == new:
+            return
+        self.count += 1
+        self._known[name] = (self.count, new)
+
+    def since(self, count: int) -> list[dict[str, Any]]:
+        """Those that changed after so many changes."""
+        return [new for changed, new in self._known.values() if changed > count]
+
+
+class Shapes(Newest):
+    """Of tracks."""
 
     def __init__(self, parts: Sequence[str] = ()) -> None:
-        self.count = 0  # of changes
+        super().__init__()
         self._parts = parts
-        self._known: dict[str, tuple[int, dict[str, Any]]] = {}
 
     def take(self, message: msgs.track_shape) -> None:
         part = self._parts[message.part - 1] if message.part else ""
         places = np.stack([message.position, message.x, message.y], axis=1) if message.count else np.empty((0, 3))
-        new = track(message.name, part, bool(message.closed), places)
-        if message.name in self._known and self._known[message.name][1] == new:
-            return
-        self.count += 1
-        self._known[message.name] = (self.count, new)
+        self.put(track(message.name, part, bool(message.closed), places))
 
-    def since(self, count: int) -> list[dict[str, Any]]:
-        """Those that changed after so many changes."""
-        return [shape for changed, shape in self._known.values() if changed > count]
+
+class Routes(Newest):
+    """Of movers over the free surface."""
+
+    def take(self, message: msgs.mover_route) -> None:
+        points = np.round([message.x, message.y], DECIMALS).T.ravel().tolist()
+        self.put({"name": message.name, "first": message.first, "points": points})

@@ -44,6 +44,7 @@ LIVE: dict[str, tuple[str, ...]] = {
             "waits_for",
         ),
         *("coordinate_system", "gap", "target_x", "target_y", "target_c"),
+        *("on_route", "route_visit", "route_granted"),
         *("reserved_lower_x", "reserved_lower_y", "reserved_upper_x", "reserved_upper_y"),
     ),
     "track": ("length",),

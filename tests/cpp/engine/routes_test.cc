@@ -56,7 +56,7 @@ std::string Visits(int first, const std::vector<Step>& steps) {
 
 class Rig : public PartsRig {
  public:
-  explicit Rig(const std::string& text) : PartsRig(text) {
+  explicit Rig(const std::string& text, const EngineOptions& options = {}) : PartsRig(text, options) {
     for (const mover::MoverParams& mover : machine.movers) Do(mover.name, "enable");
     each_cycle = [this] { Watch(); };
   }
@@ -127,6 +127,55 @@ TEST(Routes, KeepTheOrderOfVisits) {
   EXPECT_FALSE(rig.Mover("b").on_route);
   EXPECT_TRUE(waited);
   EXPECT_EQ(rig.overlaps, 0);
+}
+
+// What is published of routes: of each soon, of few in a cycle, again every second, and its end; if nobody reads for a
+// while, later.
+TEST(Routes, ArePublishedAsTheyChange) {
+  constexpr std::uint32_t kMovers = 40;
+  std::vector<std::pair<std::string, Cell>> movers;
+  for (int i = 0; i < int{kMovers}; ++i) movers.push_back({"m" + std::to_string(i), {0, 2 * i}});
+  Rig rig(Surface(movers), {.publish = true});
+  std::vector<std::vector<RouteSnapshot>> told(kMovers);
+  std::size_t most = 0;
+  bool reads = true;
+  rig.each_cycle = [&] {
+    std::size_t count = 0;
+    for (RouteSnapshot route; reads && rig.engine.mover_routes().TryPop(route); ++count) {
+      told[route.index].push_back(route);
+    }
+    most = std::max(most, count);
+  };
+  std::vector<Ticket> tickets;
+  for (int i = 0; i < int{kMovers}; ++i) {
+    const Cell at = movers[static_cast<std::size_t>(i)].second;
+    tickets.push_back(rig.Give(movers[static_cast<std::size_t>(i)].first, "set_route",
+                               Visits(0, {{at}, {{1, at.y}}, {{2, at.y}}})));
+    rig.Run();
+  }
+  rig.Run(20);
+  EXPECT_EQ(most, 0u);
+  const std::uint64_t begin = rig.engine.cycle().count;
+  rig.Do("machine", "start_routes", "{velocity: 100}");
+  rig.Run(10);
+  EXPECT_LE(most, 8u);
+  for (const auto& of : told) {
+    ASSERT_EQ(of.size(), 1u);
+    EXPECT_LE(of[0].cycle, begin + 10);
+    ASSERT_EQ(of[0].count, 3u);
+    EXPECT_EQ(of[0].first, 0u);
+    EXPECT_EQ(of[0].places[2].x, MiddleOf(2));
+    EXPECT_EQ(of[0].places[2].y, MiddleOf(2 * static_cast<int>(of[0].index)));
+  }
+  rig.Run(1020);
+  for (const auto& of : told) EXPECT_EQ(of.size(), 2u);
+  reads = false;
+  for (const Ticket ticket : tickets) rig.End(ticket);
+  rig.Run(100);
+  EXPECT_EQ(rig.engine.mover_route(0).count, 0u);
+  reads = true;
+  rig.Run(20);
+  for (const auto& of : told) EXPECT_EQ(of.back().count, 0u);
 }
 
 // A mover that is taken off its route holds up those behind it, and no others; then it goes on.

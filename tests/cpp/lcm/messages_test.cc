@@ -365,6 +365,25 @@ TEST(Messages, MoverTrailNamesItsTracksByTheirNumbers) {
   EXPECT_EQ(message.tracks, (std::vector<std::int64_t>{5, 1, 8}));
 }
 
+// PL-72
+TEST(Messages, MoverRouteHasItsPlaces) {
+  engine::Machine machine = TestMachine();
+  machine.movers = {{.name = "other"}, {.name = "shuttle"}};
+  engine::RouteSnapshot snapshot{.cycle = 12, .index = 1, .coordinate_system = 2, .first = 7};
+  EXPECT_EQ(ToMessage(snapshot, machine).count, 0);
+  snapshot.count = 2;
+  snapshot.places[0] = {120, 360};
+  snapshot.places[1] = {240, 480};
+  const msgs::mover_route message = ToMessage(snapshot, machine);
+  EXPECT_EQ(message.name, "shuttle");
+  EXPECT_EQ(message.cycle, 12);
+  EXPECT_EQ(message.coordinate_system, 2);
+  EXPECT_EQ(message.first, 7);
+  EXPECT_EQ(message.count, 2);
+  EXPECT_EQ(message.x, (std::vector<double>{120, 240}));
+  EXPECT_EQ(message.y, (std::vector<double>{360, 480}));
+}
+
 // EN-20
 TEST(Messages, TrackStateKeepsEveryNumber) {
   engine::Machine machine = TestMachine();

@@ -17,6 +17,7 @@ export class Model {
     this.poses = {}; // of the links of groups: place and quaternion
     this.links = {}; // where each begins and ends
     this.shapes = new Map(); // of tracks, by name
+    this.routes = new Map(); // over the free surface, by the mover's name
     this.madeCams = new Map(); // at run time, by number
     this.health = {};
   }
@@ -66,6 +67,7 @@ export class Model {
     if (header.events) this.events = [...this.events, ...header.events].slice(-500);
     if (header.engine) this.engine = header.engine;
     for (const shape of header.shapes ?? []) this.shapes.set(shape.name, shape);
+    for (const route of header.routes ?? []) this.routes.set(route.name, route);
     for (const cam of header.cams ?? []) this.madeCams.set(cam.number, cam);
     this.objects = header.objects;
     for (const [name, poses] of Object.entries(header.links)) this.placeLinks(name, poses);

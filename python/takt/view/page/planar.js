@@ -152,7 +152,7 @@ export class Surface {
       const reserved = ["lower_x", "lower_y", "upper_x", "upper_y"].map((side) => of(`reserved_${side}`));
       return {
         ...mover, component, reserved, row: model.rows[component.index], x: of("x"), y: of("y"), c: of("c"), s: of("track_position"), track: of("track"),
-        waits: of("waits_for"), gap: of("gap"), target: { x: of("target_x"), y: of("target_y"), c: of("target_c") },
+        route: of("on_route") ? this.ahead(mover.name, of("route_visit"), of("route_granted")) : null, waits: of("waits_for"), gap: of("gap"), target: { x: of("target_x"), y: of("target_y"), c: of("target_c") },
       };
     });
     const known = all.filter((mover) => Number.isFinite(mover.x) && this.isHere(mover.component));
@@ -169,6 +169,7 @@ export class Surface {
       c.stroke();
       c.globalAlpha = 1;
     }
+    for (const mover of known) this.route(mover);
     for (const mover of known) this.mover(mover);
     for (const mover of known) {
       const other = known.find((one) => one.component === model.numbers.mover[mover.waits - 1]);
@@ -202,6 +203,43 @@ export class Surface {
     this.view.line([[left, lower], [right, lower], [right, upper], [left, upper]].map(([px, py]) => this.view.at(px, py)), true);
     c.stroke();
     c.setLineDash([]);
+    c.globalAlpha = 1;
+  }
+
+  // The places of a mover's route that it has still to reach: those that are its turn, and the others.
+  ahead(name, visit, granted) {
+    const route = this.model.routes.get(name);
+    if (!route) return null;
+    const places = [];
+    for (let i = Math.max(0, visit + 1 - route.first); 2 * i < route.points.length; ++i) places.push(route.points.slice(2 * i, 2 * i + 2));
+    const turns = Math.min(Math.max(0, granted - Math.max(visit, route.first - 1)), places.length);
+    return { granted: places.slice(0, turns), later: places.slice(turns) };
+  }
+
+  // Its way: solid as far as it is its turn, then dashed, to an outline of itself.
+  route({ x, y, c: turned, width, height, route }) {
+    if (!route) return;
+    const { c } = this;
+    const granted = [[x, y], ...route.granted];
+    const later = [granted[granted.length - 1], ...route.later];
+    c.strokeStyle = css("--accent");
+    c.lineWidth = 1.5;
+    c.globalAlpha = 0.7;
+    for (const [places, dashes] of [[granted, []], [later, [3, 5]]]) {
+      if (places.length < 2) continue;
+      c.setLineDash(dashes);
+      this.view.line(places.map(([px, py]) => this.view.at(px, py)));
+      c.stroke();
+    }
+    c.setLineDash([]);
+    const end = this.view.at(...later[later.length - 1]);
+    const [w, h] = [width * this.view.camera.scale, height * this.view.camera.scale];
+    c.save();
+    c.translate(...end);
+    c.rotate((-turned * Math.PI) / 180);
+    c.globalAlpha = 0.5;
+    c.strokeRect(-w / 2, -h / 2, w, h);
+    c.restore();
     c.globalAlpha = 1;
   }
 
