@@ -101,7 +101,7 @@ void PlanOn(trajectory::Planner& planner, const Network& network, double place, 
 }
 
 double TimeAlone(trajectory::Planner& planner, const Network& network, Rider r) noexcept {
-  constexpr int kPlans = 4;  // one takes up to 50 us
+  constexpr int kPlans = 2;  // one takes up to 100 us
   double time = 0;
   KinematicState at{r.at.position, r.direction * r.at.velocity, r.direction * r.at.acceleration};
   for (int i = 0; i < kPlans; ++i) {
