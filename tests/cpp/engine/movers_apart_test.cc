@@ -282,6 +282,39 @@ class RandomWorld {
   double amplitude_ = 0, angle_ = 0;
 };
 
+// One behind the other on a track keep apart by their sizes as they are turned, not by the gap alone: the one ahead has
+// turned after the one behind was told a gap that fits it as it was.
+TEST(MoversApart, OneAheadThatHasTurned) {
+  for (const double turn : {30.0, 45.0, 90.0}) {
+    PartsRig rig(R"(
+name: lane
+axes: []
+tracks: [{name: lane, mover_width: 240, mover_height: 240, elements: [{from: {x: 0, y: 0}, to: {x: 2000, y: 0}}]}]
+movers:
+  - {name: behind, width: 200, height: 80, gap: 205}
+  - {name: ahead, width: 200, height: 240, gap: 205, initial: {x: 1500}}
+)");
+    rig.Do("lane", "enable");
+    for (const char* name : {"behind", "ahead"}) {
+      rig.Do(name, "enable");
+      EXPECT_EQ(rig.Do(name, "join_track", "{track: lane}").error, ErrorId::kNone);
+    }
+    const Ticket move = rig.Give("behind", "move_on_track", "{position: 1900, gap: 205, velocity: 300}");
+    rig.Run(10);
+    EXPECT_EQ(rig.Do("ahead", "move_c", "{position: " + std::to_string(turn) + "}").error, ErrorId::kNone);
+    double least = 1e9;
+    rig.each_cycle = [&] {
+      const mover::Outputs &a = rig.Mover("behind"), &b = rig.Mover("ahead");
+      least = std::min(least, Apart({a.x, a.y, a.c, 200, 80}, {b.x, b.y, b.c, 200, 240}));
+    };
+    rig.Run(8000);
+    EXPECT_GT(least, -1e-4) << turn;
+    EXPECT_LT(least, 60) << turn;
+    EXPECT_FALSE(IsFinal(rig.answers[move].state)) << turn;
+    EXPECT_EQ(rig.Mover("behind").delay, mover::Delay::kMover) << turn;
+  }
+}
+
 TEST(MoversApart, WhateverTheyAreTold) {
   int in_turn = 0, held = 0, waits = 0, near = 0, done = 0, refused = 0, seeds = 0;
   double closest = 1e9;
