@@ -149,8 +149,8 @@ TEST(Routes, ArePublishedAsTheyChange) {
   std::vector<Ticket> tickets;
   for (int i = 0; i < int{kMovers}; ++i) {
     const Cell at = movers[static_cast<std::size_t>(i)].second;
-    tickets.push_back(rig.Give(movers[static_cast<std::size_t>(i)].first, "set_route",
-                               Visits(0, {{at}, {{1, at.y}}, {{2, at.y}}})));
+    tickets.push_back(
+        rig.Give(movers[static_cast<std::size_t>(i)].first, "set_route", Visits(0, {{at}, {{1, at.y}}, {{2, at.y}}})));
     rig.Run();
   }
   rig.Run(20);
