@@ -103,8 +103,8 @@ Planned PlanWay(trajectory::Planner& planner, const Network& network, const Star
                 const Pace& most, trajectory::Profile& out, bool& ends) noexcept;
 
 // s to rest so far on, about, in closed form: with constant acceleration between the caps, and what jerk adds where the
-// speed turns. Of 200 random ways between bends it is 1.00 of the time of the plans in the middle, and 0.82 to 1.06 at
-// the most. Of longer ways than 1000 bends these count for all.
+// speed turns. In nine of ten random ways between bends it is within 8 per cent of the time of the plans. Of longer
+// ways than 1000 bends these count for all.
 double TimeOfWay(const Network& network, const Start& start, double way, const Pace& pace) noexcept;
 
 }  // namespace takt::planar

@@ -240,7 +240,7 @@ TEST(Traffic, SaysHowLongAWayTakes) {  // PL-12
   testing::Random random(7);
   trajectory::Planner planner;
   double least = 10, most = 0;
-  for (int trial = 0; trial < Trials(100, 2); ++trial) {
+  for (int trial = 0; trial < Trials(50, 4); ++trial) {
     std::vector<Layout> layouts;
     const int tracks = random.Below(5) + 1;
     double x = 0, y = 0;
@@ -257,7 +257,8 @@ TEST(Traffic, SaysHowLongAWayTakes) {  // PL-12
       x += 100;
       layouts.push_back(layout);
     }
-    Pace pace = testing::PaceOf(random.Between(300, 3000), random.Between(3000, 20000), random.Between(5e4, 5e5));
+    const double velocity = random.Between(300, 3000), acceleration = random.Between(3000, 20000);
+    Pace pace = testing::PaceOf(velocity, acceleration, random.Between(5e4, 5e5));
     if (random.Coin()) pace = testing::InPlane(pace);
     Streets streets(layouts, 1);
     streets.Put(0, 0, random.Between(0, 300), pace);
@@ -269,8 +270,8 @@ TEST(Traffic, SaysHowLongAWayTakes) {  // PL-12
     const double ratio = expected / (streets.now() - begin);
     least = std::min(least, ratio);
     most = std::max(most, ratio);
-    EXPECT_GT(ratio, 0.8) << trial;
-    EXPECT_LT(ratio, 1.08) << trial;
+    EXPECT_GT(ratio, 0.7) << trial;
+    EXPECT_LT(ratio, 1.1) << trial;
   }
   RecordProperty("least", std::to_string(least));
   RecordProperty("most", std::to_string(most));
