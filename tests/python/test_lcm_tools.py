@@ -38,7 +38,8 @@ def logged(by: str, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, tak
     written by then, gets a second and a third run on a busy host."""
     for _ in range(3):
         file, recording = log_a_run(by, tmp_path_factory.mktemp("logger"))
-        kept = np.isin(recording["x"]["cycle"], takt.read_log(file)["x"]["cycle"])
+        log = takt.read_log(file)
+        kept = np.isin(recording["x"]["cycle"], log["x"]["cycle"] if "x" in log else [])
         if by == OURS or np.mean(kept) > 0.5:
             return file, recording
     pytest.skip(f"lcm-logger kept {np.mean(kept):.0%} of the states: the host is busy")
