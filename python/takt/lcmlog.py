@@ -46,6 +46,8 @@ NAMED: dict[str, Any] = {
     **{prefix: KINDS[kind].message for kind, prefix in PREFIXES.items()},
     OBJECTS: msgs.belt_objects,
     "takt/track_shapes/": msgs.track_shape,
+    "takt/mover_trails/": msgs.mover_trail,
+    "takt/mover_routes/": msgs.mover_route,
 }
 NAMED_TYPES = tuple(NAMED.values())
 # Of channels takt/drive/AXIS/...
@@ -87,6 +89,7 @@ class Run:
     states: dict[str, list[Any]] = field(default_factory=dict)  # of components, by name
     objects: list[msgs.belt_objects] = field(default_factory=list)
     shapes: list[msgs.track_shape] = field(default_factory=list)
+    ways: list[msgs.mover_trail | msgs.mover_route] = field(default_factory=list)
     engine_states: list[msgs.engine_state] = field(default_factory=list)
     commands: list[msgs.command] = field(default_factory=list)
     feedback: list[msgs.feedback] = field(default_factory=list)
@@ -199,7 +202,7 @@ def _leave_out_impossible(run: Run) -> None:
     for one in wrong:
         run.impossible += run.descriptions.pop(one)
     (_, period, _), _ = run.descriptions.most_common(1)[0]
-    for messages in (*run.states.values(), run.objects, run.shapes, run.engine_states):
+    for messages in (*run.states.values(), run.objects, run.shapes, run.ways, run.engine_states):
         possible = [message for message in messages if is_possible(message, period)]
         run.impossible += len(messages) - len(possible)
         messages[:] = possible
@@ -289,6 +292,8 @@ def _sort_in(runs: list[Run], message: Any) -> None:
         run.objects.append(message)
     elif isinstance(message, msgs.track_shape):
         run.shapes.append(message)
+    elif isinstance(message, (msgs.mover_trail, msgs.mover_route)):
+        run.ways.append(message)
     elif isinstance(message, msgs.engine_state):
         run.engine_states.append(message)
         run.heard.append(message)

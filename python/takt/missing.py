@@ -13,7 +13,10 @@ from takt.verdict import Interval, seconds
 NAMED = 3  # components; more are only counted
 # Channels that say the same again and again, or on demand, so that a message lost costs nothing. Losses of states show
 # as samples.
-REPEATING = ("takt/engine", "takt/machine", "takt/track_shapes/", "takt/cams", *PREFIXES.values())
+REPEATING = (
+    *("takt/engine", "takt/machine", "takt/track_shapes/", "takt/mover_trails/", "takt/mover_routes/", "takt/cams"),
+    *PREFIXES.values(),
+)
 
 
 def missing(recording: Recording, components: Iterable[str] | None = None, window: Interval | None = None) -> str:

@@ -34,8 +34,8 @@ class StateDifference:
 
 
 class Comparison:
-    """Compares the messages of components, what lies on belts, the shapes of tracks, and feedback. Steps the engine,
-    and stops it where it has to look."""
+    """Compares the messages of components, what lies on belts, the shapes of tracks, trails and routes of movers, and
+    feedback. Steps the engine, and stops it where it has to look."""
 
     def __init__(self, engine: _core.Engine, run: Run) -> None:
         self._engine = engine
@@ -146,7 +146,8 @@ class _States:
 
 
 class _Looks:
-    """Compares what lies on belts, and the shapes of tracks, in the cycles of the messages that say so."""
+    """Compares what lies on belts, the shapes of tracks, and the trails and routes of movers, in the cycles of the
+    messages that say so."""
 
     def __init__(self, engine: _core.Engine, run: Run) -> None:
         self.tally = Tally()
@@ -154,9 +155,11 @@ class _Looks:
         machine = json.loads(engine.machine_json)
         self._belts = {belt["name"]: i for i, belt in enumerate(machine["belts"])}
         self._tracks = {track["name"]: i for i, track in enumerate(machine["tracks"])}
+        self._movers = {mover["name"]: i for i, mover in enumerate(machine["movers"])}
         messages: Iterator[Any] = itertools.chain(
             (one for one in run.objects if one.name in self._belts),
             (one for one in run.shapes if one.name in self._tracks),
+            (one for one in run.ways if one.name in self._movers),
         )
         self._messages = sorted(messages, key=lambda message: message.cycle)
         self._given = 0
@@ -190,6 +193,17 @@ class _Looks:
             ):
                 if not _same(was, now):
                     yield difference(field, was, now)
+            return
+        if isinstance(message, msgs.mover_trail):
+            tracks = [number + 1 for number in self._engine.mover_trail(self._movers[message.name])]
+            if list(message.tracks) != tracks:
+                yield difference("trail", list(message.tracks), tracks)
+            return
+        if isinstance(message, msgs.mover_route):
+            first, places = self._engine.mover_route(self._movers[message.name])
+            recorded_route, replayed = (message.first, *map(list, (message.x, message.y))), (first, *places.T.tolist())
+            if recorded_route != replayed:
+                yield difference("route", recorded_route, replayed)
             return
         lying = self._engine.belt_objects(self._belts[message.name])
         if message.count != len(lying):

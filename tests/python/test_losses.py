@@ -29,11 +29,13 @@ CHANNELS: dict[str, tuple[Any, str, int]] = {
     "takt/drive/feed/feedback": (msgs.drive_feedback, "", 1),
     "takt/engine": (msgs.engine_state, "", 20),
     "takt/track_shapes/line": (msgs.track_shape, "line", 40),
+    "takt/mover_trails/mover": (msgs.mover_trail, "mover", 40),
+    "takt/mover_routes/mover": (msgs.mover_route, "mover", 40),
 }
 # Nothing else is published.
 QUIET = {"axis_rate_hz": 0, "rates": [{"axis": name, "rate_hz": 500} for name in ("feed", "belt", "turntable")]}
 STATES = ("takt/axis/feed", "takt/belt/belt", "takt/belt/turntable")
-REPEATING = ("takt/engine", "takt/track_shapes/line")
+REPEATING = ("takt/engine", "takt/track_shapes/line", "takt/mover_trails/mover", "takt/mover_routes/mover")
 
 
 def write(path: Path, left_out: dict[str, range], *, on_the_way: bool = True, dropped: int = 0) -> Path:

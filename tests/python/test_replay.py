@@ -157,6 +157,37 @@ def cell_log(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return file
 
 
+MOVERS = """
+name: plane
+axes: []
+tracks:
+  - {name: one, elements: [{from: {x: 0, y: 500}, to: {x: 400, y: 500}}]}
+  - {name: two, starts_from: [one], elements: [{from: {x: 400, y: 500}, to: {x: 900, y: 500}}]}
+movers: [{name: free, initial: {x: 60, y: 60}}, {name: rider, initial: {x: 0, y: 500}}]
+"""
+
+
+@pytest.fixture(scope="module")
+def movers_log(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Of a mover on a route, halted on its way, and another one over two tracks."""
+    directory = tmp_path_factory.mktemp("movers")
+    url = new_url()
+    file = directory / "run.lcm"
+    with running(directory, url, "--log", str(file), machine=MOVERS), takt.connect(url) as session:
+        free, rider = session.mover("free"), session.mover("rider")
+        for feedback in (session.track("one").enable(), session.track("two").enable(), free.enable(), rider.enable()):
+            feedback.wait()
+        rider.join_track(track="one").wait()
+        there = rider.move_on_track(track="two", position=300, velocity=600)
+        free.set_route(first=free.route_visit, visits=[{"x": 60 + 120 * k, "y": 60} for k in range(5)])
+        session.command("machine", "start_routes", {"velocity": 200}).wait()
+        session.wait(lambda: free.x > 200)
+        free.halt().wait()
+        free.continue_route().wait()
+        there.wait()
+    return file
+
+
 def forge(message: Any, field: str) -> None:
     """Another value in a field of one of the message's parts, or of itself."""
     owner, _, name = field.rpartition(".")
@@ -164,6 +195,40 @@ def forge(message: Any, field: str) -> None:
         message = getattr(message, owner)[-1]
     value = getattr(message, name)
     setattr(message, name, [*value[:-1], value[-1] + 1] if isinstance(value, (list, tuple)) else type(value)(value + 1))
+
+
+@pytest.mark.parametrize(
+    ("channel", "kind", "field", "said"),
+    [
+        ("takt/mover_trails/rider", msgs.mover_trail, "tracks", r"rider\.trail"),
+        ("takt/mover_routes/free", msgs.mover_route, "x", r"free\.route"),
+        ("takt/mover_routes/free", msgs.mover_route, "first", r"free\.route"),
+    ],
+)
+def test_forged_trails_and_routes_are_found(
+    movers_log: Path, tmp_path: Path, channel: str, kind: Any, field: str, said: str
+) -> None:
+    """EN-36: the tracks of a mover, and its places on the free surface; what is left out of a route is none."""
+    whole = takt.replay(movers_log)
+    assert whole.same, whole.sentence
+    forged = 0
+
+    def change(where: str, data: bytes) -> bytes:
+        nonlocal forged
+        if where != channel or forged:
+            return data
+        message = kind.decode(data)
+        if message.count < 2:
+            return data
+        forged = 1
+        forge(message, field)
+        return bytes(message.encode())
+
+    result = takt.replay(changed(movers_log, tmp_path / "changed.lcm", change))
+    assert forged
+    assert not result.same
+    assert result.wrong_states == 1
+    assert re.search(rf": {said} in cycle \d+ ", result.sentence), result.sentence
 
 
 @pytest.mark.parametrize(
