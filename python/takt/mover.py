@@ -56,8 +56,9 @@ class Mover(Component, MoverCommands, MoverOutputs):
         return TrackTrail(dict.fromkeys(tracks[number] for number in self.session._trail(self)))
 
     def surface_route(self) -> FloatArray:
-        """The places of its route over the free surface that are still before it, (n, 2) mm, the last one that it has
-        reached first; of those, `route_granted` - `route_visit` are its turn. Empty: it is not on its way."""
+        """The rest of its route over the free surface: the centres of its places, (n, 2) [mm], from the last one that
+        the mover has reached to the target. The first `route_granted` - `route_visit` behind that one are granted.
+        Empty if `on_route` is false. Over LCM a new route appears with the next message about it."""
         first, places = self.session._route(self)
         return places[min(max(self.route_visit - first, 0), len(places)) :]
 

@@ -118,8 +118,8 @@ class RemoteSession(Session):
             ("takt/feedback", self._on_feedback),
             ("takt/command", self._on_command),
             ("takt/belt_objects/.*", self._on_objects),
-            ("takt/mover_trails/.*", self._on_trail),
-            ("takt/mover_routes/.*", self._on_route),
+            ("takt/mover_trails/.*", self._keeping(msgs.mover_trail, self._trails)),
+            ("takt/mover_routes/.*", self._keeping(msgs.mover_route, self._routes)),
             ("takt/cams", self._on_cam),
             *((f"{prefix}.*", self._on_state) for prefix in PREFIXES.values()),
         ):
@@ -297,23 +297,19 @@ class RemoteSession(Session):
                         recorder.lying.look(message.name, message.cycle * self.period, objects_of(message))
                 self._hear(channel, message.sequence)
 
-    def _on_trail(self, channel: str, data: bytes) -> None:
-        message = _decoded(msgs.mover_trail, data)
-        if message is None:
-            return
-        with self._news:
-            if self._believable(message):
-                self._trails[message.name] = message
-                self._hear(channel, message.sequence)
+    def _keeping(self, kind: Any, newest: dict[str, Any]) -> Callable[[str, bytes], None]:
+        """Returns a handler that keeps the newest message of each name."""
 
-    def _on_route(self, channel: str, data: bytes) -> None:
-        message = _decoded(msgs.mover_route, data)
-        if message is None:
-            return
-        with self._news:
-            if self._believable(message):
-                self._routes[message.name] = message
-                self._hear(channel, message.sequence)
+        def take(channel: str, data: bytes) -> None:
+            message = _decoded(kind, data)
+            if message is None:
+                return
+            with self._news:
+                if self._believable(message):
+                    newest[message.name] = message
+                    self._hear(channel, message.sequence)
+
+        return take
 
     def _on_cam(self, channel: str, data: bytes) -> None:
         message = _decoded(msgs.cam_piece, data)

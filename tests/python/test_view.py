@@ -34,6 +34,7 @@ from takt.view.machine import Machine, drawn
 from takt.view.made import MadeCams
 from takt.view.protocol import MOST_SIGNALS, RequestError, frame, parse
 from takt.view.ring import Ring
+from takt.view.shapes import Routes, Shapes
 from takt.view.status import LIVE, WORDS, name_in, words
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect as connect_socket
@@ -199,6 +200,29 @@ def test_why_something_waits() -> None:
     for kind in KINDS:  # any number whatever is put into words
         words(kind, dict.fromkeys(WORDS[kind], 1), name_of)
         words(kind, dict.fromkeys(WORDS[kind], 0), name_in({}))
+
+
+def test_tracks_and_routes_are_told_once_and_damaged_ones_never() -> None:  # EN-22, PL-72
+    shapes, routes = Shapes(("lift",)), Routes()
+    shape, route = msgs.track_shape(), msgs.mover_route()
+    shape.name, shape.part, shape.count, shape.position, shape.x, shape.y = "loop", 1, 2, [0, 5], [1, 6], [2, 2]
+    route.name, route.first, route.count, route.x, route.y = "one", 7, 2, [60, 180.004], [60, 60]
+    for _ in range(2):
+        shapes.take(shape)
+        routes.take(route)
+    assert shapes.since(0) == [{"name": "loop", "part": "lift", "closed": False, "points": [0, 1, 2, 5, 6, 2]}]
+    assert routes.since(0) == [{"name": "one", "first": 7, "points": [60, 60, 180, 60]}]
+    for wrong in (math.nan, math.inf, -math.inf):
+        shape.x, route.y = [1, wrong], [wrong, 60]
+        shapes.take(shape)
+        routes.take(route)
+    shape.x = [1, 6]
+    for shape.part in (2, -1, 2**31 - 1):
+        shapes.take(shape)
+    assert (shapes.count, routes.count) == (1, 1)
+    route.count, route.x, route.y = 0, [], []
+    routes.take(route)
+    assert routes.since(1) == [{"name": "one", "first": 7, "points": []}]
 
 
 def test_cams_that_pass_by_are_known_when_they_are_whole() -> None:  # CAM-88

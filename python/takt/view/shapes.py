@@ -26,7 +26,10 @@ class Newest:
         self._known: dict[str, tuple[int, dict[str, Any]]] = {}
 
     def put(self, new: dict[str, Any]) -> None:
+        """Rejects points that are no numbers: those of a damaged message."""
         name = new["name"]
+        if not np.all(np.isfinite(new["points"])):
+            return
         if name in self._known and self._known[name][1] == new:
             return
         self.count += 1
@@ -45,6 +48,8 @@ class Shapes(Newest):
         self._parts = parts
 
     def take(self, message: msgs.track_shape) -> None:
+        if not 0 <= message.part <= len(self._parts):  # damaged
+            return
         part = self._parts[message.part - 1] if message.part else ""
         places = np.stack([message.position, message.x, message.y], axis=1) if message.count else np.empty((0, 3))
         self.put(track(message.name, part, bool(message.closed), places))
