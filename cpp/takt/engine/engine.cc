@@ -289,7 +289,8 @@ struct Engine::Impl {
     return out;
   }
 
-  // Soon after it has changed, and periodically for later subscribers. Of many that begin at once some in each cycle.
+  // Publishes each route soon after it has changed, at most kRoutesPerCycle in a cycle, and again every second for
+  // later subscribers.
   void PublishRoutes() noexcept {
     const auto repeat = static_cast<std::uint64_t>(1 / machine.cycle.period_s);  // a second
     const auto count = static_cast<std::uint32_t>(movers.divisors.size());

@@ -174,19 +174,18 @@ bool Route::Contains(std::uint32_t track) const noexcept {
   return std::ranges::find(all(), track) != all().end();
 }
 
-double LeaveBehind(const Network& network, double place, Route& route) noexcept {
-  const Road& here = network[route.first()];
-  if (here.closed) return here.length * std::floor(place / here.length);
-  double less = 0;
-  std::uint32_t gone = 0;
-  while (gone + 1 < route.count && place - less > network[route.tracks[gone]].length) {
-    less += network[route.tracks[gone++]].length;
+double LeaveBehind(const Network& network, double position, Route& route) noexcept {
+  const Road& first = network[route.first()];
+  if (first.closed) return first.length * std::floor(position / first.length);
+  double distance = 0;
+  std::uint32_t left = 0;
+  while (left + 1 < route.count && position - distance > network[route.tracks[left]].length) {
+    distance += network[route.tracks[left++]].length;
   }
-  if (gone == 0) return 0;
-  std::copy(route.tracks.begin() + gone, route.tracks.begin() + route.count, route.tracks.begin());
-  route.count -= gone;
-  std::fill(route.tracks.begin() + route.count, route.tracks.begin() + route.count + gone, 0u);
-  return less;
+  const auto end = route.tracks.begin() + route.count;
+  std::fill(std::copy(route.tracks.begin() + left, end, route.tracks.begin()), end, 0u);
+  route.count -= left;
+  return distance;
 }
 
 bool FindRoute(const Network& network, std::uint32_t from, std::uint32_t to, RouteSearch& search, Route& out) noexcept {

@@ -87,9 +87,9 @@ struct Route {
   bool operator==(const Route&) const = default;
 };
 
-// Leaves out the tracks of a route that end before a place on it, mm from the start of the first one; of a closed track
-// whole turns. Returns how much less the place is then.
-double LeaveBehind(const Network& network, double place, Route& route) noexcept;
+// Removes from a route the tracks that end before a position along it [mm]; a closed track stays. Returns the distance
+// [mm] by which positions are less then: the length of these tracks, or whole turns of the closed one.
+double LeaveBehind(const Network& network, double position, Route& route) noexcept;
 
 // Memory of a search, for as many tracks as the network has.
 struct RouteSearch {

@@ -105,9 +105,9 @@ double TimeAlone(trajectory::Planner& planner, const Network& network, Rider r) 
   double time = 0;
   KinematicState at{r.at.position, r.direction * r.at.velocity, r.direction * r.at.acceleration};
   for (int i = 0; i < kPlans; ++i) {
-    const double less = LeaveBehind(network, at.position, r.route);
-    at.position -= less;
-    if (network[r.route.first()].closed) r.target -= less;
+    const double left = LeaveBehind(network, at.position, r.route);
+    at.position -= left;
+    if (network[r.route.first()].closed) r.target -= left;
     PlanOn(planner, network, at.position, at.velocity, at.acceleration, r);
     time += r.plan.duration();
     if (r.plan_ends) return time;

@@ -48,7 +48,7 @@ double EndOfWay(const Network& network, const Rider& rider) noexcept;
 // direction. At rest the direction is that of the target.
 void PlanOn(trajectory::Planner& planner, const Network& network, double place, double speed, double acceleration,
             Rider& rider) noexcept;
-// s that the way to its target takes if nobody else is on it: of up to two plans, and TimeOfWay of the rest.
+// Returns the travel time [s] to the target without other movers: of the first two plans, and TimeOfWay for the rest.
 double TimeAlone(trajectory::Planner& planner, const Network& network, Rider rider) noexcept;
 
 }  // namespace takt::planar

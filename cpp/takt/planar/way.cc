@@ -341,16 +341,16 @@ Planned PlanWay(trajectory::Planner& planner, const Network& network, const Star
 
 namespace {
 
-// What jerk adds to the time in which a speed changes.
+// Returns the time [s] that the jerk limit adds to a change of speed.
 double AddedByJerk(double change, double acceleration, double jerk) {
   const double ramp = acceleration / jerk;
   return change > acceleration * ramp ? ramp : 2 * std::sqrt(change / jerk) - change / acceleration;
 }
 
-// Times of speeds that rise and fall, one after the other, with what jerk adds where they turn.
-class Rises {
+// The time of a sequence of speeds, with what the jerk limit adds to each stretch that only rises or only falls.
+class SpeedTimes {
  public:
-  Rises(const trajectory::Limits& limits, double speed) : limits_(limits), turned_at_(speed), speed_(speed) {}
+  SpeedTimes(const trajectory::Limits& limits, double speed) : limits_(limits), turned_at_(speed), speed_(speed) {}
 
   void To(double speed) {
     if ((speed - speed_) * (speed_ - turned_at_) < 0) Turn();
@@ -366,7 +366,8 @@ class Rises {
   void Turn() {
     const double change = std::abs(speed_ - turned_at_);
     const double acceleration = speed_ > turned_at_ ? limits_.acceleration : limits_.deceleration;
-    const double share = change / (2 * std::max({speed_, turned_at_, 1e-9}));  // that the way grows less
+    // The slower ramp covers distance, too, which is left out at the higher speed.
+    const double share = change / (2 * std::max({speed_, turned_at_, 1e-9}));
     time_ += AddedByJerk(change, acceleration, limits_.jerk) * share;
     turned_at_ = speed_;
   }
@@ -379,19 +380,19 @@ class Rises {
 
 double TimeOfWay(const Network& network, const Start& start, double way, const Pace& pace) noexcept {
   const double up = 2 * pace.limits.acceleration, down = 2 * pace.limits.deceleration;
-  Rises rises(pace.limits, start.speed);
+  SpeedTimes ramps(pace.limits, start.speed);
   Route route = *start.route;
   Start from = start;
   from.route = &route;
   constexpr int kMostParts = 16;
-  double cruise = 0, square = start.speed * start.speed, left_over = way;
-  for (int part = 0; part < kMostParts && left_over > 0; ++part) {
+  double cruise = 0, square = start.speed * start.speed, remaining = way;
+  for (int part = 0; part < kMostParts && remaining > 0; ++part) {
     from.s -= LeaveBehind(network, from.s, route);
-    const Caps caps = CapsAhead(network, from, left_over, pace);
+    const Caps caps = CapsAhead(network, from, remaining, pace);
     const bool ends = !caps.cut;
-    // Of more caps than there is room for: up to the last one.
+    // If there are more caps than Caps has room for: up to the last one, and on from there.
     const std::size_t count = ends ? caps.count : caps.count - 1;
-    const double known = ends ? left_over : caps.of[count].way;
+    const double known = ends ? remaining : caps.of[count].way;
     const auto length = [&](std::size_t k) { return (k + 1 < count ? caps.of[k + 1].way : known) - caps.of[k].way; };
     const auto cap = [&](std::size_t k) { return caps.of[k].speed * caps.of[k].speed; };
     std::array<double, kCaps + 1> squares;  // of the speeds at the borders
@@ -407,16 +408,16 @@ double TimeOfWay(const Network& network, const Start& start, double way, const P
                                      std::max(before, behind), std::max({cap(k), before, behind}));
       const double level = length(k) - (peak - before) / up - (peak - behind) / down;
       if (level > 0 && peak > 0) cruise += level / std::sqrt(peak);
-      rises.To(std::sqrt(peak));
-      rises.To(std::sqrt(behind));
+      ramps.To(std::sqrt(peak));
+      ramps.To(std::sqrt(behind));
     }
     square = squares[count];
     if (!(known > 0)) break;
-    left_over -= known;
+    remaining -= known;
     from.s += from.direction * known;
   }
-  const double time = cruise + rises.End();
-  return way > left_over ? time * way / (way - left_over) : time;
+  const double time = cruise + ramps.End();
+  return way > remaining ? time * way / (way - remaining) : time;
 }
 
 }  // namespace takt::planar

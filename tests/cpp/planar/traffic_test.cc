@@ -277,6 +277,27 @@ TEST(Traffic, SaysHowLongAWayTakes) {  // PL-12
   RecordProperty("most", std::to_string(most));
 }
 
+// On a ring the tracks behind the first plans are the same one again.
+TEST(Traffic, SaysHowLongTurnsTake) {  // PL-12
+  trajectory::Planner planner;
+  for (const double radius : {80.0, 250.0}) {
+    for (const int turns : {1, 3, 40}) {
+      Layout ring;
+      ring.closed = true;
+      ring.elements.push_back(testing::Arc({radius, 0}, {-radius, 0}, {0, 0}, false));
+      ring.elements.push_back(testing::Arc({-radius, 0}, {radius, 0}, {0, 0}, false));
+      Streets streets({ring}, 1);
+      streets.Put(0, 0, 10, testing::PaceOf(2000, 10000, 200000));
+      ASSERT_TRUE(streets.Send(
+          0,
+          {.track = 0, .position = 200, .way = Way::kPositive, .additional_turns = static_cast<std::uint32_t>(turns)}));
+      const double expected = TimeAlone(planner, streets.network(), streets[0]);
+      ASSERT_TRUE(streets.Run(300)) << turns;
+      EXPECT_NEAR(expected / streets.now(), 1, 0.1) << radius << " mm, " << turns << " turns";
+    }
+  }
+}
+
 // Two tracks that join: the first to come goes first, the other waits outside, and both go on.
 TEST(Traffic, GivesWayWhereTracksJoin) {  // PL-23, PL-24
   Layout below{{testing::Line({0, 0}, {1000, 0}), testing::Line({1300, 200}, {1600, 200})}};
