@@ -50,6 +50,7 @@ class SetPoint:
     torque_limit_nm: float = 0.0  # largest torque either way, in all modes; 0: that of the drive
     digital_outputs: int = 0  # of the axis, a bit for each
     period_s: float = 0.001  # length of a cycle
+    cycles: int = 1  # since the set point before: more where some were lost, or the computer was late
 
 
 @dataclass
@@ -139,7 +140,7 @@ class SimulatedServo(Drive):
         return Measured(**self._servo.step(told.period_s, self._told))
 
 
-_TOLD: Final = [f.name for f in fields(SetPoint)]
+_TOLD: Final = [f.name for f in fields(SetPoint) if f.name != "cycles"]
 _MEASURED: Final = [f.name for f in fields(Measured)]
 _COUNTERS: Final = ("counts", "index_counts", "index_pulses", "probe_rises", "probe_falls", "load_counts")
 
@@ -290,7 +291,9 @@ class Plant:
             if line.drive is not None:
                 line.drive.step(SetPoint(period_s=line.period_s), line.period_s)
         elif line.drive is not None and now_s - line.stepped_s >= _REST_S:
-            line.drive.step(SetPoint(period_s=line.period_s), now_s - line.stepped_s)
+            rested_s = now_s - line.stepped_s
+            off = SetPoint(period_s=line.period_s, cycles=max(1, round(rested_s / line.period_s)))
+            line.drive.step(off, rested_s)
             line.stepped_s = now_s
 
     def _refuse(self, channel: str, state: _core.TagState) -> None:
@@ -333,15 +336,19 @@ class Plant:
         self._say(f"{line.axis}: an engine has started" + ("" if message.real_time else ", in simulated time"))
 
     def _carry_out(self, line: _Line, message: msgs.drive_setpoint) -> None:
-        told = SetPoint(**{name: getattr(message, name) for name in _TOLD})
         elapsed_s = (message.cycle - line.cycle) * message.period_s
         line.real_time, line.period_s, line.heard_s = message.real_time, message.period_s, time.monotonic()
         if line.off_since_s is not None:
-            self._say(f"{line.axis}: the engine is heard again" + ("; off until it is switched on anew" * told.enable))
+            self._say(
+                f"{line.axis}: the engine is heard again" + ("; off until it is switched on anew" * message.enable)
+            )
             line.off_since_s, elapsed_s = None, message.period_s
-        line.latched = line.latched and told.enable
+        line.latched = line.latched and message.enable
+        cycles = max(1, round(elapsed_s / message.period_s))
         if line.latched:
-            told = SetPoint(period_s=message.period_s)
+            told = SetPoint(period_s=message.period_s, cycles=cycles)
+        else:
+            told = SetPoint(**{name: getattr(message, name) for name in _TOLD}, cycles=cycles)
         if line.bus is not None:
             if not line.bus.pending:
                 line.bus.since_s = line.heard_s

@@ -24,6 +24,7 @@ PERIOD_S = 0.004
 # In real time on a busy host a drive has failed that is silent for 2 s, and an engine that is for 4 s.
 PATIENT = "missing_cycles: 500\n      heartbeat_s: 0.5"
 PATIENT_WATCHDOG = 1000  # cycles
+SILENCE_S = 2.0  # without SYNC, before an emulated drive has a fault
 
 _channels = itertools.count()
 
@@ -72,7 +73,7 @@ def emulated(text: str, leave_out: Sequence[int] = (), product: int | None = Non
     nodes: list[EmulatedNode] = emulated_nodes(one, whole, text.encode(), "machine.yaml")
     with emulated_link(one["bus"]) as link:
         emulation = Emulation(link, [node for node in nodes if node.id not in leave_out], lambda _: None)
-        emulation.silence_s = 0.3  # a loaded computer
+        emulation.silence_s = SILENCE_S
         thread = threading.Thread(target=emulation.run)
         thread.start()
         try:
@@ -100,6 +101,7 @@ def run_on(kind: Callable[..., AnyBus], text: str, url: str, watchdog: int) -> I
         plant.stop()
         thread.join(LONG_S)
         bus.close()
+        print(*said, sep="\n")  # shown by pytest where a test fails
 
 
 def run(

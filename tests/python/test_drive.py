@@ -11,12 +11,13 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
+import lcm
 import numpy as np
 import pytest
 import takt
 from machines import new_url, running, taktd
 from plants import INSIDE, LONG_S, Lag, inside, only_x, outside, plant, served
-from takt import drive
+from takt import drive, msgs
 
 
 def work(session: takt.Session) -> takt.Recording:
@@ -208,3 +209,48 @@ def test_drives_on_one_wire() -> None:
     finally:
         plant.stop()
         thread.join(LONG_S)
+
+
+class Late(drive.Bus):
+    """A drive on a wire whose computer is late now and then."""
+
+    axes = ("x",)
+
+    def __init__(self) -> None:
+        self.cycles: list[int] = []
+
+    def exchange(self, told: Mapping[str, drive.SetPoint], *, real_time: bool) -> Mapping[str, drive.Measured | None]:
+        self.cycles.append(told["x"].cycles)
+        return {"x": drive.Measured()}
+
+    def idle(self, stop: Collection[str]) -> None: ...
+
+
+class Alone(drive.Drive):
+    """The same with a wire of its own."""
+
+    def __init__(self) -> None:
+        self.cycles: list[int] = []
+
+    def step(self, told: drive.SetPoint, elapsed_s: float) -> drive.Measured:
+        self.cycles.append(told.cycles)
+        assert elapsed_s == pytest.approx(told.cycles * told.period_s)
+        return drive.Measured()
+
+
+def test_drives_are_told_how_many_cycles_have_passed() -> None:
+    """EN-26: since the set point before, also where some were lost or came all at once."""
+    url = new_url()
+    network, told = lcm.LCM(url), msgs.drive_setpoint()
+    told.axis, told.run_id, told.real_time, told.period_s = "x", 1, True, 0.001
+    bus, alone = Late(), Alone()
+    for drives, buses in (({}, [bus]), ({"x": alone}, [])):
+        serving = drive.Plant(drives, url, buses=buses, watchdog=1_000_000)
+        for at_once in ([1], [2], [12], [13, 15, 40], [41]):
+            for told.cycle in at_once:
+                network.publish("takt/drive/x/setpoint", told.encode())
+            time.sleep(0.01)
+            for _ in range(10):
+                serving.handle(0.002)
+    assert bus.cycles == [1, 1, 10, 28, 1]
+    assert alone.cycles == [1, 1, 10, 1, 2, 25, 1]

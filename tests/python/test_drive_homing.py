@@ -10,6 +10,8 @@ import pytest
 import takt
 from both_buses import driven
 from machines import new_url, running
+from takt import drive
+from takt.drives.axis import DriveAxis, Heard
 from takt.drives.canopen_bus import CanopenBus
 from takt.drives.cia402 import FOLLOWING_ERROR_BIT, FOLLOWS_BIT, HOMING_START_BIT, TARGET_REACHED_BIT, Mode, State
 from takt.drives.homing import DriveHoming, Watch, homing_objects
@@ -195,6 +197,9 @@ def test_a_watch_over_homing(sense: int) -> None:
     end = "positive" if sense > 0 else "negative"
     assert said[-1] == f"it goes on behind the {end} limit switch, 29 increments by now"
     watch.begin()
+    late = [1990, 1995, 2000, 2000, 2001, 2003, 2005, 2006, 2006]  # the position is late where the switch comes on
+    assert [go(position, positive=k > 2) for k, position in enumerate(late)] == [""] * len(late)
+    watch.begin()
     assert not any(go(position, negative=position < 50) for position in range(200)), "it leaves the switch it began on"
     watch.begin()
     assert not any(go(position) for position in range(0, 5001, 10))
@@ -278,6 +283,18 @@ def test_a_short_pulse_leaves_the_wire_as_it_was() -> None:
     probe.take((None, None), 20, 10, 0.001)
     probe.take((28, 22), 30, 10, 0.001)
     assert (probe.wire, probe.rise.count, probe.fall.count) == (True, 3, 2)
+
+
+def test_a_latch_after_cycles_that_were_lost() -> None:
+    """AX-87: how long ago the edge was goes by the cycles of the engine, not by those in which the drive was heard."""
+    latch = ProbeLatch(1)
+    modes = frozenset({Mode.CYCLIC_POSITION})
+    axis = DriveAxis("x", "it", Scaling(), {}, modes, lambda _: None, probe=latch, period_s=0.001)
+    for cycles, position, stored in ((1, 0, (None, None)), (1, 40, (None, None)), (10, 440, (340, None))):
+        axis.words(drive.SetPoint(cycles=cycles), 0.0)
+        found = axis.measured(Heard(0x0237, position, 0, 0, int(Mode.CYCLIC_POSITION), stored), 0.0)
+    assert found.probe_rises == 2
+    assert found.probe_rise_age_s == pytest.approx(0.0025)
 
 
 def test_homing_and_probes_by_the_clock(tmp_path: Path) -> None:

@@ -99,7 +99,8 @@ class DriveAxis:
         self._reference: int | None = None  # increments without those jumps: where the drive counts 0
         self._off_first = False  # the reference is lost: no homing before the axis has been switched off
         self._index_pulses = 0
-        self._cycles = 0  # since something was heard
+        self._cycles = 0  # of the engine, since something was heard
+        self._asked = 0  # so often since then: on a computer that is late less than once a cycle
         self.mode = 0  # as last heard
         self._counter = Unwrapped()
         self._reset = FaultReset()
@@ -136,7 +137,8 @@ class DriveAxis:
 
         stop: the engine is lost, so the drive brakes by itself along its quick stop ramp."""
         mode = MODES.get(told.mode, Mode.NONE)
-        self._cycles += 1
+        self._cycles += told.cycles
+        self._asked += 1
         enable = told.enable and self._has(mode)
         failed = self._homing is not None and self._homing.failed != ""
         self._off_first = self._off_first and told.enable
@@ -252,7 +254,7 @@ class DriveAxis:
         self._tell_reference(at, found)
         self._tell_probe(heard, step, found)
         found.drive_ready = self.state is State.OPERATION_ENABLED and not self._homes
-        self._cycles = 0
+        self._cycles = self._asked = 0
         return found
 
     def _lose_reference(self, step: int) -> None:
@@ -270,7 +272,7 @@ class DriveAxis:
         if homing is None or homing.watch is None or not homing.under_way:
             return
         switches = {sense: getattr(found, name) != inverted for name, (sense, inverted) in self._limit_senses.items()}
-        homing.failed = homing.watch.look(at, switches, max(1, self._cycles))
+        homing.failed = homing.watch.look(at, switches, max(1, self._asked))
         if homing.failed:
             found.drive_fault = True
             self._say_homing_failed(homing)

@@ -6,6 +6,7 @@ go on as before, and is told the reference as an index pulse.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -17,6 +18,7 @@ QUIET_CYCLES: Final = 2  # in the mode without the start bit, which counts by it
 ANSWER_CYCLES: Final = 4  # from the start bit to a status word that is about it
 BRAKING_SHARE: Final = 2.0  # times the braking distance: how far behind a limit switch a drive may come to rest
 BRAKING_CYCLES: Final = 4  # and that many cycles until it brakes
+AVERAGED_SAMPLES: Final = 8  # of the speed: on a busy computer single positions are late, or come in pairs
 
 
 class Watch:
@@ -32,7 +34,8 @@ class Watch:
 
     def begin(self) -> None:
         self._from: int | None = None
-        self._before = 0
+        self._before: deque[tuple[int, int]] = deque(maxlen=AVERAGED_SAMPLES)  # positions, each with its cycle
+        self._cycle = 0
         self._edges: dict[int, tuple[int, float]] = {}  # by sense: where its switch came on, and the speed there
 
     def look(self, position: int, switches: Mapping[int, bool], cycles: int = 1) -> str:
@@ -40,9 +43,10 @@ class Watch:
 
         switches: by sense, -1 and 1, whether the limit switch at that end is on."""
         if self._from is None:
-            self._from = self._before = position
-        speed = abs(position - self._before) / (cycles * self._period_s)
-        self._before = position
+            self._from = position
+        self._cycle += cycles
+        speed = self._speed(position)
+        self._before.append((position, self._cycle))
         gone = abs(position - self._from)
         if self._most is not None and gone > self._most:
             return f"it has gone {gone} increments from where it began, more than the {self._most:.0f} of distance"
@@ -57,6 +61,12 @@ class Watch:
                 end = "positive" if sense > 0 else "negative"
                 return f"it goes on behind the {end} limit switch, {beyond} increments by now"
         return ""
+
+    def _speed(self, position: int) -> float:
+        """Of the last cycle, or on average, whichever is more; increments/s."""
+        compared = [self._before[-1], self._before[0]] if self._before else []
+        per_cycle = [abs(position - before) / (self._cycle - cycle) for before, cycle in compared]
+        return max(per_cycle, default=0.0) / self._period_s
 
 
 class DriveHoming:
