@@ -37,7 +37,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Reasons = py::array_t<std::uint8_t>;
-using Answer = std::pair<Numbers, Reasons>;
+using ValuesAndReasons = std::pair<Numbers, Reasons>;
 
 std::size_t RowsOf(const Numbers& table, std::size_t columns) {
   if (table.ndim() != 2 || static_cast<std::size_t>(table.shape(1)) != columns)
@@ -120,7 +120,7 @@ class Mechanism {
     for (std::size_t i = 0; i < axes(); ++i) kinematics_.ranges[i] = {table.data()[2 * i], table.data()[2 * i + 1]};
   }
 
-  Answer Forward(const Numbers& joints) const {
+  ValuesAndReasons Forward(const Numbers& joints) const {
     const std::size_t rows = RowsOf(joints, axes());
     Numbers poses = Table(rows, 6);
     Verdicts verdicts(rows);
@@ -147,7 +147,8 @@ class Mechanism {
     return std::tuple(poses, rates, changes, verdicts.reasons());
   }
 
-  Answer Inverse(const Numbers& poses, const Numbers& near, const std::string& configuration, bool path) const {
+  ValuesAndReasons Inverse(const Numbers& poses, const Numbers& near, const std::string& configuration,
+                           bool path) const {
     const std::size_t rows = RowsOf(poses, 6);
     Numbers joints = Table(rows, axes());
     Verdicts verdicts(rows);
@@ -182,7 +183,7 @@ class Mechanism {
     return std::tuple(joints, rates, changes, verdicts.reasons());
   }
 
-  Answer JacobianAt(const Numbers& joints) const {
+  ValuesAndReasons JacobianAt(const Numbers& joints) const {
     const std::size_t rows = RowsOf(joints, axes());
     Numbers out({rows, std::size_t{6}, axes()});
     std::fill_n(out.mutable_data(), rows * 6 * axes(), kNone);
@@ -202,7 +203,7 @@ class Mechanism {
   }
 
   // Of every link its own axis and the next one, (rows, links, 6).
-  Answer LinkPlaces(const Numbers& joints) const {
+  ValuesAndReasons LinkPlaces(const Numbers& joints) const {
     const std::size_t rows = RowsOf(joints, axes());
     const std::vector<kinematics::LinkInfo> links = kinematics::LinksOf(kinematics_);
     Numbers places({rows, links.size(), std::size_t{6}});
@@ -221,7 +222,7 @@ class Mechanism {
   }
 
   // Of every link its frame as the upper three rows of a matrix, in mm, (rows, links, 12).
-  Answer LinkFrames(const Numbers& joints) const {
+  ValuesAndReasons LinkFrames(const Numbers& joints) const {
     const std::size_t rows = RowsOf(joints, axes());
     const std::size_t count = kinematics::LinksOf(kinematics_).size();
     Numbers matrices({rows, count, std::size_t{12}});

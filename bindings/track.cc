@@ -12,11 +12,11 @@
 
 #include "bindings.h"
 #include "takt/core/maths.h"
-#include "takt/mover/streets.h"
+#include "takt/mover/track_network_state.h"
 #include "takt/planar/clearance.h"
 #include "takt/planar/nearest.h"
+#include "takt/track/pending_edits.h"
 #include "takt/track/ranges.h"
-#include "takt/track/works.h"
 
 namespace takt::bindings {
 namespace {
@@ -140,8 +140,8 @@ class Layout {
   // Computes the ranges and leads of all tracks, once.
   void MakeStreets() {
     if (streets_) return;
-    streets_ = std::make_unique<mover::Streets>(0, names());
-    std::vector<mover::TrackNow> now(tracks_.ways.size());
+    streets_ = std::make_unique<mover::TrackNetworkState>(0, names());
+    std::vector<mover::TrackView> now(tracks_.ways.size());
     for (std::size_t k = 0; k < now.size(); ++k) {
       const track::TrackParams& its = tracks_.params[k];
       now[k].way = tracks_.ways[k];
@@ -172,7 +172,7 @@ class Layout {
   engine::Machine machine_;
   planar::Parts parts_;
   track::Tracks tracks_;
-  std::unique_ptr<mover::Streets> streets_;  // made when it is asked for
+  std::unique_ptr<mover::TrackNetworkState> streets_;  // made when it is asked for
 };
 
 }  // namespace

@@ -47,7 +47,7 @@ struct Axes {
 
   std::vector<AxisParams> params;
   std::vector<State> states;
-  Surrounding machine;
+  MachineView machine;
   std::vector<FeedbackEvent> storage;
   FeedbackSink sink;
   trajectory::Planner planner;

@@ -83,7 +83,7 @@ struct Bench {
   std::vector<axis::AxisParams> params;
   std::vector<axis::State> states;
   std::vector<cam::Table> cams;
-  axis::Surrounding around;
+  axis::MachineView around;
   std::vector<FeedbackEvent> storage;
   FeedbackSink sink;
   trajectory::Planner planner;

@@ -137,7 +137,7 @@ struct Crowd {
 
 void AskFor(benchmark::State& state, bool turning) {
   const Crowd crowd(static_cast<int>(state.range(0)), turning);
-  const Surroundings around{.environment = &crowd.environment};
+  const StaticObstacles around{.environment = &crowd.environment};
   std::size_t i = 0, free = 0, asked = 0;
   std::vector<double> least(crowd.wishes.size(), INFINITY);
   for (auto _ : state) {

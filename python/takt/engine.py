@@ -355,15 +355,15 @@ class Engine(Session):
             cycles = 1
         for recorder in self._recorders:
             for belt in recorder.belts:
-                cycles = min(cycles, max(1, round(recorder.lying.due_in(belt, self.now) / self.period)))
+                cycles = min(cycles, max(1, round(recorder.belt_objects.due_in(belt, self.now) / self.period)))
         while not (made := self._core.step(min(cycles, CHUNK), until_feedback)):
             self._warn()  # external drives let it wait: time for a look at Ctrl-C, too
         self._warn()
         self._take_feedback()
         for recorder in self._recorders:
             for belt in recorder.belts:
-                if recorder.lying.is_due(belt, self.now):
-                    recorder.lying.look(belt, self.now, self._objects(self.belts[belt]))
+                if recorder.belt_objects.is_due(belt, self.now):
+                    recorder.belt_objects.look(belt, self.now, self._objects(self.belts[belt]))
         return made
 
     def _warn(self) -> None:
@@ -415,7 +415,7 @@ class Engine(Session):
             rows = core.take_table(i)
             tables[name] = base | {f: rows[f] for f in fields_of_kind(self._components[name].KIND)}
         meta = {"source": "engine", "period_s": self.period, "version": _core.__version__}
-        meta |= {"objects": recorder.lying.columns(), **self._made_cams.kept()}
+        meta |= {"objects": recorder.belt_objects.columns(), **self._made_cams.kept()}
         recording = make_recording(self.machine, tables, recorder.events, meta, self.machine_text, self._folder)
         if self.plant is not None:
             self.plant.finish(recording)

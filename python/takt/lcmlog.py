@@ -17,11 +17,11 @@ from typing import Any
 
 from takt import _core, msgs
 from takt.arguments import without_arguments
+from takt.belt_object_log import BeltObjectLog, objects_of
 from takt.counted import counted
 from takt.errors import ConfigError
 from takt.events import Event, EventLog, LogError, Progress
 from takt.figures import DROPPED, figures_of
-from takt.lying import Lying, objects_of
 from takt.made_cams import is_kept
 from takt.names import shown
 from takt.network import open_network, roomy, usual_url
@@ -492,8 +492,8 @@ def _component(target: str) -> str:
     return "" if target == "machine" else target
 
 
-def _lying(run: Run, period: float) -> Lying:
-    lying = Lying()
+def _lying(run: Run, period: float) -> BeltObjectLog:
+    lying = BeltObjectLog()
     for message in run.objects:
         lying.look(message.name, message.cycle * period, objects_of(message))
     return lying

@@ -17,13 +17,13 @@ import numpy as np
 
 from takt import _core, msgs
 from takt.belt import Belt
+from takt.belt_object_log import objects_of
 from takt.cam import Table
 from takt.component import Component
 from takt.errors import ConnectionError, TaktError
 from takt.feedback import Feedback
 from takt.figures import DROPPED, figures_of
 from takt.keys import Key, KeyFile, first_key_not_taken, no_key, not_the_key, read_key
-from takt.lying import objects_of
 from takt.mover import Mover
 from takt.network import open_network, usual_url
 from takt.recording import FloatArray, Recording
@@ -294,7 +294,7 @@ class RemoteSession(Session):
                 self._belt_objects[message.name] = message
                 for recorder in self._recorded:
                     if message.name in recorder.belts:
-                        recorder.lying.look(message.name, message.cycle * self.period, objects_of(message))
+                        recorder.belt_objects.look(message.name, message.cycle * self.period, objects_of(message))
                 self._hear(channel, message.sequence)
 
     def _keeping(self, kind: Any, newest: dict[str, Any]) -> Callable[[str, bytes], None]:
@@ -549,7 +549,7 @@ class RemoteSession(Session):
             "period_s": self.period,
             "losses": lost,
             "dropped": dropped,
-            "objects": recorder.lying.columns(),
+            "objects": recorder.belt_objects.columns(),
             **self._made_cams.kept(),
         }
         return make_recording(self.machine, tables, recorder.events, meta, self.machine_text)

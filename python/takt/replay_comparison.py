@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from takt import _core, msgs
+from takt.belt_object_log import objects_of
 from takt.lcmlog import STATES, Run
-from takt.lying import objects_of
 from takt.recording import Array
 from takt.tables import components_of, fields_of_kind, table_of
 

@@ -32,8 +32,8 @@ import numpy as np
 
 from takt import expect
 from takt.changes import text_of, value_of
-from takt.complaint import VERIFY, Complaint
 from takt.errors import CommandError, TaktError, TimeoutError
+from takt.failed_assertion import VERIFY, FailedAssertion
 from takt.judging import asserts
 from takt.names import shown
 from takt.recording import Recording
@@ -340,8 +340,8 @@ def run_scenario(scenario: Scenario, session: Session, directory: Path | None = 
 class Played:
     """What became of a scenario."""
 
-    broken_off: Complaint | None = None  # by a plain `assert`, a command that ended in an error, a wait in vain
-    ignored: Complaint | None = None  # commands that were refused without its asking
+    broken_off: FailedAssertion | None = None  # by a plain `assert`, a command that ended in an error, a wait in vain
+    ignored: FailedAssertion | None = None  # commands that were refused without its asking
 
     def keep(self, recording: Recording) -> None:
         """Puts it into the recording, which is judged by it whenever it is judged."""
@@ -352,7 +352,7 @@ class Played:
     def of(recording: Recording) -> Played:
         """What a recording says became of its scenario."""
         told = recording.meta.get(PLAYED) or {}
-        return Played(**{name: Complaint.again(one) for name, one in told.items()})
+        return Played(**{name: FailedAssertion.again(one) for name, one in told.items()})
 
 
 def play(scenario: Scenario, session: Session) -> Played:
@@ -362,11 +362,11 @@ def play(scenario: Scenario, session: Session) -> Played:
     try:
         scenario.play(session)
     except AssertionError as error:
-        return Played(Complaint.of(error, scenario.path, session.now))
+        return Played(FailedAssertion.of(error, scenario.path, session.now))
     except (CommandError, TimeoutError, RoutingError) as error:
-        return Played(Complaint.of_broken(error, scenario.path, session.now))
+        return Played(FailedAssertion.of_broken(error, scenario.path, session.now))
     ignored = [feedback for feedback in session.unheeded if id(feedback) not in before]
-    return Played(ignored=Complaint.of_ignored(ignored, scenario.path))
+    return Played(ignored=FailedAssertion.of_ignored(ignored, scenario.path))
 
 
 def verify_recording(scenario: Scenario, recording: Recording) -> Outcome:
@@ -380,7 +380,7 @@ def verify_recording(scenario: Scenario, recording: Recording) -> Outcome:
         try:
             complaint = _judge(scenario, recording, verdicts)
         except AssertionError as error:
-            complaint = Complaint.of(error, scenario.path)
+            complaint = FailedAssertion.of(error, scenario.path)
     verdict = complaint.verdict(recording) if complaint is not None else None
     if played.ignored is not None:
         judged = (verdict, *verdicts) if verdict is not None else tuple(verdicts)
@@ -388,22 +388,26 @@ def verify_recording(scenario: Scenario, recording: Recording) -> Outcome:
     return Outcome(recording, tuple(verdicts), verdict)
 
 
-def _judge(scenario: Scenario, recording: Recording, verdicts: Sequence[Verdict]) -> Complaint | None:
+def _judge(scenario: Scenario, recording: Recording, verdicts: Sequence[Verdict]) -> FailedAssertion | None:
     """Asks `verify`. The complaint that it says no, or has judged nothing."""
     folder = scenario.path.parent
     if scenario.verify is None:
         if asserts(scenario.scenario, folder):
             return None
-        return Complaint(f"nothing was judged: {shown(scenario.path.name)} has no verify(recording)", None, name=VERIFY)
+        return FailedAssertion(
+            f"nothing was judged: {shown(scenario.path.name)} has no verify(recording)", None, name=VERIFY
+        )
     answer = scenario.judge(recording)
     code = getattr(scenario.verify, "__code__", None)
     name = shown(scenario.path.name)
     where = f"{name}:{code.co_firstlineno}" if code else name
     if isinstance(answer, bool | np.bool_):
-        return None if answer else Complaint(f"verify returned False ({where})", None, name=VERIFY)
+        return None if answer else FailedAssertion(f"verify returned False ({where})", None, name=VERIFY)
     if verdicts or asserts(scenario.verify, folder):
         return None
-    return Complaint(f"nothing was judged: verify has no assertion, and returns no True ({where})", None, name=VERIFY)
+    return FailedAssertion(
+        f"nothing was judged: verify has no assertion, and returns no True ({where})", None, name=VERIFY
+    )
 
 
 @contextlib.contextmanager

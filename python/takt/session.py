@@ -19,6 +19,7 @@ from takt._commands import DEFAULTS, LEVEL_SENSITIVE
 from takt.arguments import to_text, without_arguments
 from takt.axis import Axis
 from takt.belt import Belt
+from takt.belt_object_log import BeltObjectLog
 from takt.component import Component
 from takt.counted import counted
 from takt.couplings import why_refused
@@ -27,7 +28,6 @@ from takt.errors import ClosedError, TaktError, TimeoutError, seconds, whole
 from takt.feedback import DEFAULT_TIMEOUT_S, Feedback, FeedbackState, Place
 from takt.flex_cam import FlexCam
 from takt.group import Group
-from takt.lying import Lying
 from takt.made_cams import MadeCams, SessionWithCams
 from takt.mover import Mover
 from takt.names import names_in
@@ -91,7 +91,7 @@ class Recorder:
         self.every = every
         self.events: list[tuple[float, str, str, str]] = []
         self.belts = [name for name in self.components if name in session.belts]
-        self.lying = Lying()  # on these
+        self.belt_objects = BeltObjectLog()  # on these
 
     def __repr__(self) -> str:
         ended = "lost" if self._recording is None else repr(self._recording)

@@ -14,7 +14,7 @@ from motion_curves import one_axis
 from pages import PATIENCE_S, TWO_ON_A_LOOP, needs_chromium
 from playwright.sync_api import Browser, Page, expect
 from takt import checks, report
-from takt.complaint import Complaint
+from takt.failed_assertion import FailedAssertion
 from takt.kinematics import Kinematics
 
 pytestmark = needs_chromium
@@ -157,7 +157,7 @@ def test_a_plain_assertion_has_its_curve_and_its_place(
     """And where it names nothing, at least the place, which all curves of the machine then show."""
     (mark,) = (event.time_s for event in recording.events if event.text == "it waits")
     for components, shown in (({"one"}, 1), (set(), 0)):
-        assertion = Complaint("no (a.py:1)", mark, frozenset(components), frozenset({"x"})).verdict(recording)
+        assertion = FailedAssertion("no (a.py:1)", mark, frozenset(components), frozenset({"x"})).verdict(recording)
         file = tmp_path / "report.html"
         file.write_text(report.render(recording, [], "t", assertion=assertion), encoding="utf-8")
         with opened(browser, file) as page:

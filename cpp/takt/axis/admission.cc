@@ -33,7 +33,7 @@ Status Enqueue(const Context& c, const Request& r, State& s) {
   if (all_blend) ReplanActive(c, s);  // there is more room ahead
   // Beneath what is superimposed nothing is in control: its turn has come.
   if (s.buffered == 1 && s.active.kind == RequestKind::kNone && Carries(r) && StandsBeneath(s)) {
-    const Beneath beneath(s);
+    const ScopedBaseMotion beneath(s);
     StartNext(c, 0, s);
   }
   return Status::Ok();
@@ -47,7 +47,7 @@ void ChangeJog(const Context& c, const Request& r, State& s) {
   if (s.jog_sense == 0 || !key_held) return;
   Request held = r;  // the first key wins, whatever the other one does
   held.forward = s.jog_sense > 0;
-  const Beneath base(s);
+  const ScopedBaseMotion base(s);
   Plan plan;
   if (PlanJog(c, held, s, plan).failed()) return;
   StartMotion(plan, FromCycleBefore(c), s);
@@ -88,7 +88,7 @@ bool KeepsPlace(const Request& r, const State& s) {
 
 // Changes the command in control (AX-111): what waits behind it and what is on top of it stay.
 Status Change(const Context& c, const Request& r, State& s) {
-  const Beneath base(s);
+  const ScopedBaseMotion base(s);
   if (FollowsDemand(r.kind)) {
     if (const Status status = MayFollow(c, r, s); status.failed()) return status;
     const bool gear = r.kind == RequestKind::kGearIn || r.kind == RequestKind::kCombineAxes;
@@ -102,7 +102,7 @@ Status Change(const Context& c, const Request& r, State& s) {
     return Status::Ok();
   }
   Plan plan;
-  const Surroundings around = SurroundingsOf(c, s);
+  const PlanningContext around = SurroundingsOf(c, s);
   const Status status = PlanRequest(c.params, around, c.planner, s.setpoint, r, BlendingQueue(s), plan);
   if (status.failed()) return status;
   if (r.positions() && !Inside(c.params.limits, plan.target + AddedAtEnd(s))) {

@@ -273,7 +273,7 @@ bool FollowNow(const Context& c, State& s) {
 }
 
 // Masters, a table over time or another component give the set point.
-void FollowDemand(const Context& c, State& s) {
+void FollowSource(const Context& c, State& s) {
   const KinematicState before = s.setpoint;
   const bool coupled = Couples(s.active.kind);
   const bool table = FollowsTable(s.active.kind);
@@ -305,7 +305,7 @@ void MoveOne(const Context& c, State& s) {
   // The drive follows a torque, the set point the axis.
   if ((s.active.kind == RequestKind::kTorqueControl || s.torque.engaged) && MoveTorque(c, s)) return;
   if (FollowsDemand(s.active.kind)) [[unlikely]]
-    return FollowDemand(c, s);
+    return FollowSource(c, s);
   Advance(c, s);
   if (s.homing.stage != HomingStage::kNone) StepHoming(c, s);
 }
@@ -442,7 +442,7 @@ void Move(const Context& c, State& s) noexcept {
   if (s.pulsing) WatchPulse(c, s);
   if (s.stops.count > 0) FollowStops(c, s);
   if (s.superimposed && LostMasters(c, s)) AbortOverlay(c, FeedbackState::kError, ErrorId::kAxisFault, s);
-  std::optional<Beneath> base;
+  std::optional<ScopedBaseMotion> base;
   if (s.superimposed) base.emplace(s);
   MoveOne(c, s);
   if (base) {

@@ -28,7 +28,7 @@ struct OutsideMaster {
 };
 
 // What there is in a machine besides one axis, to be looked up by number or name.
-struct Surrounding {
+struct MachineView {
   // Of all axes. Masters that step before an axis are of the same cycle.
   std::span<const State> states{};
   std::span<const AxisParams> params{};
@@ -36,7 +36,7 @@ struct Surrounding {
   std::span<const cam::Table> cams{};
   std::span<const OutsideMaster> outside{};  // as masters they are numbered behind all axes
 };
-inline constexpr Surrounding kAlone{};
+inline constexpr MachineView kAlone{};
 
 // What every stage gets besides the axis itself. It is made anew for every axis and stage, so it holds little.
 struct Context {
@@ -45,7 +45,7 @@ struct Context {
   trajectory::Planner& planner;
   FeedbackSink& feedback;
   const State* master = nullptr;  // of an axis that follows another from load on: its state of the same cycle
-  const Surrounding& machine = kAlone;
+  const MachineView& machine = kAlone;
 };
 
 // As it stands when power comes on.

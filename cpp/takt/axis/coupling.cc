@@ -439,7 +439,7 @@ bool IsKnown(const State& master, MasterSource source) noexcept {
   return heard && (master.loop_closed || master.error == ErrorId::kNone);
 }
 
-std::uint32_t FindMaster(const Surrounding& machine, std::string_view name) noexcept {
+std::uint32_t FindMaster(const MachineView& machine, std::string_view name) noexcept {
   const std::uint32_t axis = FindAxis(machine.params, name);
   if (axis != kNoAxis) return axis;
   const auto found = std::ranges::find(machine.outside, name, &OutsideMaster::name);
@@ -576,12 +576,12 @@ bool FollowMasters(const Context& c, State& s) noexcept {
   }
   demand.position -= s.origin;
   k.phase_now = phase.position;
-  const trajectory::Chaser chaser = {c.params.planner_limits(), c.planner, s.active.limits(), c.cycle.period_s};
+  const trajectory::DemandFollower chaser = {c.params.planner_limits(), c.planner, s.active.limits(), c.cycle.period_s};
   if (k.locked) {
     if (begun) demand.position += k.chase.offset;
-    s.setpoint = Chase(chaser, trajectory::ChaseMode::kPosition, s.setpoint, demand, k.chase);
+    s.setpoint = FollowDemand(chaser, trajectory::DemandMode::kPosition, s.setpoint, demand, k.chase);
   } else {
-    s.setpoint = Chase(chaser, trajectory::ChaseMode::kVelocity, s.setpoint, demand, k.chase);
+    s.setpoint = FollowDemand(chaser, trajectory::DemandMode::kVelocity, s.setpoint, demand, k.chase);
     k.locked = k.chase.in_step;
   }
   const auto near = [&] { return k.locked && std::abs(s.setpoint.position - demand.position) <= Blur(c, s); };

@@ -11,7 +11,7 @@
 #include "takt/core/cycle.h"
 #include "takt/core/feedback.h"
 #include "takt/core/status.h"
-#include "takt/trajectory/chase.h"
+#include "takt/trajectory/demand_follower.h"
 #include "takt/trajectory/profile.h"
 #include "takt/trajectory/quintic.h"
 
@@ -19,7 +19,7 @@ namespace takt::axis {
 
 struct Context;
 struct State;
-struct Surrounding;
+struct MachineView;
 
 // How far the way into step has come (GearInPos, CamIn).
 enum class Joining : std::uint8_t {
@@ -40,7 +40,7 @@ inline constexpr std::size_t kAddedCams = 3;
 
 struct CouplingState {
   CouplingRequest law;  // in force
-  trajectory::ChaseState chase;
+  trajectory::DemandFollowerState chase;
   bool filtered = false;  // a master is measured and has a filter
   bool in_step = false;   // with the masters, as far as they are known
   bool locked = false;    // followed by place: gears and sums are from when they were in step first
@@ -73,7 +73,7 @@ inline bool Couples(RequestKind kind) noexcept {
 // reset: how far the master moves meanwhile is not known.
 bool IsKnown(const State& master, MasterSource source) noexcept;
 // The number of an axis, or of what else can be followed; kNoAxis: there is none of that name.
-std::uint32_t FindMaster(const Surrounding& machine, std::string_view name) noexcept;
+std::uint32_t FindMaster(const MachineView& machine, std::string_view name) noexcept;
 // Whether the command in control or a buffered one follows this table.
 bool UsesTable(const State& state, std::uint32_t index) noexcept;
 // Finds the masters and the table of a request. kUnknownTarget: there is no such axis, or no such table.

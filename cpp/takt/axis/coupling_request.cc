@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "takt/axis/request_maker.h"
+#include "takt/axis/request_builder.h"
 
 namespace takt::axis {
 
@@ -13,7 +13,7 @@ struct RatioFields {
   const char* denominator;
 };
 
-bool Ratio(const Maker& m, const RatioFields& names, double numerator, double denominator, double& out) {
+bool Ratio(const RequestBuilder& m, const RatioFields& names, double numerator, double denominator, double& out) {
   out = numerator / denominator;
   return m.In(names.numerator, numerator, -kMaxPosition, kMaxPosition) &&
          m.In(names.denominator, denominator, std::numeric_limits<double>::min(), kMaxPosition) &&
@@ -24,7 +24,7 @@ constexpr RatioFields kRatio = {"ratio_numerator", "ratio_denominator"};
 constexpr RatioFields kRatio1 = {"ratio_numerator1", "ratio_denominator1"};
 constexpr RatioFields kRatio2 = {"ratio_numerator2", "ratio_denominator2"};
 
-bool Term(const Maker& m, const Name& name, MasterSource source, double ratio, CouplingTerm& out) {
+bool Term(const RequestBuilder& m, const Name& name, MasterSource source, double ratio, CouplingTerm& out) {
   out.name = name;
   out.source = source;
   out.ratio = ratio;
@@ -35,7 +35,7 @@ bool Term(const Maker& m, const Name& name, MasterSource source, double ratio, C
   return true;
 }
 
-bool Filter(const Maker& m, const std::optional<double>& filter_s, CouplingTerm& out) {
+bool Filter(const RequestBuilder& m, const std::optional<double>& filter_s, CouplingTerm& out) {
   constexpr double kLongest = 10;  // s
   if (filter_s) out.filter_s = *filter_s;
   return m.In("master_filter", filter_s.value_or(0), 0, kLongest);
@@ -43,7 +43,7 @@ bool Filter(const Maker& m, const std::optional<double>& filter_s, CouplingTerm&
 
 }  // namespace
 
-bool Fill(const Maker& m, const GearIn& c) {
+bool Fill(const RequestBuilder& m, const GearIn& c) {
   m.r.kind = RequestKind::kGearIn;
   m.r.buffer_mode = c.buffer_mode;
   m.r.velocity = m.params.limits.velocity;
@@ -53,7 +53,7 @@ bool Fill(const Maker& m, const GearIn& c) {
          Filter(m, c.master_filter, m.r.coupling.terms[0]) && m.Ramps(c);
 }
 
-bool Fill(const Maker& m, const GearInPos& c) {
+bool Fill(const RequestBuilder& m, const GearInPos& c) {
   m.r.kind = RequestKind::kGearInPos;
   m.r.buffer_mode = c.buffer_mode;
   CouplingRequest& out = m.r.coupling;
@@ -74,7 +74,7 @@ bool Fill(const Maker& m, const GearInPos& c) {
          m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
 }
 
-bool Fill(const Maker& m, const CombineAxes& c) {
+bool Fill(const RequestBuilder& m, const CombineAxes& c) {
   m.r.kind = RequestKind::kCombineAxes;
   m.r.buffer_mode = c.buffer_mode;
   double first = 0;
@@ -90,13 +90,13 @@ bool Fill(const Maker& m, const CombineAxes& c) {
          m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
 }
 
-bool Fill(const Maker& m, const CamTableSelect& c) {
+bool Fill(const RequestBuilder& m, const CamTableSelect& c) {
   m.r.table.name = c.cam;
   if (c.cam.empty()) m.why.field = "cam";
   return !c.cam.empty();
 }
 
-bool Fill(const Maker& m, const CamIn& c) {
+bool Fill(const RequestBuilder& m, const CamIn& c) {
   m.r.kind = RequestKind::kCamIn;
   m.r.buffer_mode = c.buffer_mode;
   if (c.start_mode > CamStart::kRampIn || c.cam.empty()) {
@@ -126,7 +126,7 @@ bool Fill(const Maker& m, const CamIn& c) {
          (c.start_mode == CamStart::kRampIn ? takes_ramps(c) : takes_ramps(CamIn{}));
 }
 
-bool Fill(const Maker& m, const CamAdd& c) {
+bool Fill(const RequestBuilder& m, const CamAdd& c) {
   if (c.cam.empty()) m.why.field = "cam";
   m.r.table = {.name = c.cam, .index = kNoTable, .time_scale = 1, .scale = c.slave_scaling, .offset = c.slave_offset};
   m.r.coupling.periodic = c.periodic;
@@ -136,12 +136,12 @@ bool Fill(const Maker& m, const CamAdd& c) {
          m.In("slave_scaling", c.slave_scaling, -kMaxPosition, kMaxPosition);
 }
 
-bool Fill(const Maker& m, const GearOut&) {
+bool Fill(const RequestBuilder& m, const GearOut&) {
   m.r.kind = RequestKind::kLetGo;
   return m.Braking(Halt{});
 }
 
-bool Fill(const Maker& m, const CamOut&) {
+bool Fill(const RequestBuilder& m, const CamOut&) {
   return Fill(m, GearOut{});
 }
 
@@ -149,7 +149,7 @@ namespace {
 
 // The limits of a shift are in the master's unit: the axis' own say nothing about them but that they are finite.
 template <typename T>
-bool Shift(const Maker& m, const T& c) {
+bool Shift(const RequestBuilder& m, const T& c) {
   const auto above_zero = [&](const char* field, const std::optional<double>& value) {
     return !value || m.In(field, *value, std::numeric_limits<double>::min(), kMaxPosition);
   };
@@ -160,10 +160,10 @@ bool Shift(const Maker& m, const T& c) {
 
 }  // namespace
 
-bool Fill(const Maker& m, const PhasingAbsolute& c) {
+bool Fill(const RequestBuilder& m, const PhasingAbsolute& c) {
   return Shift(m, c);
 }
-bool Fill(const Maker& m, const PhasingRelative& c) {
+bool Fill(const RequestBuilder& m, const PhasingRelative& c) {
   return Shift(m, c);
 }
 

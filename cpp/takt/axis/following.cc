@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "takt/axis/coordinates.h"
-#include "takt/axis/request_maker.h"
+#include "takt/axis/request_builder.h"
 #include "takt/axis/sequence.h"
 
 namespace takt::axis {
@@ -282,7 +282,7 @@ bool Bars(const Context& c, const State& s, int sense) noexcept {
   return bars;
 }
 
-bool Fill(const Maker& m, const Straighten& straighten) {
+bool Fill(const RequestBuilder& m, const Straighten& straighten) {
   double velocity = 0;
   return m.Take("velocity", straighten.velocity, m.params.limits.velocity, velocity);
 }

@@ -73,9 +73,9 @@ void FollowGuidance(const Context& c, State& s) noexcept {
   const trajectory::Limits own = c.params.planner_limits();
   KinematicState demand = s.guidance.demand;
   demand.position -= s.origin;
-  trajectory::ChaseState& chase = s.guidance.chase;
-  s.setpoint =
-      Chase({own, c.planner, own, c.cycle.period_s}, trajectory::ChaseMode::kPosition, s.setpoint, demand, chase);
+  trajectory::DemandFollowerState& chase = s.guidance.chase;
+  s.setpoint = FollowDemand({own, c.planner, own, c.cycle.period_s}, trajectory::DemandMode::kPosition, s.setpoint,
+                            demand, chase);
   s.limited_by = HeldBackBy(own, demand, s.setpoint, chase.in_step);
   if (!AtRest(s)) s.motion.arrived_cycle = c.cycle.count;
 }

@@ -5,7 +5,7 @@
 #include "takt/core/feedback.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
-#include "takt/trajectory/chase.h"
+#include "takt/trajectory/demand_follower.h"
 #include "takt/trajectory/limits.h"
 
 namespace takt::axis {
@@ -13,11 +13,11 @@ namespace takt::axis {
 struct Context;
 struct State;
 
-// The component writes `demand` before the axis moves; the axis follows it within its limits (trajectory/chase.h). A
-// demand that they allow is taken bit for bit.
+// The component writes `demand` before the axis moves; the axis follows it within its limits
+// (trajectory/demand_follower.h). A demand that they allow is taken bit for bit.
 struct GuidanceState {
   KinematicState demand;  // over all turns: position + origin
-  trajectory::ChaseState chase;
+  trajectory::DemandFollowerState chase;
   // In a fault with the loop closed the axis goes on by the set points, which the component brings to rest; else it
   // brakes by itself.
   bool brakes_with_others = false;

@@ -338,7 +338,7 @@ Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) no
   if (r.kind == RequestKind::kFinishHoming && r.value != 0) {
     Request leave = r;
     leave.kind = RequestKind::kMoveRelative;
-    Surroundings around = SurroundingsOf(c, s);
+    PlanningContext around = SurroundingsOf(c, s);
     around.factors = {};
     const Status status = PlanRequest(c.params, around, c.planner, s.setpoint, leave, {}, plan);
     if (status.failed()) return status;

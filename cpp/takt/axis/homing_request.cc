@@ -1,13 +1,13 @@
 #include "takt/axis/homing_request.h"
 
-#include "takt/axis/request_maker.h"
+#include "takt/axis/request_builder.h"
 
 namespace takt::axis {
 
 namespace {
 
 template <typename T>
-bool Search(const Maker& m, RequestKind kind, const T& c) {
+bool Search(const RequestBuilder& m, RequestKind kind, const T& c) {
   m.r.kind = kind;
   m.r.homing.direction = c.direction;
   m.r.homing.time_limit = c.time_limit;
@@ -24,7 +24,7 @@ bool Search(const Maker& m, RequestKind kind, const T& c) {
 }
 
 template <typename T>
-bool SwitchSearch(const Maker& m, RequestKind kind, const T& c) {
+bool SwitchSearch(const RequestBuilder& m, RequestKind kind, const T& c) {
   m.r.homing.switch_mode = c.switch_mode;
   m.r.homing.sets_position = c.set_position.has_value();
   m.r.homing.set_position = c.set_position.value_or(0);
@@ -36,13 +36,13 @@ bool SwitchSearch(const Maker& m, RequestKind kind, const T& c) {
 }
 
 // Without a switch there is nothing that could choose the direction.
-bool OneWay(const Maker& m, HomingDirection direction) {
+bool OneWay(const RequestBuilder& m, HomingDirection direction) {
   const bool good = direction == HomingDirection::kPositive || direction == HomingDirection::kNegative;
   if (!good) m.why.field = "direction";
   return good;
 }
 
-bool Position(const Maker& m, double position) {
+bool Position(const RequestBuilder& m, double position) {
   m.r.homing.set_position = position;
   return m.In("set_position", position, -kMaxPosition, kMaxPosition);
 }
@@ -65,7 +65,7 @@ Step StepOf(const HomingParams& h, const Home& c) {
 }
 
 template <typename Step>
-bool HomeBySwitch(const Maker& m, const Home& c) {
+bool HomeBySwitch(const RequestBuilder& m, const Home& c) {
   const HomingParams& h = m.params.homing;
   Step step = StepOf<Step>(h, c);
   step.switch_mode = h.switch_mode;
@@ -79,7 +79,7 @@ bool HomeBySwitch(const Maker& m, const Home& c) {
 
 }  // namespace
 
-bool Fill(const Maker& m, const Home& c) {
+bool Fill(const RequestBuilder& m, const Home& c) {
   const HomingParams& h = m.params.homing;
   if (!Position(m, c.position)) return false;
   switch (h.method) {
@@ -104,42 +104,42 @@ bool Fill(const Maker& m, const Home& c) {
   return false;
 }
 
-bool Fill(const Maker& m, const StepAbsSwitch& c) {
+bool Fill(const RequestBuilder& m, const StepAbsSwitch& c) {
   return SwitchSearch(m, RequestKind::kStepAbsSwitch, c);
 }
 
-bool Fill(const Maker& m, const StepLimitSwitch& c) {
+bool Fill(const RequestBuilder& m, const StepLimitSwitch& c) {
   return SwitchSearch(m, RequestKind::kStepLimitSwitch, c);
 }
 
-bool Fill(const Maker& m, const StepBlock& c) {
+bool Fill(const RequestBuilder& m, const StepBlock& c) {
   m.r.homing.deviation = c.deviation;
   const double largest = m.params.supervision.deviation_moving.value_or(kMaxPosition);
   return OneWay(m, c.direction) && m.In("deviation", c.deviation, std::numeric_limits<double>::min(), largest) &&
          Position(m, c.set_position) && Search(m, RequestKind::kStepBlock, c);
 }
 
-bool Fill(const Maker& m, const StepRefPulse& c) {
+bool Fill(const RequestBuilder& m, const StepRefPulse& c) {
   return OneWay(m, c.direction) && Position(m, c.set_position) && Search(m, RequestKind::kStepRefPulse, c);
 }
 
-bool Fill(const Maker& m, const StepDistanceCoded& c) {
+bool Fill(const RequestBuilder& m, const StepDistanceCoded& c) {
   return OneWay(m, c.direction) && Search(m, RequestKind::kStepDistanceCoded, c);
 }
 
-bool Fill(const Maker& m, const StepDirect& c) {
+bool Fill(const RequestBuilder& m, const StepDirect& c) {
   m.r.kind = RequestKind::kStepDirect;
   m.r.buffer_mode = c.buffer_mode;
   return Position(m, c.set_position);
 }
 
-bool Fill(const Maker& m, const StepAbsolute& c) {
+bool Fill(const RequestBuilder& m, const StepAbsolute& c) {
   m.r.kind = RequestKind::kStepAbsolute;
   m.r.buffer_mode = c.buffer_mode;
   return true;
 }
 
-bool Fill(const Maker& m, const FinishHoming& c) {
+bool Fill(const RequestBuilder& m, const FinishHoming& c) {
   m.r.kind = RequestKind::kFinishHoming;
   m.r.buffer_mode = c.buffer_mode;
   m.r.value = c.distance;
@@ -150,14 +150,14 @@ bool Fill(const Maker& m, const FinishHoming& c) {
 namespace {
 
 template <typename T>
-bool Flying(const Maker& m, const T& c) {
+bool Flying(const RequestBuilder& m, const T& c) {
   return m.In("set_position", c.set_position, -kMaxPosition, kMaxPosition) &&
          m.In("time_limit", c.time_limit, 0, kMaxPosition) && m.In("distance_limit", c.distance_limit, 0, kMaxPosition);
 }
 
 }  // namespace
 
-bool Fill(const Maker& m, const StepRefFlyingSwitch& c) {
+bool Fill(const RequestBuilder& m, const StepRefFlyingSwitch& c) {
   if (c.switch_mode > SwitchMode::kEdgeSwitchNegative) {
     m.why.field = "switch_mode";
     return false;
@@ -165,7 +165,7 @@ bool Fill(const Maker& m, const StepRefFlyingSwitch& c) {
   return Flying(m, c);
 }
 
-bool Fill(const Maker& m, const StepRefFlyingRefPulse& c) {
+bool Fill(const RequestBuilder& m, const StepRefFlyingRefPulse& c) {
   return Flying(m, c);
 }
 

@@ -7,8 +7,8 @@
 #include "takt/axis/fit.h"
 #include "takt/axis/following.h"
 #include "takt/axis/overlay_plan.h"
-#include "takt/axis/promise.h"
-#include "takt/axis/request_maker.h"
+#include "takt/axis/overshoot_guard.h"
+#include "takt/axis/request_builder.h"
 #include "takt/axis/sequence.h"
 #include "takt/core/describe.h"
 
@@ -164,7 +164,7 @@ void PlanAgain(const Context& c, const KinematicState& added, State& s) {
   Request r = Overridden(c, o);
   const bool ahead = added.velocity * (o.target - added.position) > 0;
   if (overridden && ahead && !StopsBy(added, r.limits(), o.target)) {
-    r = Strengthened(c.params, added, r, {o.target, true});
+    r = WithStrongerRamps(c.params, added, r, {o.target, true});
   }
   if (PlanRest(c, o, added, r.limits(), 0, s, o.profile).ok()) o.start_cycle = c.cycle.count;
 }
@@ -232,7 +232,7 @@ KinematicState NextSetpoint(const Context& c, const KinematicState& before, Stat
   const KinematicState demand = Plus(o.base, added);
   const Limits own = c.params.planner_limits();
   const KinematicState next =
-      Chase({own, c.planner, own, c.cycle.period_s}, trajectory::ChaseMode::kPosition, before, demand, o.chase);
+      FollowDemand({own, c.planner, own, c.cycle.period_s}, trajectory::DemandMode::kPosition, before, demand, o.chase);
   o.limited_by = WhatHoldsBack(own, demand, o);
   const bool other = o.base_start_cycle != s.motion.start_cycle || o.base_start_offset_s != s.motion.start_offset_s;
   if (other || o.factors != s.override_factors) PlanAgain(c, added, s);
@@ -241,15 +241,15 @@ KinematicState NextSetpoint(const Context& c, const KinematicState& before, Stat
 
 }  // namespace
 
-Beneath::Beneath(State& state) noexcept : state_(state) {
+ScopedBaseMotion::ScopedBaseMotion(State& state) noexcept : state_(state) {
   Swap();
 }
 
-Beneath::~Beneath() {
+ScopedBaseMotion::~ScopedBaseMotion() {
   Swap();
 }
 
-void Beneath::Swap() noexcept {
+void ScopedBaseMotion::Swap() noexcept {
   if (state_.superimposed) std::swap(state_.setpoint, state_.overlay.base);
 }
 
@@ -300,12 +300,12 @@ double AddedAtEnd(const State& s) noexcept {
   return s.superimposed ? s.overlay.target : 0;
 }
 
-bool Fill(const Maker& m, const MoveSuperimposed& c) {
+bool Fill(const RequestBuilder& m, const MoveSuperimposed& c) {
   return m.In("distance", c.distance, -kMaxPosition, kMaxPosition) &&
          m.Take("velocity_difference", c.velocity_difference, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
 }
 
-bool Fill(const Maker& m, const HaltSuperimposed& c) {
+bool Fill(const RequestBuilder& m, const HaltSuperimposed& c) {
   return m.Braking(c);
 }
 
@@ -322,7 +322,7 @@ Status CarryOut(const Context& c, Ticket ticket, const MoveSuperimposed& command
   if (!EndsInside(c, target, s)) return Status::Failed(ErrorId::kTargetBehindLimit);
   Request r;
   Refusal why;
-  Fill(Maker{c.params, r, why}, command);
+  Fill(RequestBuilder{c.params, r, why}, command);
   OverlayState planned;
   planned.factors = s.override_factors;
   planned.target = target;
@@ -347,7 +347,7 @@ Status CarryOut(const Context& c, Ticket ticket, const HaltSuperimposed& command
   }
   Request r;
   Refusal why;
-  Fill(Maker{c.params, r, why}, command);
+  Fill(RequestBuilder{c.params, r, why}, command);
   const KinematicState from = AddedMotion(c, s);
   OverlayState planned;
   if (const Status status = PlanHalt(c, from, r.limits(), s, planned.profile); status.failed()) return status;

@@ -4,10 +4,11 @@
 // The axis has two set points then: that of the motion beneath, as if nothing lay on top of it, and that of the axis,
 // which follows the sum of both. Invariants, whatever both motions are:
 //   - Every set point of the axis keeps its velocity, acceleration, deceleration and jerk, and continues the one before
-//     (trajectory/chase.h). Where the sum does so itself, it is taken bit for bit; else the axis lags behind the sum,
-//     `limited_by` says why, and it catches up as soon as the limits leave room.
+//     (trajectory/demand_follower.h). Where the sum does so itself, it is taken bit for bit; else the axis lags behind
+//     the sum, `limited_by` says why, and it catches up as soon as the limits leave room.
 //   - The motion beneath is what it would be alone: its command is done when it would be done alone.
-//   - From every set point a stop ends inside the SW limits. Beneath a motion with an end the axis waits before them;
+//   - From every set point a stop ends inside the SW limits. Beneath a motion with an end the axis waits
+//   before them;
 //     beneath one without, they are the fault they would be for that motion alone.
 //   - The distance is done when all of it is added and the axis is in step with the sum. It is then made part of the
 //     motion beneath, which ends so much further on: the axis ends at its end + distance, exactly. Commands that
@@ -28,7 +29,7 @@
 #include "takt/core/feedback.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
-#include "takt/trajectory/chase.h"
+#include "takt/trajectory/demand_follower.h"
 #include "takt/trajectory/profile.h"
 
 namespace takt::axis {
@@ -43,7 +44,7 @@ struct OverlayState {
   std::uint64_t start_cycle = 0;
   std::uint64_t base_start_cycle = 0;  // of the motion beneath for which it was planned ...
   double base_start_offset_s = 0;      // ... and s
-  trajectory::ChaseState chase;
+  trajectory::DemandFollowerState chase;
   Ticket ticket = 0;
   Override factors;    // for which it was planned
   double target = 0;   // u, what is to be added in all
@@ -60,12 +61,12 @@ struct OverlayState {
 
 // For what concerns the motion beneath alone: while it lives, `setpoint` is that motion's. Without a motion on top it
 // does nothing. Not to be nested; nothing in its scope may end the motion on top.
-class Beneath {
+class ScopedBaseMotion {
  public:
-  explicit Beneath(State& state) noexcept;
-  ~Beneath();
-  Beneath(const Beneath&) = delete;
-  Beneath& operator=(const Beneath&) = delete;
+  explicit ScopedBaseMotion(State& state) noexcept;
+  ~ScopedBaseMotion();
+  ScopedBaseMotion(const ScopedBaseMotion&) = delete;
+  ScopedBaseMotion& operator=(const ScopedBaseMotion&) = delete;
 
  private:
   void Swap() noexcept;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "takt/axis/request_maker.h"
+#include "takt/axis/request_builder.h"
 #include "takt/axis/sequence.h"
 
 namespace takt::axis {
@@ -71,7 +71,7 @@ void describe(Description<Override>& d) {
   d.internal<&O::jerk>("Of the jerk.");
 }
 
-bool Fill(const Maker& m, const SetOverride& o) {
+bool Fill(const RequestBuilder& m, const SetOverride& o) {
   const double slowest = o.velocity_factor == 0 ? 0 : kSmallestFactor;
   return m.In("velocity_factor", o.velocity_factor, slowest, kLargestFactor) &&
          m.In("acceleration_factor", o.acceleration_factor, kSmallestFactor, kLargestFactor) &&

@@ -6,7 +6,7 @@
 
 #include "takt/axis/fit.h"
 #include "takt/axis/look_ahead.h"
-#include "takt/axis/promise.h"
+#include "takt/axis/overshoot_guard.h"
 
 namespace takt::axis {
 
@@ -188,7 +188,7 @@ bool PlanRun(Planner& planner, const KinematicState& from, double target, const 
 }
 
 // From `from` on to what the request asks for, with its own limits; positions: to `out.target`.
-Status PlanOn(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+Status PlanOn(const AxisParams& params, const PlanningContext& around, Planner& planner, const KinematicState& from,
               const Request& request, const LookAhead& ahead, Plan& out) {
   const Limits limits = request.limits();
   if (request.kind == RequestKind::kMoveVelocity) {
@@ -231,7 +231,7 @@ Demands DemandsOn(const Request& request) {
 }
 
 // The first opening with which the plan keeps what it must; if none does, the strongest.
-Status PlanOpened(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+Status PlanOpened(const AxisParams& params, const PlanningContext& around, Planner& planner, const KinematicState& from,
                   const Request& request, const LookAhead& ahead, Plan& out) {
   const bool endless = request.kind == RequestKind::kMoveVelocity;
   LimitedBy broken = LimitedBy::kNothing;
@@ -251,12 +251,13 @@ Status PlanOpened(const AxisParams& params, const Surroundings& around, Planner&
 }
 
 // What of the motion in progress a request must keep.
-Promises KeptFor(const Surroundings& around, const KinematicState& from, const Request& request, double target) {
+OvershootGuard KeptFor(const PlanningContext& around, const KinematicState& from, const Request& request,
+                       double target) {
   const double sense = SenseOfTravel(from);
   const bool stops = request.kind == RequestKind::kHalt || request.kind == RequestKind::kStop;
   const bool onwards =
       request.positions() ? sense * (target - from.position) >= 0 : SenseOf(request, around.last_sense) == int(sense);
-  Promises kept;
+  OvershootGuard kept;
   kept.straight = (around.again || around.committed || around.furthest) && onwards;
   if (around.committed && request.positions()) kept.furthest = target;
   const bool beyond = around.furthest && sense * (target - *around.furthest) > Rounding(target);
@@ -265,11 +266,11 @@ Promises KeptFor(const Surroundings& around, const KinematicState& from, const R
 }
 
 // With ramps that keep what was promised: those of the request, or stronger ones.
-Status PlanKept(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-                const Request& request, const LookAhead& ahead, const Promises& kept, Plan& out) {
+Status PlanKept(const AxisParams& params, const PlanningContext& around, Planner& planner, const KinematicState& from,
+                const Request& request, const LookAhead& ahead, const OvershootGuard& kept, Plan& out) {
   const Status status = PlanOpened(params, around, planner, from, request, ahead, out);
-  if (status.failed() || !BreaksPromise(params, kept, out.profile)) return status;
-  const Request stronger = Strengthened(params, from, request, kept);
+  if (status.failed() || !BreaksGuard(params, kept, out.profile)) return status;
+  const Request stronger = WithStrongerRamps(params, from, request, kept);
   Plan plan{.profile = {}, .target = out.target};
   if (PlanOpened(params, around, planner, from, stronger, ahead, plan).failed()) return status;
   out = plan;
@@ -278,14 +279,14 @@ Status PlanKept(const AxisParams& params, const Surroundings& around, Planner& p
 }
 
 // Where the commands behind the one in control come to rest, if the motion in progress already runs on towards that.
-std::optional<double> PassingTo(const Surroundings& around, const LookAhead& ahead) {
+std::optional<double> PassingTo(const PlanningContext& around, const LookAhead& ahead) {
   return around.passes && ahead.blends ? ahead.stops_at : std::nullopt;
 }
 
 // Past the target so that the move behind it can still stop where it was promised to.
-void PlanPassing(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-                 const Request& request, const LookAhead& ahead, const Promises& kept, Plan& out) {
-  const Request stronger = Strengthened(params, from, request, kept);
+void PlanPassing(const AxisParams& params, const PlanningContext& around, Planner& planner, const KinematicState& from,
+                 const Request& request, const LookAhead& ahead, const OvershootGuard& kept, Plan& out) {
+  const Request stronger = WithStrongerRamps(params, from, request, kept);
   Plan plan{.profile = {}, .target = out.target};
   if (PlanOpened(params, around, planner, from, stronger, ahead, plan).ok() &&
       StopsBy(plan.profile.end(), params.planner_limits(), *kept.furthest)) {
@@ -298,9 +299,9 @@ void PlanPassing(const AxisParams& params, const Surroundings& around, Planner& 
 }
 
 // `request` is scaled, and moves.
-Status PlanMoving(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+Status PlanMoving(const AxisParams& params, const PlanningContext& around, Planner& planner, const KinematicState& from,
                   const Request& request, const LookAhead& ahead, Plan& out) {
-  Promises kept = KeptFor(around, from, request, out.target);
+  OvershootGuard kept = KeptFor(around, from, request, out.target);
   const Status status = PlanKept(params, around, planner, from, request, ahead, kept, out);
   kept.furthest = PassingTo(around, ahead);
   if (status.ok() && kept.furthest && !StopsBy(out.profile.end(), ahead.next, *kept.furthest)) {
@@ -313,15 +314,15 @@ Status PlanMoving(const AxisParams& params, const Surroundings& around, Planner&
 }
 
 // To rest where the override holds the request; beyond its target where the next one goes on.
-Status PlanHeld(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+Status PlanHeld(const AxisParams& params, const PlanningContext& around, Planner& planner, const KinematicState& from,
                 const Request& request, const LookAhead& ahead, Plan& out) {
   const double sense = Sense(out.target - from.position);
-  Promises kept = KeptFor(around, from, request, out.target);
+  OvershootGuard kept = KeptFor(around, from, request, out.target);
   Request braking = request;
   if (around.passes) {
-    Promises passing = kept;
+    OvershootGuard passing = kept;
     passing.furthest = PassingTo(around, ahead);
-    braking = Strengthened(params, from, request, passing);
+    braking = WithStrongerRamps(params, from, request, passing);
     out.limited_by = LimitedBy::kOverride;
     if (PlanPast(params, planner, from, out.target, sense, 0, braking.limits(), out.profile)) return Status::Ok();
   }
@@ -335,13 +336,13 @@ Status PlanHeld(const AxisParams& params, const Surroundings& around, Planner& p
 }
 
 // `request` and `queue` as commanded; positions: to `out.target`.
-Status PlanScaled(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+Status PlanScaled(const AxisParams& params, const PlanningContext& around, Planner& planner, const KinematicState& from,
                   const Request& request, std::span<const Request> queue, Plan& out) {
   LimitedBy clamped = LimitedBy::kNothing;
   const Request scaled = Scaled(params, around.factors, request, clamped);
   const LookAhead ahead = LookAheadOf(params, around.factors, from, scaled, out.target, queue);
   // From a run of blended moves it may be too fast to come to rest at this target: the run was promised to go on.
-  Surroundings now = around;
+  PlanningContext now = around;
   now.passes |= ahead.blends && ahead.stops_at && !StopsBy(from, params.planner_limits(), out.target);
   if (Held(around.factors, request.kind)) return PlanHeld(params, now, planner, from, scaled, ahead, out);
   const Status status = PlanMoving(params, now, planner, from, scaled, ahead, out);
@@ -357,7 +358,7 @@ Status CheckAtLimit(const AxisLimits& limits, const KinematicState& from, double
 }
 
 // A torque is to push neither onto a limit switch that is on nor through a SW limit.
-Status CheckTorque(const AxisParams& params, const Surroundings& around, const KinematicState& from, double torque) {
+Status CheckTorque(const AxisParams& params, const PlanningContext& around, const KinematicState& from, double torque) {
   if (params.drive.mode == DriveMode::kAnalog) return Status::Failed(ErrorId::kState);  // it takes no torque
   if ((around.limit_positive && torque > 0) || (around.limit_negative && torque < 0))
     return Status::Failed(ErrorId::kAwayFromLimitOnly);
@@ -366,7 +367,7 @@ Status CheckTorque(const AxisParams& params, const Surroundings& around, const K
   return CheckAtLimit(params.limits, from, torque);
 }
 
-double TargetOf(const AxisParams& params, const Surroundings& around, const KinematicState& from,
+double TargetOf(const AxisParams& params, const PlanningContext& around, const KinematicState& from,
                 const Request& request) {
   if (request.kind == RequestKind::kMoveAdditive) return around.promised.value_or(from.position) + request.value;
   if (request.update && around.begin) return *around.begin + request.value;
@@ -381,8 +382,8 @@ double TargetOf(const AxisParams& params, const Surroundings& around, const Kine
 }
 
 // Resolves the target, where there is one, and refuses what can be refused before planning.
-Status Check(const AxisParams& params, const Surroundings& around, const KinematicState& from, const Request& request,
-             Plan& out) {
+Status Check(const AxisParams& params, const PlanningContext& around, const KinematicState& from,
+             const Request& request, Plan& out) {
   if (request.kind == RequestKind::kMoveVelocity) {
     return CheckAtLimit(params.limits, from, SenseOf(request, around.last_sense) * request.velocity);
   }
@@ -396,7 +397,7 @@ Status Check(const AxisParams& params, const Surroundings& around, const Kinemat
 
 }  // namespace
 
-Status CheckSwitches(const Surroundings& around, const KinematicState& from, const Profile& profile) noexcept {
+Status CheckSwitches(const PlanningContext& around, const KinematicState& from, const Profile& profile) noexcept {
   const Profile::Range velocity = profile.VelocityRange();
   const double up = std::max(velocity.max, profile.end().velocity);
   const double down = std::min(velocity.min, profile.end().velocity);
@@ -436,8 +437,9 @@ double ResolveTarget(const AxisParams& params, const KinematicState& from, const
   return above - stop <= stop - below + slack ? above : below;
 }
 
-Status PlanRequest(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
-                   const Request& request, std::span<const Request> queue, Plan& out) noexcept {
+Status PlanRequest(const AxisParams& params, const PlanningContext& around, Planner& planner,
+                   const KinematicState& from, const Request& request, std::span<const Request> queue,
+                   Plan& out) noexcept {
   LimitedBy clamped = LimitedBy::kNothing;
   const Request scaled = Scaled(params, around.factors, request, clamped);
   Status status = Check(params, around, from, scaled, out);
@@ -450,7 +452,7 @@ Status PlanRequest(const AxisParams& params, const Surroundings& around, Planner
   return status.failed() ? status : CheckSwitches(around, from, released.profile);
 }
 
-Status Replan(const AxisParams& params, const Surroundings& around, Planner& planner, const KinematicState& from,
+Status Replan(const AxisParams& params, const PlanningContext& around, Planner& planner, const KinematicState& from,
               const Request& request, std::span<const Request> queue, Plan& out) noexcept {
   return PlanScaled(params, around, planner, from, request, queue, out);
 }

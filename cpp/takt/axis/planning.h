@@ -15,7 +15,7 @@
 namespace takt::axis {
 
 // What planning has to know of an axis besides its parameters.
-struct Surroundings {
+struct PlanningContext {
   bool limit_positive = false;
   bool limit_negative = false;
   bool bars_positive = false;  // motion upwards is not enabled (MC_Power)
@@ -43,20 +43,20 @@ struct Plan {
 // Plans `request`, scaled by the override, from `from`. `queue` has the blending commands behind it: the profile then
 // ends with the highest velocity from which all of them can be done (AX-12, AX-103). Errors: kTargetBehindLimit,
 // kAwayFromLimitOnly, kDirection, kPlanning.
-Status PlanRequest(const AxisParams& params, const Surroundings& around, trajectory::Planner& planner,
+Status PlanRequest(const AxisParams& params, const PlanningContext& around, trajectory::Planner& planner,
                    const KinematicState& from, const Request& request, std::span<const Request> queue,
                    Plan& out) noexcept;
 
 // The same for a positioning request that is under way: `out.target` is given and stays.
-Status Replan(const AxisParams& params, const Surroundings& around, trajectory::Planner& planner,
+Status Replan(const AxisParams& params, const PlanningContext& around, trajectory::Planner& planner,
               const KinematicState& from, const Request& request, std::span<const Request> queue, Plan& out) noexcept;
 
 // While a limit switch is on, no motion may go (further) towards it: kAwayFromLimitOnly; and none where MC_Power does
 // not enable it: kDirection.
-Status CheckSwitches(const Surroundings& around, const KinematicState& from,
+Status CheckSwitches(const PlanningContext& around, const KinematicState& from,
                      const trajectory::Profile& profile) noexcept;
 
-// To standstill as `limits` say, or harder where the SW limits want it, or a promise (Surroundings).
+// To standstill as `limits` say, or harder where the SW limits want it, or a promise (PlanningContext).
 Status PlanStop(const AxisParams& params, trajectory::Planner& planner, const KinematicState& from,
                 const trajectory::Limits& limits, std::optional<double> furthest, trajectory::Profile& out) noexcept;
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "takt/axis/fit.h"
-#include "takt/axis/request_maker.h"
+#include "takt/axis/request_builder.h"
 #include "takt/axis/sequence.h"
 
 namespace takt::axis {
@@ -117,7 +117,7 @@ Status TakeTouch(const Context& c, State& s) {
   request.jerk = probe.jerk;
   Plan plan;
   plan.target = probe.touch_position;
-  const Surroundings around = SurroundingsOfBoth(c, s);
+  const PlanningContext around = SurroundingsOfBoth(c, s);
   Status status = Replan(c.params, around, c.planner, s.setpoint, request, {}, plan);
   if (status.ok()) status = CheckSwitches(around, s.setpoint, plan.profile);
   if (status.failed()) return status;
@@ -140,7 +140,7 @@ void Supersede(const Context& c, ProbeWatch watch, ProbeEdge edge, Ticket ticket
 
 }  // namespace
 
-bool Fill(const Maker& m, const TouchProbe& c) {
+bool Fill(const RequestBuilder& m, const TouchProbe& c) {
   const double low = m.params.rotary() ? 0 : -kMaxPosition;
   const double high = m.params.rotary() ? m.params.modulus : kMaxPosition;
   const bool ordered = c.window_only && !m.params.rotary();  // a turn has no beginning
@@ -148,7 +148,7 @@ bool Fill(const Maker& m, const TouchProbe& c) {
          m.In("last_position", c.last_position, ordered ? c.first_position : low, high);
 }
 
-bool Fill(const Maker& m, const Touch& c) {
+bool Fill(const RequestBuilder& m, const Touch& c) {
   return m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
 }
 
@@ -246,7 +246,7 @@ Status CarryOut(const Context& c, Ticket ticket, const Touch& command, State& s)
   if (const Status status = MayTouch(c, s); captures && status.failed()) return status;
   Request limits;
   Refusal why;
-  Fill(Maker{c.params, limits, why}, command);
+  Fill(RequestBuilder{c.params, limits, why}, command);
   Supersede(c, captures ? ProbeWatch::kTouch : ProbeWatch::kSlow, command.edge, ticket, s);
   s.probe.velocity = limits.velocity;
   s.probe.acceleration = limits.acceleration;

@@ -3,7 +3,7 @@
 #include <array>
 #include <sstream>
 
-#include "takt/axis/request_maker.h"
+#include "takt/axis/request_builder.h"
 #include "takt/core/describe.h"
 
 namespace takt::axis {
@@ -47,16 +47,16 @@ constexpr std::array kRules = {
 
 }  // namespace
 
-bool Fill(const Maker& m, const Power& c) {
+bool Fill(const RequestBuilder& m, const Power& c) {
   m.r.kind = RequestKind::kPower;
   m.r.enable = c.enable;
   m.r.buffer_mode = c.buffer_mode;
   return m.Braking(Halt{});
 }
-bool Fill(const Maker&, const Reset&) {
+bool Fill(const RequestBuilder&, const Reset&) {
   return true;
 }
-bool Fill(const Maker& m, const MoveAbsolute& c) {
+bool Fill(const RequestBuilder& m, const MoveAbsolute& c) {
   m.r.kind = RequestKind::kMoveAbsolute;
   m.r.value = c.position;
   m.r.direction = c.direction;
@@ -69,7 +69,7 @@ bool Fill(const Maker& m, const MoveAbsolute& c) {
 namespace {
 
 template <typename T>
-bool ByDistance(const Maker& m, RequestKind kind, const T& c) {
+bool ByDistance(const RequestBuilder& m, RequestKind kind, const T& c) {
   m.r.kind = kind;
   m.r.value = c.distance;
   m.r.buffer_mode = c.buffer_mode;
@@ -78,13 +78,13 @@ bool ByDistance(const Maker& m, RequestKind kind, const T& c) {
 }
 }  // namespace
 
-bool Fill(const Maker& m, const MoveRelative& c) {
+bool Fill(const RequestBuilder& m, const MoveRelative& c) {
   return ByDistance(m, RequestKind::kMoveRelative, c);
 }
-bool Fill(const Maker& m, const MoveAdditive& c) {
+bool Fill(const RequestBuilder& m, const MoveAdditive& c) {
   return ByDistance(m, RequestKind::kMoveAdditive, c);
 }
-bool Fill(const Maker& m, const MoveContinuousAbsolute& c) {
+bool Fill(const RequestBuilder& m, const MoveContinuousAbsolute& c) {
   const MoveAbsolute move = {c.position, c.velocity,  c.acceleration, c.deceleration,
                              c.jerk,     c.direction, c.buffer_mode};
   if (!Fill(m, move)) return false;
@@ -93,19 +93,19 @@ bool Fill(const Maker& m, const MoveContinuousAbsolute& c) {
   return m.In("end_velocity", c.end_velocity, 0, m.params.limits.velocity);
 }
 
-bool Fill(const Maker& m, const MoveContinuousRelative& c) {
+bool Fill(const RequestBuilder& m, const MoveContinuousRelative& c) {
   m.r.end_velocity = c.end_velocity;
   return ByDistance(m, RequestKind::kMoveContinuousRelative, c) &&
          m.In("end_velocity", c.end_velocity, 0, m.params.limits.velocity);
 }
 
-bool Fill(const Maker& m, const Inch& c) {
+bool Fill(const RequestBuilder& m, const Inch& c) {
   return ByDistance(
       m, RequestKind::kInch,
       MoveRelative{c.distance, c.velocity, c.acceleration, c.deceleration, c.jerk, BufferMode::kAborting});
 }
 
-bool Fill(const Maker& m, const MoveVelocity& c) {
+bool Fill(const RequestBuilder& m, const MoveVelocity& c) {
   m.r.kind = RequestKind::kMoveVelocity;
   m.r.velocity = c.velocity;
   m.r.direction = c.direction;
@@ -116,18 +116,18 @@ bool Fill(const Maker& m, const MoveVelocity& c) {
   }
   return m.In("velocity", c.velocity, 0, m.params.limits.velocity) && m.Ramps(c);
 }
-bool Fill(const Maker& m, const Halt& c) {
+bool Fill(const RequestBuilder& m, const Halt& c) {
   m.r.kind = RequestKind::kHalt;
   m.r.buffer_mode = c.buffer_mode;
   return m.Braking(c);
 }
-bool Fill(const Maker& m, const Stop& c) {
+bool Fill(const RequestBuilder& m, const Stop& c) {
   m.r.kind = RequestKind::kStop;
   m.r.hold = c.hold;
   m.r.buffer_mode = c.buffer_mode;
   return m.Braking(c);
 }
-bool Fill(const Maker& m, const Jog& c) {
+bool Fill(const RequestBuilder& m, const Jog& c) {
   m.r.kind = RequestKind::kJog;
   m.r.forward = c.forward;
   m.r.backward = c.backward;
@@ -142,7 +142,7 @@ Status MakeRequest(const Command& command, const AxisParams& params, Request& ou
   Request request;
   Refusal refusal;
   const bool good = std::visit(
-      [maker = Maker{params, request, refusal}](const auto& c) {
+      [maker = RequestBuilder{params, request, refusal}](const auto& c) {
         if constexpr (requires { c.update&& c.buffer_mode == BufferMode::kAborting; }) {
           maker.r.update = c.update && c.buffer_mode == BufferMode::kAborting;
         }
@@ -168,7 +168,7 @@ namespace {
 std::string ModesOf(const Command& command, const AxisParams& params) {
   Request request;
   Refusal refusal;
-  std::visit([maker = Maker{params, request, refusal}](const auto& c) { return Fill(maker, c); }, command);
+  std::visit([maker = RequestBuilder{params, request, refusal}](const auto& c) { return Fill(maker, c); }, command);
   const RequestRules& rules = RulesOf(request.kind);
   std::string modes = "aborting";
   if (rules.may_be_buffered) modes += rules.may_be_blended ? ", buffered" : " or buffered";
@@ -178,7 +178,7 @@ std::string ModesOf(const Command& command, const AxisParams& params) {
 
 }  // namespace
 
-std::string WhyNot(const Command& command, const AxisParams& params) {
+std::string Diagnose(const Command& command, const AxisParams& params) {
   Request request;
   Refusal why;
   if (MakeRequest(command, params, request, &why).ok()) return {};

@@ -115,7 +115,7 @@ struct Refusal {
 };
 Status MakeRequest(const Command& command, const AxisParams& params, Request& out, Refusal* why = nullptr) noexcept;
 // The same as a sentence for people; empty: the arguments are fine. Not for the cycle.
-std::string WhyNot(const Command& command, const AxisParams& params);
+std::string Diagnose(const Command& command, const AxisParams& params);
 
 void describe(Enumeration<RequestKind>&);
 void describe(Description<Request>&);

@@ -5,7 +5,7 @@
 
 #include "takt/axis/fit.h"
 #include "takt/axis/following.h"
-#include "takt/axis/promise.h"
+#include "takt/axis/overshoot_guard.h"
 
 namespace takt::axis {
 
@@ -44,8 +44,8 @@ double FurthestOf(const Context& c, const State& s) {
 
 }  // namespace
 
-Surroundings SurroundingsOf(const Context& c, const State& s) noexcept {
-  Surroundings around;
+PlanningContext SurroundingsOf(const Context& c, const State& s) noexcept {
+  PlanningContext around;
   around.limit_positive = s.limit_positive || FollowerOnLimit(c, s, 1);
   around.limit_negative = s.limit_negative || FollowerOnLimit(c, s, -1);
   around.bars_positive = Bars(c, s, 1);
@@ -60,8 +60,8 @@ Surroundings SurroundingsOf(const Context& c, const State& s) noexcept {
   return around;
 }
 
-Surroundings SurroundingsOfBoth(const Context& c, const State& s) noexcept {
-  Surroundings around = SurroundingsOf(c, s);
+PlanningContext SurroundingsOfBoth(const Context& c, const State& s) noexcept {
+  PlanningContext around = SurroundingsOf(c, s);
   if (!s.superimposed) return around;
   const double covered = s.setpoint.position - s.overlay.base.position;
   if (around.promised) *around.promised += covered;
@@ -358,7 +358,7 @@ void StartNext(const Context& c, double late_s, State& s, bool committed) noexce
   const bool homes_on = s.plc == PlcState::kHoming && s.buffered > 0 && Homes(s.buffer[0].kind);
   if (AtRest(s) && IsLegal(s.plc, PlcState::kStandstill) && !homes_on) EnterRest(s);
   const bool seamless = s.motion.profile.end().velocity != 0 && late_s > 0;
-  Surroundings around = SurroundingsOf(c, s);
+  PlanningContext around = SurroundingsOf(c, s);
   around.committed = committed;
   while (s.buffered > 0) {
     if (s.superimposed && !Carries(s.buffer[0])) return;
@@ -408,7 +408,7 @@ namespace {
 
 void ReplanPositioning(const Context& c, State& s) {
   if (!s.active.positions() || HasPassed(s) || (s.motion.arrived && !s.motion.held)) return;
-  Surroundings around = SurroundingsOf(c, s);
+  PlanningContext around = SurroundingsOf(c, s);
   around.again = true;
   around.passes = s.motion.profile.end().velocity != 0;
   Plan plan;
@@ -420,13 +420,13 @@ void ReplanPositioning(const Context& c, State& s) {
 }  // namespace
 
 void ReplanActive(const Context& c, State& s) noexcept {
-  const Beneath base(s);
+  const ScopedBaseMotion base(s);
   ReplanPositioning(c, s);
 }
 
 void PlanAgain(const Context& c, State& s) noexcept {
   if (!s.loop_closed || !Overridden(s.active.kind) || s.plc == PlcState::kErrorStop) return;
-  const Beneath base(s);
+  const ScopedBaseMotion base(s);
   Plan plan;
   Status status;
   if (s.active.kind == RequestKind::kJog) {
@@ -436,7 +436,7 @@ void PlanAgain(const Context& c, State& s) noexcept {
     status = PlanJog(c, held, s, plan);
   } else if (s.active.kind == RequestKind::kMoveVelocity || HasPassed(s)) {
     const Request velocity = HasPassed(s) ? Onward(s) : s.active;
-    Surroundings around = SurroundingsOf(c, s);
+    PlanningContext around = SurroundingsOf(c, s);
     around.again = true;
     status = PlanRequest(c.params, around, c.planner, s.setpoint, velocity, {}, plan);
   } else {

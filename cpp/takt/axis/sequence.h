@@ -30,9 +30,9 @@ void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId err
 void ReportEnd(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error, const State& s) noexcept;
 void Enter(State& s, PlcState to) noexcept;
 // What a plan has to know besides. For what goes on beneath another motion ...
-Surroundings SurroundingsOf(const Context& c, const State& s) noexcept;
+PlanningContext SurroundingsOf(const Context& c, const State& s) noexcept;
 // ... and for what takes over from both.
-Surroundings SurroundingsOfBoth(const Context& c, const State& s) noexcept;
+PlanningContext SurroundingsOfBoth(const Context& c, const State& s) noexcept;
 // Returns the commands behind the one in control, as far as they blend.
 std::span<const Request> BlendingQueue(const State& s) noexcept;
 // Seconds of the motion in progress at this cycle.
@@ -75,10 +75,10 @@ void OpenLoop(State& s) noexcept;
 // Gives control to the next buffered command, `late_s` after the motion in progress ended; with none, the axis is in
 // Standstill. `committed`: the motion was left towards that command's target.
 void StartNext(const Context& c, double late_s, State& s, bool committed = false) noexcept;
-// Plans the positioning command in control anew because what follows it changed. Not to be called Beneath.
+// Plans the positioning command in control anew because what follows it changed. Not to be called within a ScopedBaseMotion.
 void ReplanActive(const Context& c, State& s) noexcept;
 // Plans the motion in progress anew because its limits changed: a positioning command to where it was promised to end,
-// a velocity or jog to its velocity. Other motions go on as they are. Not to be called Beneath.
+// a velocity or jog to its velocity. Other motions go on as they are. Not to be called within a ScopedBaseMotion.
 void PlanAgain(const Context& c, State& s) noexcept;
 // What to do once the motion in progress is over, each cycle until its command ends.
 void Conclude(const Context& c, double late_s, State& s) noexcept;

@@ -5,7 +5,7 @@
 
 #include "takt/axis/coordinates.h"
 #include "takt/axis/fit.h"
-#include "takt/axis/request_maker.h"
+#include "takt/axis/request_builder.h"
 #include "takt/axis/sequence.h"
 
 namespace takt::axis {
@@ -321,7 +321,7 @@ Status CarryOut(const Context& c, Ticket ticket, const SetPosition& p, State& s)
   return Done(c, ticket);
 }
 
-bool Fill(const Maker& m, const SetConstants& k) {
+bool Fill(const RequestBuilder& m, const SetConstants& k) {
   const auto not_negative_if = [&](const char* field, const std::optional<double>& value, double high) {
     return !value || m.In(field, *value, 0, high);
   };
@@ -337,7 +337,7 @@ bool Fill(const Maker& m, const SetConstants& k) {
          position_if("lower", k.lower) && position_if("upper", k.upper);
 }
 
-bool Fill(const Maker& m, const SetLoad& load) {
+bool Fill(const RequestBuilder& m, const SetLoad& load) {
   const auto in_if = [&](const char* field, const std::optional<double>& value, double low) {
     return !value || m.In(field, *value, low, kMaxTorque);
   };
@@ -347,34 +347,34 @@ bool Fill(const Maker& m, const SetLoad& load) {
 
 constexpr auto kLastParameter = static_cast<std::int32_t>(Parameter::kTorqueLimit);
 
-bool Fill(const Maker& m, const WriteParameter& w) {
+bool Fill(const RequestBuilder& m, const WriteParameter& w) {
   return m.In("value", w.value, -kMaxPosition, kMaxPosition) && m.In("number", w.number, 1, kLastParameter);
 }
 
-bool Fill(const Maker& m, const ReadParameter& r) {
+bool Fill(const RequestBuilder& m, const ReadParameter& r) {
   return m.In("number", r.number, 1, kLastParameter);
 }
 
-bool Fill(const Maker& m, const SetSoftLimits& l) {
+bool Fill(const RequestBuilder& m, const SetSoftLimits& l) {
   return m.In("lower", l.lower.value_or(0), -kMaxPosition, kMaxPosition) &&
          m.In("upper", l.upper.value_or(0), -kMaxPosition, kMaxPosition);
 }
 
-bool Fill(const Maker& m, const DirectOutput& d) {
+bool Fill(const RequestBuilder& m, const DirectOutput& d) {
   return m.In("voltage", d.voltage, -kVoltageLimit, kVoltageLimit);
 }
 
-bool Fill(const Maker& m, const PulseOutput& p) {
+bool Fill(const RequestBuilder& m, const PulseOutput& p) {
   constexpr double kLongest = 1e6;  // s
   return m.In("voltage", p.voltage, -kVoltageLimit, kVoltageLimit) &&
          m.In("duration", p.duration, std::numeric_limits<double>::min(), kLongest);
 }
 
-bool Fill(const Maker& m, const WriteOutput& w) {
+bool Fill(const RequestBuilder& m, const WriteOutput& w) {
   return m.In("number", w.number, 1, 32);
 }
 
-bool Fill(const Maker& m, const SetPosition& p) {
+bool Fill(const RequestBuilder& m, const SetPosition& p) {
   const bool within_turn = m.params.rotary() && !p.relative;
   return m.In("position", p.position, within_turn ? 0 : -kMaxPosition, within_turn ? m.params.modulus : kMaxPosition);
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "takt/axis/fit.h"
-#include "takt/axis/request_maker.h"
+#include "takt/axis/request_builder.h"
 #include "takt/axis/sequence.h"
 #include "takt/core/describe.h"
 
@@ -92,7 +92,7 @@ void Keep(const Cycle& cycle, const StreamedPoint& point, std::size_t place, dou
   }
 }
 
-bool Fill(const Maker& m, const Stream& c) {
+bool Fill(const RequestBuilder& m, const Stream& c) {
   m.r.kind = RequestKind::kStream;
   m.r.value = c.delay;
   m.r.timeout_s = c.timeout;
@@ -101,7 +101,7 @@ bool Fill(const Maker& m, const Stream& c) {
          m.Take("velocity", c.velocity, m.params.limits.velocity, m.r.velocity) && m.Ramps(c);
 }
 
-bool Fill(const Maker& m, const StreamPoint& c) {
+bool Fill(const RequestBuilder& m, const StreamPoint& c) {
   const bool turns = m.params.rotary();
   return m.In("position", c.position, turns ? 0 : -kMaxPosition, turns ? m.params.modulus : kMaxPosition) &&
          m.In("velocity", c.velocity.value_or(0), -m.params.limits.velocity, m.params.limits.velocity) &&
@@ -134,9 +134,9 @@ bool FollowStream(const Context& c, State& s) noexcept {
   KinematicState demand{s.setpoint.position + s.origin + s.setpoint.velocity * period, 0, 0};
   if (k.count > 0) demand = DemandAt(k);
   demand.position -= s.origin;
-  const auto mode = k.count > 0 ? trajectory::ChaseMode::kPosition : trajectory::ChaseMode::kVelocity;
+  const auto mode = k.count > 0 ? trajectory::DemandMode::kPosition : trajectory::DemandMode::kVelocity;
   const trajectory::Limits own = c.params.planner_limits();
-  s.setpoint = Chase({own, c.planner, s.active.limits(), period}, mode, s.setpoint, demand, k.chase);
+  s.setpoint = FollowDemand({own, c.planner, s.active.limits(), period}, mode, s.setpoint, demand, k.chase);
   s.limited_by = k.count > 0 ? Beyond(own, demand, k.chase.in_step) : LimitedBy::kNothing;
   if (k.count > 0 && k.chase.in_step) Conclude(c, 0, s);
   if (!AtRest(s)) s.motion.arrived_cycle = c.cycle.count;

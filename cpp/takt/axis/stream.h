@@ -3,8 +3,9 @@
 // The first set point is due `delay` after it came, the others by their times after it. Between two of them the axis
 // goes by a cubic through both positions and velocities (Hermite); where the sender gives no velocities, by those of
 // the chords (Catmull-Rom). A velocity is fixed when the curve first uses it, so the curve has no step in position or
-// velocity whenever the next set point comes. What it asks for is followed as a master is (trajectory/chase.h): within
-// limits, whatever was sent. Behind the last set point it goes on with its velocity until the timeout.
+// velocity whenever the next set point comes. What it asks for is followed as a master is
+// (trajectory/demand_follower.h): within limits, whatever was sent. Behind the last set point it goes on with its
+// velocity until the timeout.
 #pragma once
 
 #include <array>
@@ -15,7 +16,7 @@
 #include "takt/core/describe_fwd.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
-#include "takt/trajectory/chase.h"
+#include "takt/trajectory/demand_follower.h"
 
 namespace takt::axis {
 
@@ -36,7 +37,7 @@ struct StreamState {
   std::uint8_t count = 0;
   double clock = 0;               // s, by the sender's clock: the end of this cycle is that far along the stream
   std::uint64_t heard_cycle = 0;  // when the last set point was taken
-  trajectory::ChaseState chase;
+  trajectory::DemandFollowerState chase;
 };
 
 inline bool Streams(RequestKind kind) noexcept {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "takt/axis/fit.h"
-#include "takt/axis/request_maker.h"
+#include "takt/axis/request_builder.h"
 #include "takt/axis/sequence.h"
 #include "takt/core/describe.h"
 
@@ -93,7 +93,7 @@ KinematicState SummedDemand(const Context& c, const Curve& curve, double t, cons
 }
 
 template <typename T>
-bool Table(const Maker& m, RequestKind kind, const T& c, const char* scale_field, double scale) {
+bool Table(const RequestBuilder& m, RequestKind kind, const T& c, const char* scale_field, double scale) {
   m.r.kind = kind;
   m.r.buffer_mode = c.buffer_mode;
   m.r.velocity = m.params.limits.velocity;
@@ -106,13 +106,13 @@ bool Table(const Maker& m, RequestKind kind, const T& c, const char* scale_field
 
 }  // namespace
 
-bool Fill(const Maker& m, const PositionProfile& c) {
+bool Fill(const RequestBuilder& m, const PositionProfile& c) {
   return Table(m, RequestKind::kPositionProfile, c, "position_scale", c.position_scale);
 }
-bool Fill(const Maker& m, const VelocityProfile& c) {
+bool Fill(const RequestBuilder& m, const VelocityProfile& c) {
   return Table(m, RequestKind::kVelocityProfile, c, "velocity_scale", c.velocity_scale);
 }
-bool Fill(const Maker& m, const AccelerationProfile& c) {
+bool Fill(const RequestBuilder& m, const AccelerationProfile& c) {
   return Table(m, RequestKind::kAccelerationProfile, c, "acceleration_scale", c.acceleration_scale);
 }
 
@@ -168,9 +168,9 @@ bool FollowTime(const Context& c, State& s) noexcept {
   k.demand = demand;
   demand.position -= s.origin;
   if (positions) demand.position += k.chase.offset;
-  const trajectory::Chaser chaser = {c.params.planner_limits(), c.planner, s.active.limits(), c.cycle.period_s};
-  s.setpoint = Chase(chaser, positions ? trajectory::ChaseMode::kPosition : trajectory::ChaseMode::kVelocity,
-                     s.setpoint, demand, k.chase);
+  const trajectory::DemandFollower chaser = {c.params.planner_limits(), c.planner, s.active.limits(), c.cycle.period_s};
+  s.setpoint = FollowDemand(chaser, positions ? trajectory::DemandMode::kPosition : trajectory::DemandMode::kVelocity,
+                            s.setpoint, demand, k.chase);
   s.limited_by = Beyond(c.params.planner_limits(), demand, k.chase.in_step);
   if (t >= curve.duration() && k.chase.in_step) {
     k.over = true;

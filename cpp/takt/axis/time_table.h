@@ -5,7 +5,7 @@
 #include "takt/core/describe_fwd.h"
 #include "takt/core/kinematic_state.h"
 #include "takt/core/status.h"
-#include "takt/trajectory/chase.h"
+#include "takt/trajectory/demand_follower.h"
 
 namespace takt::axis {
 
@@ -15,7 +15,7 @@ struct State;
 
 // The time counts as that of the motion in progress does.
 struct TimeTableState {
-  trajectory::ChaseState chase;
+  trajectory::DemandFollowerState chase;
   double turns = 0;       // u over all turns: where position 0 of the table's turn is
   KinematicState demand;  // of the cycle before; tables of velocity and acceleration: summed up, u over all turns
   bool over = false;      // its end was reached; the motion in progress goes on from there

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "takt/axis/fit.h"
-#include "takt/axis/request_maker.h"
+#include "takt/axis/request_builder.h"
 #include "takt/axis/sequence.h"
 
 namespace takt::axis {
@@ -83,7 +83,7 @@ Bound NextBound(const Context& c, double sense, State& s) {
 
 }  // namespace
 
-bool Fill(const Maker& m, const TorqueControl& c) {
+bool Fill(const RequestBuilder& m, const TorqueControl& c) {
   m.r.kind = RequestKind::kTorqueControl;
   m.r.buffer_mode = c.buffer_mode;
   m.r.value = c.torque;

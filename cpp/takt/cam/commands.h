@@ -8,7 +8,7 @@
 
 #include "takt/cam/params.h"
 #include "takt/core/describe_fwd.h"
-#include "takt/core/few.h"
+#include "takt/core/inline_vector.h"
 #include "takt/core/name.h"
 
 namespace takt::cam {
@@ -27,12 +27,12 @@ struct BeginCam {  // a draft without points and segments
 struct AddCamPoints {
   Name cam;
   std::optional<std::uint32_t> first{};  // number of points in the draft before this command
-  Few<CamPoint, kPointsPerCommand> points;
+  InlineVector<CamPoint, kPointsPerCommand> points;
 };
 struct AddCamSegments {
   Name cam;
   std::optional<std::uint32_t> first{};  // likewise of segments
-  Few<CamSegment, kSegmentsPerCommand> segments;
+  InlineVector<CamSegment, kSegmentsPerCommand> segments;
 };
 struct BuildCam {  // done when the cam can be used
   Name cam;
@@ -64,8 +64,8 @@ struct CamPiece {
   Interpolation interpolation = Interpolation::kQuintic;
   std::uint32_t total = 0;  // of points or segments
   std::uint32_t first = 0;  // of these
-  Few<CamPoint, kPoints> points;
-  Few<CamSegment, kSegments> segments;
+  InlineVector<CamPoint, kPoints> points;
+  InlineVector<CamSegment, kSegments> segments;
 };
 
 // Why a cam was not made: the value of a feedback with ErrorId::kCamMaking.

@@ -7,7 +7,7 @@ namespace takt::conveyor {
 
 namespace {
 
-struct Answer {
+struct AdmissionResult {
   Status status;
   double value = 0;
 };
@@ -16,7 +16,7 @@ bool IsLocated(const Detect& d) {
   return d.x || d.y || d.z || d.a || d.b || d.c;
 }
 
-Answer CarryOut(const Context& c, const Detect& d, State& s) {
+AdmissionResult CarryOut(const Context& c, const Detect& d, State& s) {
   double latch = s.travel.position;
   if (d.recorded_position) latch = TravelAt(c, s, *d.recorded_position);
   if (d.latched_with) {
@@ -50,7 +50,7 @@ Object* Named(const Locate& l, State& s) {
   return found && found->state != ObjectState::kTaken ? found : nullptr;
 }
 
-Answer CarryOut(const Context&, const Locate& l, State& s) {
+AdmissionResult CarryOut(const Context&, const Locate& l, State& s) {
   Object* object = Named(l, s);
   if (!object) return {Status::Failed(ErrorId::kNoWorkpiece)};
   object->state = ObjectState::kVisible;
@@ -61,16 +61,16 @@ Answer CarryOut(const Context&, const Locate& l, State& s) {
   return {Status::Ok(), static_cast<double>(object->number)};
 }
 
-Answer CarryOut(const Context&, const TakeObject& command, State& s) {
+AdmissionResult CarryOut(const Context&, const TakeObject& command, State& s) {
   return {Take(command.number, s)};
 }
-Answer CarryOut(const Context&, const GiveBackObject& command, State& s) {
+AdmissionResult CarryOut(const Context&, const GiveBackObject& command, State& s) {
   return {GiveBack(command.number, s)};
 }
-Answer CarryOut(const Context&, const RemoveObject& command, State& s) {
+AdmissionResult CarryOut(const Context&, const RemoveObject& command, State& s) {
   return {Remove(command.number, s)};
 }
-Answer CarryOut(const Context&, const ClearObjects&, State& s) {
+AdmissionResult CarryOut(const Context&, const ClearObjects&, State& s) {
   while (s.count > 0) s.objects[--s.count] = Object{};
   return {};
 }
@@ -78,9 +78,9 @@ Answer CarryOut(const Context&, const ClearObjects&, State& s) {
 }  // namespace
 
 void Apply(const Context& c, Ticket ticket, const Command& command, State& s) noexcept {
-  const Answer answer = std::visit(
+  const AdmissionResult answer = std::visit(
       [&](const auto& body) {
-        return takt::InRange(body) ? CarryOut(c, body, s) : Answer{Status::Failed(ErrorId::kParameter)};
+        return takt::InRange(body) ? CarryOut(c, body, s) : AdmissionResult{Status::Failed(ErrorId::kParameter)};
       },
       command);
   const auto report = [&](FeedbackState state, double value) {

@@ -13,7 +13,8 @@
 //   }
 //
 // A described struct is an aggregate whose members are bool, integers, double, std::string, Name, described enums and
-// structs, or std::array, std::vector, Few, std::optional of these. Texts are literals: the tables keep views of them.
+// structs, or std::array, std::vector, InlineVector, std::optional of these. Texts are literals: the tables keep views
+// of them.
 #pragma once
 
 #include <array>

@@ -416,8 +416,8 @@ std::string CannotSwitch(const Machine& machine, const axis::DigitalCamSwitch& c
   return {};
 }
 
-std::string WhyNot(const Machine& machine, const axis::Command& command, const axis::AxisParams& axis) {
-  std::string why = axis::WhyNot(command, axis);
+std::string Diagnose(const Machine& machine, const axis::Command& command, const axis::AxisParams& axis) {
+  std::string why = axis::Diagnose(command, axis);
   const auto* switches = std::get_if<axis::DigitalCamSwitch>(&command);
   return why.empty() && switches ? CannotSwitch(machine, *switches, axis) : why;
 }
@@ -454,8 +454,8 @@ std::string WhyNotNamed(const char* field, const Name& name, const std::vector<s
          DidYouMean(name.view(), names);
 }
 
-std::string WhyNot(const Machine& machine, const group::Command& command, std::string_view target) {
-  std::string why = group::WhyNot(command);
+std::string Diagnose(const Machine& machine, const group::Command& command, std::string_view target) {
+  std::string why = group::Diagnose(command);
   const auto check = [&](const char* field, const Name& name, const std::vector<std::string_view>& names,
                          const char* what) {
     if (why.empty()) why = WhyNotNamed(field, name, names, what);
@@ -539,7 +539,7 @@ std::string WhyNotPosition(const Machine& machine, std::string_view part, std::u
          ", of the positions of part " + found->name + ", found " + std::to_string(index);
 }
 
-std::string WhyNot(const Machine& machine, const track::Command& command, std::string_view target) {
+std::string Diagnose(const Machine& machine, const track::Command& command, std::string_view target) {
   if (const auto* add = std::get_if<track::AddToGroup>(&command)) return WhyNotGroup(machine, add->group);
   std::vector<std::string_view> others = NamesOf(machine.tracks);
   std::erase(others, target);
@@ -578,7 +578,7 @@ std::string WhyNotGear(const Machine& machine, const Gear& gear, std::string_vie
   return why;
 }
 
-std::string WhyNot(const Machine& machine, const mover::Command& command, std::string_view target) {
+std::string Diagnose(const Machine& machine, const mover::Command& command, std::string_view target) {
   const auto check = [&](const Name& track) {
     return WhyNotNamed("track", track, NamesOf(machine.tracks), "a track of the machine");
   };
@@ -598,7 +598,7 @@ std::string WhyNot(const Machine& machine, const mover::Command& command, std::s
 }
 
 // Belts and ranges; rules that depend on settings at run time are left to the cycle.
-std::string WhyNot(const Machine& machine, const pickplace::Command& command, std::string_view target) {
+std::string Diagnose(const Machine& machine, const pickplace::Command& command, std::string_view target) {
   const auto module = std::ranges::find(machine.pick_and_place, target, &pickplace::PickPlaceParams::name);
   if (module == machine.pick_and_place.end()) return {};
   const std::size_t count = module->belts.size();
@@ -633,22 +633,22 @@ std::string WhyNot(const Machine& machine, const pickplace::Command& command, st
 }
 
 // Why this component cannot do it, as far as its description tells; empty: it can.
-std::string WhyNot(const Machine& machine, const Command& command) {
+std::string Diagnose(const Machine& machine, const Command& command) {
   if (const auto* body = std::get_if<axis::Command>(&command.body)) {
-    return WhyNot(machine, *body, machine.axes[command.target - 1]);
+    return Diagnose(machine, *body, machine.axes[command.target - 1]);
   }
-  if (const auto* body = std::get_if<flexcam::Command>(&command.body)) return flexcam::WhyNot(*body);
+  if (const auto* body = std::get_if<flexcam::Command>(&command.body)) return flexcam::Diagnose(*body);
   if (const auto* body = std::get_if<group::Command>(&command.body)) {
-    return WhyNot(machine, *body, NameOf(machine, command.target));
+    return Diagnose(machine, *body, NameOf(machine, command.target));
   }
   if (const auto* body = std::get_if<pickplace::Command>(&command.body)) {
-    return WhyNot(machine, *body, NameOf(machine, command.target));
+    return Diagnose(machine, *body, NameOf(machine, command.target));
   }
   if (const auto* body = std::get_if<mover::Command>(&command.body)) {
-    return WhyNot(machine, *body, NameOf(machine, command.target));
+    return Diagnose(machine, *body, NameOf(machine, command.target));
   }
   if (const auto* body = std::get_if<track::Command>(&command.body)) {
-    return WhyNot(machine, *body, NameOf(machine, command.target));
+    return Diagnose(machine, *body, NameOf(machine, command.target));
   }
   if (const auto* body = std::get_if<part::Command>(&command.body)) {
     const auto* activate = std::get_if<part::ActivatePosition>(body);
@@ -741,7 +741,7 @@ ParsedCommand ParseCommand(const Machine& machine, std::string_view target, std:
     parsed.level_sensitive = entry.verb.level_sensitive;
     Problem problem;
     if (!entry.read(arguments, parsed.command.body, problem)) return Refused(ErrorId::kParameter, problem.Text());
-    if (std::string sentence = WhyNot(machine, parsed.command); !sentence.empty()) {
+    if (std::string sentence = Diagnose(machine, parsed.command); !sentence.empty()) {
       return Refused(ErrorOf(machine, parsed.command), std::move(sentence));
     }
     return parsed;

@@ -422,7 +422,7 @@ bool Engine::Resubmit(const Command& command) noexcept {
   return impl_->journalled.TryPush(command);
 }
 
-SpscQueue<group::Question>& Engine::questions() noexcept {
+SpscQueue<group::PathCheckRequest>& Engine::questions() noexcept {
   return impl_->world.questions;
 }
 
@@ -444,10 +444,10 @@ void Engine::MakePlans() {
 }
 
 void Engine::MakeTracks() {
-  while (const std::optional<track::Answer> answer = track::Make(impl_->world.tracks.desk)) {
+  while (const std::optional<track::BuiltTrack> answer = track::Make(impl_->world.tracks.desk)) {
     impl_->GiveAnswer(answer->track, track::Command(answer->made));
   }
-  while (const std::optional<environment::Answer> answer = environment::Make(impl_->world.environments.desk)) {
+  while (const std::optional<environment::BuiltBoundary> answer = environment::Make(impl_->world.environments.desk)) {
     impl_->GiveAnswer(answer->environment, environment::Command(answer->made));
   }
 }
@@ -518,7 +518,7 @@ PartFaults& Engine::part_faults(std::size_t part) noexcept {
 const track::Tracks& Engine::tracks() const noexcept {
   return impl_->world.tracks;
 }
-const planar::Grounds& Engine::grounds() const noexcept {
+const planar::GroupRegistry& Engine::grounds() const noexcept {
   return impl_->world.grounds;
 }
 std::span<const cam::Table> Engine::cams() const noexcept {

@@ -22,7 +22,7 @@
 #include "takt/environment/environments.h"
 #include "takt/flexcam/outputs.h"
 #include "takt/group/outputs.h"
-#include "takt/group/question.h"
+#include "takt/group/path_check_request.h"
 #include "takt/group/survey.h"
 #include "takt/mover/outputs.h"
 #include "takt/mover/state.h"
@@ -89,7 +89,7 @@ class Engine {
   RouteSnapshot mover_route(std::size_t mover) const noexcept;
   const part::Outputs& part_outputs(std::size_t part) const noexcept;
   const track::Tracks& tracks() const noexcept;
-  const planar::Grounds& grounds() const noexcept;
+  const planar::GroupRegistry& grounds() const noexcept;
   // Those of the machine file and those made at run time; a table without pieces is none.
   std::span<const cam::Table> cams() const noexcept;
   // The same for components of any kind, by the number that is their target, less one.
@@ -120,7 +120,7 @@ class Engine {
   void CountRefusedSample() noexcept;
 
   // --- one thread that answers groups and makes tracks (PathChecks) ---
-  SpscQueue<group::Question>& questions() noexcept;
+  SpscQueue<group::PathCheckRequest>& questions() noexcept;
   // The next cycle takes it. False: there is no room; then nobody waits for it, either.
   bool Answer(std::size_t group, const group::PathChecked& answer) noexcept;
   // Whether plans of groups are made by MakePlans, which has to be called for them; else the cycle makes them itself.
@@ -128,7 +128,7 @@ class Engine {
   void PlanElsewhere() noexcept;
   // Makes the plans that groups ask for, and tells them in the next cycle.
   void MakePlans();
-  // Makes the tracks and boundaries that the cycle asks for (track/desk.h), and tells it in the next cycle.
+  // Makes the tracks and boundaries that the cycle asks for (track/build_queues.h), and tells it in the next cycle.
   void MakeTracks();
   // Builds the next cam that the cycle asks for (cam/builder.h) and returns the result, which Answer gives to it.
   std::optional<cam::BuildResult> BuildCam();

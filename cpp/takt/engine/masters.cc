@@ -74,7 +74,7 @@ void SeeCarrier(const World& w, std::uint32_t number, Nth& nth) {
 void SeeCarriers(const World& w, std::size_t group, Nth& nth) {
   const group::State& s = w.group_states[group];
   std::uint32_t last = 0;  // each once in a row
-  const auto see = [&](const group::Cargo& cargo) {
+  const auto see = [&](const group::CarriedTarget& cargo) {
     if (cargo.carrier != last) SeeCarrier(w, cargo.carrier, nth);
     last = cargo.carrier;
   };

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "takt/core/maths.h"
+#include "takt/mover/area_reservation.h"
 #include "takt/mover/formation.h"
-#include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
 #include "takt/planar/nearest.h"
-#include "takt/track/works.h"
+#include "takt/track/pending_edits.h"
 
 namespace takt::engine {
 
@@ -125,7 +125,7 @@ bool AreTooNear(const World& w, const planar::Rider& one, const planar::Rider& o
 // tracks do not keep clear of by themselves.
 Hindrance InGroup(const World& w, std::size_t mover, std::uint32_t part, const planar::Spot& from,
                   const planar::Spot& to) {
-  const planar::Grounds& g = w.grounds;
+  const planar::GroupRegistry& g = w.grounds;
   const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
   if (group == 0) return {};
   const planar::Reservations& r = g.grounds[group - 1].reserved;
@@ -206,7 +206,7 @@ bool IsTorn(World& w, std::size_t mover, std::uint32_t part) {
 
 // Another part brings a mover to where this one goes.
 bool ComesUnder(const World& w, std::size_t mover, const planar::Part& shape, const planar::Spot& to) {
-  const planar::MoverNow& now = w.grounds.movers[mover];
+  const planar::MoverView& now = w.grounds.movers[mover];
   return now.comes && planar::Touches(shape, to, now.goal.system, planar::AreaThere(now));
 }
 

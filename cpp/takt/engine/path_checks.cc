@@ -203,7 +203,7 @@ struct PathChecks::OfGroup {
   workspace::Checker checker;
   Survey survey;
   std::vector<std::string> parts;
-  std::optional<group::Question> asked{};  // last
+  std::optional<group::PathCheckRequest> asked{};  // last
 };
 
 PathChecks::PathChecks(Engine& engine, Checkers checkers) : engine_(engine) {
@@ -222,7 +222,7 @@ void PathChecks::Run() {
     if (!result->sentence.empty()) Remember(result->ticket, result->sentence);
     engine_.Answer(result->built);
   }
-  group::Question question;
+  group::PathCheckRequest question;
   bool any = false;
   while (engine_.questions().TryPop(question)) {  // what was asked before is not waited for any more
     const std::size_t index = question.group - 1;
@@ -238,7 +238,7 @@ void PathChecks::Run() {
   }
 }
 
-PathChecked PathChecks::Check(const group::Question& question) {
+PathChecked PathChecks::Check(const group::PathCheckRequest& question) {
   OfGroup& group = *groups_[question.group - 1];
   group.checker.SetToolCentre({question.tool.x, question.tool.y, question.tool.z});
   Inquiry inquiry(group.checker);

@@ -1,5 +1,5 @@
-// Answers groups that ask whether a path is free (group/question.h), with what stands in their workspaces, and has
-// tracks made (track/desk.h) and cams built (cam/builder.h). Not for the cycle.
+// Answers groups that ask whether a path is free (group/path_check_request.h), with what stands in their workspaces,
+// and has tracks made (track/build_queues.h) and cams built (cam/builder.h). Not for the cycle.
 //
 // Simulated time asks between two cycles, so that it stands still meanwhile and each run is the same; real time has a
 // thread for it. The answer is a command of the journal: a replay asks nobody.
@@ -35,7 +35,7 @@ class PathChecks {
  private:
   struct OfGroup;
 
-  group::PathChecked Check(const group::Question& question);
+  group::PathChecked Check(const group::PathCheckRequest& question);
   void Remember(Ticket ticket, std::string sentence);
 
   Engine& engine_;

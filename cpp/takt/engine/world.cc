@@ -91,7 +91,7 @@ World::World(const Machine& machine)
   TypeOf<HeardDrive>();
   TypeOf<ServoInputs>();
   TypeOf<track::State>();
-  TypeOf<track::Works>();
+  TypeOf<track::PendingEdits>();
   TypeOf<track::Sketch>();
   TypeOf<cam::StoreState>();
   TypeOf<mover::SurfaceRoute>();
@@ -245,7 +245,7 @@ void World::MakeMovers(const Machine& machine) {
 }
 
 void World::MakePlanarGroups(const Machine& machine) {
-  TypeOf<planar::Ground>();
+  TypeOf<planar::GroupReservations>();
   TypeOf<planargroup::State>();
   TypeOf<environment::State>();
   TypeOf<planar::Place>();
@@ -287,7 +287,7 @@ std::uint64_t World::StateHash() const noexcept {
   for (const planargroup::State& state : planar_groups.states) hash = HashOf(state, hash);
   for (const environment::State& state : environments.states) hash = HashOf(state, hash);
   if (!environments.states.empty()) hash = HashOf(environments.questions, hash);
-  for (const planar::Ground& ground : grounds.grounds) hash = HashOf(ground, hash);
+  for (const planar::GroupReservations& ground : grounds.grounds) hash = HashOf(ground, hash);
   if (!grounds.grounds.empty()) {
     for (const auto* groups : {&grounds.group_of_mover, &grounds.group_of_track, &grounds.group_of_environment}) {
       for (const std::uint32_t group : *groups) hash = HashOf(group, hash);

@@ -101,7 +101,7 @@ struct World {
   cam::Store cams;
   std::vector<axis::State> axis_states;
   std::vector<axis::Outputs> axis_outputs;
-  axis::Surrounding surrounding;                           // all axes, as each of them sees it
+  axis::MachineView surrounding;                           // all axes, as each of them sees it
   Order axis_order;                                        // masters before followers; behind all axes: the movers
   std::vector<std::uint32_t> probe_wires;                  // the axis whose touch probe each has
   std::vector<std::optional<std::uint32_t>> axis_masters;  // which axis each follows, if any
@@ -118,7 +118,7 @@ struct World {
   std::vector<group::PathTable> paths;
   std::vector<group::Zone> zones;
   bool plans_elsewhere = false;             // of groups: PathPlanned tells that they are there
-  group::Questions questions;               // of all groups
+  group::PathCheckRequests questions;       // of all groups
   std::vector<std::uint32_t> group_of;      // the group that each axis is a member of, from 1; 0: none
   std::vector<std::uint8_t> group_stepped;  // in this cycle
 
@@ -151,14 +151,14 @@ struct World {
   std::vector<mover::Body> bodies;  // by star of a formation
   mover::SurfaceRoutes routes;      // over the free surface
   std::vector<mover::Outputs> mover_outputs;
-  mover::Streets streets;
-  std::vector<mover::TrackNow> tracks_now;         // of this cycle
+  mover::TrackNetworkState streets;
+  std::vector<mover::TrackView> tracks_now;        // of this cycle
   std::uint64_t streets_changes = 0;               // Tracks::changes as of which the links between them are known
   std::vector<axis::OutsideMaster> mover_masters;  // the coordinates of movers, as axes follow them
 
   track::Tracks tracks;
 
-  planar::Grounds grounds;  // of movers, tracks, groups of movers and environments
+  planar::GroupRegistry grounds;  // of movers, tracks, groups of movers and environments
   planargroup::Groups planar_groups;
   environment::Environments environments;
 

@@ -20,7 +20,7 @@ struct AddToGroup {
 };
 struct RemoveFromGroup {};
 
-// The answer to a question (desk.h); no command of people.
+// The answer to a question (build_queues.h); no command of people.
 struct BoundaryMade {
   std::uint64_t number = 0;  // of the question
   planar::StatorProblem problem = planar::StatorProblem::kNone;

@@ -9,11 +9,11 @@
 #include "takt/core/cycle.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
+#include "takt/environment/build_queues.h"
 #include "takt/environment/commands.h"
-#include "takt/environment/desk.h"
 #include "takt/environment/outputs.h"
 #include "takt/environment/params.h"
-#include "takt/planar/grounds.h"
+#include "takt/planar/group_registry.h"
 
 namespace takt::environment {
 
@@ -40,12 +40,12 @@ struct Environments {
   // What follows from the states.
   std::vector<const planar::Environment*> surfaces;  // null: no boundary
 
-  Desk desk;
+  BuildQueues desk;
 };
 
 struct Context {
   Environments& environments;
-  planar::Grounds& grounds;
+  planar::GroupRegistry& grounds;
   Cycle cycle;
   FeedbackSink& feedback;
 };

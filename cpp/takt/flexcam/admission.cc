@@ -100,7 +100,7 @@ void CarryOut(const Context& c, Ticket ticket, double, const Control& command, a
     return Report(c, ticket, FeedbackState::kError, error);
   }
   const Inputs was = s.inputs;
-  TakeGiven(command, s.inputs);
+  ApplyPatch(command, s.inputs);
   Note(was, s.inputs, s.rose);
   s.instant |= s.inputs.cam_change_instant && !was.cam_change_instant && s.state == ModuleState::kSync;
   Report(c, ticket, FeedbackState::kActive);
@@ -142,7 +142,7 @@ void CarryOut(const Context& c, Ticket ticket, double, const Configure& command,
     s.warning = ErrorId::kWouldReverse;
     return Report(c, ticket, FeedbackState::kError, ErrorId::kWouldReverse);
   }
-  TakeGiven(command, s.settings);
+  ApplyPatch(command, s.settings);
   Report(c, ticket, FeedbackState::kActive);
   Report(c, ticket, FeedbackState::kDone);
 }

@@ -47,7 +47,7 @@ bool AsksToMove(const Control& c) noexcept {
          c.sync_cam.value_or(false);
 }
 
-std::string WhyNot(const Command& command) {
+std::string Diagnose(const Command& command) {
   const auto* set = std::get_if<SetCam>(&command);
   return set && set->cam.empty() ? "cam: expected the name of a cam, found an empty text" : std::string();
 }

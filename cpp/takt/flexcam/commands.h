@@ -8,8 +8,8 @@
 #include <variant>
 
 #include "takt/core/describe_fwd.h"
-#include "takt/core/given.h"
 #include "takt/core/name.h"
+#include "takt/core/patch.h"
 #include "takt/flexcam/settings.h"
 
 namespace takt::flexcam {
@@ -76,7 +76,7 @@ struct WithdrawChanges {};  // of those that have not taken place
 using Command = std::variant<Control, Jog, Configure, SetCam, ChangeCam, WithdrawChanges>;
 
 // What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
-std::string WhyNot(const Command& command);
+std::string Diagnose(const Command& command);
 
 void describe(Enumeration<ChangeWhen>&);
 void describe(Enumeration<ChangeAlign>&);

@@ -21,7 +21,7 @@ Cycle Earlier(const Cycle& cycle) {
   return {cycle.count - 1, cycle.period_s};
 }
 
-Ride RideOf(const ConversionTarget& target, const ConversionInputs& in, const Conversion& c) {
+RampMaster RideOf(const ConversionTarget& target, const ConversionInputs& in, const Conversion& c) {
   return {in.ride_before, in.before.velocity, c.factor, target.ramps};
 }
 

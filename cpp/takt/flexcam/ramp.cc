@@ -41,7 +41,7 @@ trajectory::Limits LimitsOf(const RampClock& clock) {
 }
 
 // A clock for a shift with this motion, and that motion on the profile.
-RampClock ClockFor(const KinematicState& shift, const Ride& ride, KinematicState& on_profile) {
+RampClock ClockFor(const KinematicState& shift, const RampMaster& ride, KinematicState& on_profile) {
   const trajectory::Limits& limits = ride.limits;
   const KinematicState& master = ride.master;
   RampClock clock;
@@ -179,7 +179,8 @@ void BeginTime(const KinematicState& shift, double duration_s, const Cycle& cycl
   out.start_cycle = cycle.count - 1;
 }
 
-bool BeginWithMaster(const KinematicState& shift, const Ride& ride, trajectory::Planner& planner, Ramp& out) noexcept {
+bool BeginWithMaster(const KinematicState& shift, const RampMaster& ride, trajectory::Planner& planner,
+                     Ramp& out) noexcept {
   if (!(ride.factor > 0)) return false;
   KinematicState from;
   const RampClock clock = ClockFor(shift, ride, from);
@@ -189,8 +190,8 @@ bool BeginWithMaster(const KinematicState& shift, const Ride& ride, trajectory::
   return true;
 }
 
-bool BeginSpeedWithMaster(const KinematicState& shift, const Ride& ride, trajectory::Planner& planner, double& begin,
-                          Ramp& out) noexcept {
+bool BeginSpeedWithMaster(const KinematicState& shift, const RampMaster& ride, trajectory::Planner& planner,
+                          double& begin, Ramp& out) noexcept {
   if (!(ride.factor > 0)) return false;
   KinematicState from;
   const RampClock clock = ClockFor({0, shift.velocity, shift.acceleration}, ride, from);

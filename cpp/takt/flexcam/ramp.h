@@ -69,16 +69,17 @@ void BeginTime(const KinematicState& shift, double duration_s, const Cycle& cycl
 
 // What a ramp with a master goes by. The shift is added to something that moves at `factor` times `base_velocity`, a
 // velocity with the size of the master's; the sum must not move against that as it is.
-struct Ride {
+struct RampMaster {
   KinematicState master;
   double base_velocity = 0;
   double factor = 1;  // > 0
   trajectory::Limits limits;
 };
-bool BeginWithMaster(const KinematicState& shift, const Ride& ride, trajectory::Planner& planner, Ramp& out) noexcept;
+bool BeginWithMaster(const KinematicState& shift, const RampMaster& ride, trajectory::Planner& planner,
+                     Ramp& out) noexcept;
 // As BeginSpeed.
-bool BeginSpeedWithMaster(const KinematicState& shift, const Ride& ride, trajectory::Planner& planner, double& begin,
-                          Ramp& out) noexcept;
+bool BeginSpeedWithMaster(const KinematicState& shift, const RampMaster& ride, trajectory::Planner& planner,
+                          double& begin, Ramp& out) noexcept;
 // Moves the zero of a ramp with a master by `distance`, at the rate it has.
 bool MoveZero(double distance, trajectory::Planner& planner, Ramp& ramp) noexcept;
 // Each cycle: the clock of a ramp with a master, which has moved by `displacement`. Other kinds need none.

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "takt/core/describe_fwd.h"
-#include "takt/core/given.h"
+#include "takt/core/patch.h"
 
 namespace takt::flexcam {
 

@@ -332,7 +332,7 @@ struct Applier {
     Finish(ErrorId::kNone);
   }
   void operator()(const SetDynCoordTransform& m) const {
-    Cargo cargo;
+    CarriedTarget cargo;
     cargo.carrier = c.carriers.Find(m.carrier.view());
     if (cargo.carrier == 0) return Refuse(ErrorId::kUnknownTarget);
     cargo.lies = {m.x, m.y, m.z, m.a, m.b, m.c};

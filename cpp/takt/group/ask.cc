@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "takt/group/carrier_bindings.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/queue.h"
-#include "takt/group/rides.h"
 #include "takt/group/systems.h"
 
 namespace takt::group {
@@ -13,11 +13,11 @@ namespace {
 
 // A path that begins on what moves, as it is expected to lie in the MCS: from where the carrier will have taken the
 // tool when it begins to where the target will be when it arrives.
-void FromCarrier(const Context& c, const State& s, Question& question) {
+void FromCarrier(const Context& c, const State& s, PathCheckRequest& question) {
   const LookAhead& ahead = c.ahead;
   const Stretch& next = ahead.next;
-  const Ride& from = ahead.rides[next.from_ride % kRides];
-  const Ride& to = ahead.rides[next.to_ride % kRides];
+  const CarrierBinding& from = ahead.rides[next.from_ride % kRides];
+  const CarrierBinding& to = ahead.rides[next.to_ride % kRides];
   const double begin_s = std::max(0.0, ahead.end_eta - Now(c)), end_s = std::max(begin_s, next.eta_end - Now(c));
   const Frame begin = DisplacementOf(c, from, begin_s).GetFrame();
   const Frame target = DisplacementOf(c, to, end_s).GetFrame() * path::PointAt(next.segment, next.segment.length).frame;
@@ -33,9 +33,9 @@ void FromCarrier(const Context& c, const State& s, Question& question) {
   if (question.follows) question.before.segment = Moved(begin, question.before.segment);
 }
 
-Question QuestionOf(const Context& c, const State& s) {
+PathCheckRequest QuestionOf(const Context& c, const State& s) {
   const LookAhead& ahead = c.ahead;
-  Question question;
+  PathCheckRequest question;
   question.group = c.number;
   question.number = s.planning.question;
   question.move = MoveAt(s, s.planning.move);

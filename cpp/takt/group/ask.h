@@ -1,4 +1,4 @@
-// The cycle's part of a question whether a path is free (question.h).
+// The cycle's part of a question whether a path is free (path_check_request.h).
 #pragma once
 
 #include "takt/group/group.h"

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "takt/group/boarding_plan.h"
+#include "takt/group/carrier_bindings.h"
 #include "takt/group/clutch.h"
 #include "takt/group/members.h"
 #include "takt/group/queue.h"
-#include "takt/group/rides.h"
 #include "takt/group/run.h"
 
 namespace takt::group {
@@ -17,11 +17,11 @@ namespace {
 constexpr double kLastPart = 0.05;  // of the boarding time
 constexpr double kFirstPart = 0.5;  // of it: turning back is sooner than getting into step first
 
-const Ride& RideOf(const Context& c, std::uint64_t number) {
+const CarrierBinding& RideOf(const Context& c, std::uint64_t number) {
   return c.ahead.rides[number % kRides];
 }
 
-bool IsSteady(const Context& c, const Cargo& cargo) {
+bool IsSteady(const Context& c, const CarriedTarget& cargo) {
   const kinematics::Carrier carrier = CarrierOf(c, cargo);
   const bool has_travel =
       carrier.kind == kinematics::CarrierKind::kStraight || carrier.kind == kinematics::CarrierKind::kTurning;
@@ -58,7 +58,7 @@ bool CanBoard(const Context& c, const State& s) noexcept {
 
 bool Board(const Context& c, State& s) noexcept {
   LookAhead& ahead = c.ahead;
-  const Ride to = RideOf(c, ahead.next.to_ride);
+  const CarrierBinding to = RideOf(c, ahead.next.to_ride);
   BoardingPlan plan;
   if (!PlanBoarding(c, s, to, plan) || TakeMembers(c, s) != ErrorId::kNone) return false;
 
@@ -67,7 +67,7 @@ bool Board(const Context& c, State& s) noexcept {
   clutch.apart = {plan.lead, -plan.carrier.velocity, 0};
   clutch.catches_up = clutch.boards = true;
   SetLimits(plan.limits, clutch);
-  Ride& ride = ahead.rides[clutch.ride % kRides];
+  CarrierBinding& ride = ahead.rides[clutch.ride % kRides];
   ride.speed = plan.carrier.velocity;
   ride.boarding = plan.boarding;
   ride.boarding.on = true;
@@ -102,7 +102,7 @@ double SpeedBesideBoarding(const trajectory::PathPoint& point, const trajectory:
   const double done_s = std::isnan(boarding.earliest_s) ? 0 : boarding.earliest_s;
   const double left_s = std::max(0.0, boarding.apart.duration() - done_s);
   const double a = std::min(trajectory::BoundsAt(point, limits, build_up_s, 1).Most(0),
-                            trajectory::StrengthAt(point, {}, limits, 0, build_up_s).At(0));
+                            trajectory::AccelerationCapAt(point, {}, limits, 0, build_up_s).At(0));
   return kReachesFurther * (std::sqrt(boarding.square) + std::max(0.0, a) * left_s);
 }
 
@@ -132,7 +132,7 @@ void PassNode(const Context& c, const trajectory::PathNode& last, const trajecto
 bool TurnsBack(const Context& c, const State& s, std::uint32_t carrier) noexcept {
   return std::ranges::any_of(s.clutches, [&](const Clutch& clutch) {
     if (!clutch.used || !clutch.boards) return false;
-    const Ride& ride = RideOf(c, clutch.ride);
+    const CarrierBinding& ride = RideOf(c, clutch.ride);
     const double passed_s = static_cast<double>(c.cycle.count - ride.boarding.begin) * c.cycle.period_s;
     return ride.cargo.carrier != carrier && passed_s < kFirstPart * ride.boarding.apart.duration();
   });

@@ -16,7 +16,8 @@ namespace takt::group {
 inline constexpr double kReachesFurther = 1.2;
 
 // Whether the tool may board for the move that is planned next, from rest: not where something has to be known before
-// the tool moves, nor where the carrier is not steady. Then the path has a transition between rides (rides.h).
+// the tool moves, nor where the carrier is not steady. Then the path has a transition between rides
+// (carrier_bindings.h).
 bool MayBoard(const Context& c, const State& s) noexcept;
 
 // Whether it can board now for the move that is to be joined.

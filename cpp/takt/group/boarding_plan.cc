@@ -6,9 +6,9 @@
 #include "takt/core/maths.h"
 #include "takt/group/ask.h"
 #include "takt/group/boarding.h"
+#include "takt/group/carrier_bindings.h"
 #include "takt/group/clutch.h"
 #include "takt/group/make_stretch.h"
-#include "takt/group/rides.h"
 #include "takt/group/systems.h"
 
 namespace takt::group {
@@ -40,8 +40,8 @@ constexpr double kEstimateMargin = 1.04;
 
 // The initial state: the tool at rest.
 struct Start {
-  Ride to;
-  Cargo cargo;
+  CarrierBinding to;
+  CarriedTarget cargo;
   KinematicState carrier;  // travel in the cycle before
   End tool;
   // First to third derivatives of the coordinates with respect to the travel.
@@ -351,7 +351,7 @@ bool ReachesTarget(const Context& c, const State& s, const Start& start, double 
 }
 
 // Returns false if the inverse kinematics fails.
-bool FindStart(const Context& c, const State& s, const Ride& to, Start& start) {
+bool FindStart(const Context& c, const State& s, const CarrierBinding& to, Start& start) {
   start.to = to;
   start.cargo = to.cargo;
   start.carrier = CarrierOf(c, to.cargo).travel;
@@ -425,7 +425,7 @@ bool FindBest(const Context& c, const State& s, const Start& start, Candidate& b
 
 }  // namespace
 
-bool PlanBoarding(const Context& c, const State& s, const Ride& to, BoardingPlan& plan) noexcept {
+bool PlanBoarding(const Context& c, const State& s, const CarrierBinding& to, BoardingPlan& plan) noexcept {
   Start start;
   Candidate best;
   if (!FindStart(c, s, to, start) || !FindBest(c, s, start, best)) return false;

@@ -18,6 +18,6 @@ struct BoardingPlan {
 
 // Plans boarding from rest for LookAhead::next onto the carrier of `to`. Returns false if no candidate is within the
 // limits, or if the transition between rides is estimated to be faster.
-bool PlanBoarding(const Context& c, const State& s, const Ride& to, BoardingPlan& plan) noexcept;
+bool PlanBoarding(const Context& c, const State& s, const CarrierBinding& to, BoardingPlan& plan) noexcept;
 
 }  // namespace takt::group

@@ -7,7 +7,7 @@
 #include "takt/group/make_stretch.h"
 #include "takt/group/members.h"
 #include "takt/group/run.h"
-#include "takt/trajectory/chase.h"
+#include "takt/trajectory/demand_follower.h"
 #include "takt/trajectory/quintic.h"
 
 namespace takt::group {
@@ -36,7 +36,7 @@ trajectory::Planner& PlannerOf(const Context& c, const State& s) {
   return ContextOf(c, s, place).planner;
 }
 
-const Ride& RideAt(const Context& c, std::uint64_t number) {
+const CarrierBinding& RideAt(const Context& c, std::uint64_t number) {
   return c.ahead.rides[number % kRides];
 }
 
@@ -51,7 +51,7 @@ bool HasTravel(const kinematics::Carrier& carrier) {
 }
 
 // The tool at a place of a stretch, carried by one ride whose travel is this.
-MovingFrame ToolAtTravel(const Context& c, const Stretch& stretch, double way, const Ride& ride,
+MovingFrame ToolAtTravel(const Context& c, const Stretch& stretch, double way, const CarrierBinding& ride,
                          const KinematicState& travel) {
   kinematics::Carrier carrier = CarrierOf(c, ride.cargo);
   carrier.travel = travel;
@@ -180,14 +180,14 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
     return;
   }
   clutch.catches_up = false;
-  trajectory::ChaseState chase;
-  const trajectory::Chaser chaser = {limits_now, planner, catching_up, period};
-  clutch.travel = trajectory::Chase(chaser, trajectory::ChaseMode::kPosition, clutch.travel, demand, chase);
+  trajectory::DemandFollowerState chase;
+  const trajectory::DemandFollower chaser = {limits_now, planner, catching_up, period};
+  clutch.travel = trajectory::FollowDemand(chaser, trajectory::DemandMode::kPosition, clutch.travel, demand, chase);
   clutch.coupled = chase.in_step && !law;
 }
 
 void StepOne(const Context& c, const Stretch& stretch, double way, std::uint64_t number, State& s) {
-  const Ride& ride = RideAt(c, number);
+  const CarrierBinding& ride = RideAt(c, number);
   if (!Moves(ride)) return;
   const kinematics::Carrier carrier = CarrierOf(c, ride.cargo);
   if (!HasTravel(carrier)) return;
@@ -304,7 +304,7 @@ bool CanLetGo(const Context& c, State& s) noexcept {
 
 trajectory::Limits LimitsAlong(const Context& c, const State& s, const Stretch& stretch, double way,
                                std::uint64_t number, const KinematicState& from, double distance) noexcept {
-  const Ride& ride = RideAt(c, number);
+  const CarrierBinding& ride = RideAt(c, number);
   const PathLimits& path = c.params.path;
   const trajectory::CoordinateLimits& own = c.ahead.window.limits();
   const double speed = std::abs(from.velocity);

@@ -3,11 +3,11 @@
 // A tool that rides goes with its carrier exactly. To stop in the machine's own space it lets go: what it takes for the
 // carrier's travel is braked to rest within limits, while the carrier goes on. Taken along again, that travel catches
 // up with the carrier's, as seen from the carrier, and from then on is the carrier's own, bit for bit; where the
-// group's limits come first (AfterSync::kLimited) it chases it (trajectory/chase.h). The path between keeps its shape
-// and its place on the object.
+// group's limits come first (AfterSync::kLimited) it chases it (trajectory/demand_follower.h). The path between keeps
+// its shape and its place on the object.
 #pragma once
 
-#include "takt/group/rides.h"
+#include "takt/group/carrier_bindings.h"
 
 namespace takt::group {
 

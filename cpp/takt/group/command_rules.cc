@@ -207,7 +207,7 @@ std::string WhyNotThis(const T&) {
 
 }  // namespace
 
-std::string WhyNot(const Command& command) {
+std::string Diagnose(const Command& command) {
   return std::visit(
       []<typename T>(const T& c) {
         const Field* wrong = FirstOutOfRange(TypeOf<T>(), &c);

@@ -288,7 +288,7 @@ struct TrackRotaryTable {
   ExecutionMode execution_mode = ExecutionMode::kImmediately;
 };
 
-// What became of a question whether a path is free (question.h). The engine alone gives it to itself.
+// What became of a question whether a path is free (path_check_request.h). The engine alone gives it to itself.
 struct PathChecked {
   std::uint64_t number = 0;  // of the question
   workspace::Trouble trouble = workspace::Trouble::kNone;
@@ -316,7 +316,7 @@ using Command = std::variant<MoveLinearAbsolute, MoveLinearRelative, MoveCircula
                              TrackRotaryTable, MoveArch, Jog, Stream, StreamPoint, PathChecked, PathPlanned>;
 
 // What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
-std::string WhyNot(const Command& command);
+std::string Diagnose(const Command& command);
 // The error of a command with which something is wrong: the same that the cycle finds in its numbers.
 ErrorId ErrorOf(const Command& command) noexcept;
 

@@ -14,8 +14,8 @@
 #include "takt/group/look_ahead.h"
 #include "takt/group/outputs.h"
 #include "takt/group/params.h"
+#include "takt/group/path_check_request.h"
 #include "takt/group/path_table.h"
-#include "takt/group/question.h"
 #include "takt/group/state.h"
 #include "takt/group/zones.h"
 #include "takt/kinematics/kinematics.h"
@@ -57,7 +57,8 @@ struct Context {
   FeedbackSink& feedback;
   LookAhead& ahead;
   Carriers carriers{};
-  Questions* questions = nullptr;  // where paths are asked about before they start; null: nobody knows what is free
+  PathCheckRequests* questions =
+      nullptr;  // where paths are asked about before they start; null: nobody knows what is free
   Zones zones{};
   bool plans_elsewhere = false;  // plans are made outside the cycle, which the command PathPlanned then tells
 };

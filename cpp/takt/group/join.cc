@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "takt/group/boarding.h"
+#include "takt/group/carrier_bindings.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/queue.h"
-#include "takt/group/rides.h"
 #include "takt/group/run.h"
 #include "takt/path/blend.h"
 
@@ -202,7 +202,7 @@ void Append(LookAhead& ahead, Stretch stretch) {
 void SettleRide(LookAhead& ahead, bool first, double left) {
   const Stretch& last = ahead[ahead.end() - 1];
   if (last.from_ride == last.to_ride) return;
-  Ride& ride = ahead.rides[last.to_ride % kRides];
+  CarrierBinding& ride = ahead.rides[last.to_ride % kRides];
   if (first) ride.begin = last.begin;
   ride.end = last.end() + left;
 }

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "takt/core/maths.h"
+#include "takt/group/carrier_bindings.h"
 #include "takt/group/clutch.h"
 #include "takt/group/make_stretch.h"
-#include "takt/group/rides.h"
 #include "takt/group/sync.h"
 
 namespace takt::group {
@@ -28,7 +28,7 @@ constexpr double kJerkOver_s = 0.004;  // a jerk is an acceleration's change in 
 constexpr double kFurthest_s = 1;
 
 bool HasChanged(const Context& c, std::uint64_t number) {
-  const Ride& ride = c.ahead.rides[number % kRides];
+  const CarrierBinding& ride = c.ahead.rides[number % kRides];
   return std::abs(SpeedOf(c, ride.cargo) - ride.speed) > kSameSpeed * std::abs(ride.speed);
 }
 

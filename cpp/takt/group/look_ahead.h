@@ -43,9 +43,9 @@ struct Boarding {
   double square = 0;
 };
 
-// What a path is carried by from some place on (rides.h).
-struct Ride {
-  Cargo cargo;
+// What a path is carried by from some place on (carrier_bindings.h).
+struct CarrierBinding {
+  CarriedTarget cargo;
   Frame reference_inverse;  // of where it lies in the still world
   bool displaces = false;   // the still world is not the MCS there
   // From where to where along the path the tool goes over to it from the ride before.
@@ -114,7 +114,7 @@ struct LookAhead {
   std::uint64_t count = 0;
 
   OpenCorner corner;
-  std::array<Ride, kRides> rides{};                  // a ring
+  std::array<CarrierBinding, kRides> rides{};        // a ring
   std::array<Unsteady, kProductSystems> unsteady{};  // carriers of product coordinate systems
   std::uint64_t end_ride = 0;                        // of the last stretch
   std::uint64_t from_ride = 0;                       // of the start of the move being planned

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "takt/group/boarding.h"
+#include "takt/group/carrier_bindings.h"
 #include "takt/group/jog.h"
-#include "takt/group/rides.h"
 #include "takt/path/arch.h"
 
 namespace takt::group {
@@ -190,8 +190,8 @@ ErrorId Straight(const Context& c, const Request& move, const Frame& to, const p
 
 // The coordinate system of a move in the still world; the ride that leads there.
 Frame StillFrameOf(const Context& c, const Request& move, LookAhead& ahead) {
-  const Cargo& cargo = move.cargo;
-  const Ride& end = ahead.rides[ahead.end_ride % kRides];
+  const CarriedTarget& cargo = move.cargo;
+  const CarrierBinding& end = ahead.rides[ahead.end_ride % kRides];
   Stretch& stretch = ahead.next;
   Frame frame = kinematics::ToFrame(move.frame);
   if (cargo.carrier == 0 && !end.displaces) return frame;

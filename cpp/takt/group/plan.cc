@@ -5,12 +5,12 @@
 
 #include "takt/group/ask.h"
 #include "takt/group/boarding.h"
+#include "takt/group/carrier_bindings.h"
 #include "takt/group/clutch.h"
 #include "takt/group/jog.h"
 #include "takt/group/join.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/queue.h"
-#include "takt/group/rides.h"
 #include "takt/group/sample.h"
 #include "takt/group/switches.h"
 #include "takt/group/track.h"
@@ -170,7 +170,7 @@ void BeginStretch(const Context& c, double time_s, State& s) {
   if (s.planning.element == 0) {
     c.ahead.from_ride = next.from_ride;
     if (next.from_ride != next.to_ride) {
-      Ride& ride = c.ahead.rides[next.to_ride % kRides];
+      CarrierBinding& ride = c.ahead.rides[next.to_ride % kRides];
       ride.begin = next.begin;
       ride.end = next.begin + next.to + left;
     }
@@ -201,9 +201,9 @@ bool Settled(const Context& c, State& s) {
   const double late = std::abs(time - expected);
   next.eta_end = next.eta_begin + time * next.to / whole;
   if (c.ahead.next_time_s > 0 || next.from_ride == next.to_ride || s.planning.element > 0) return true;
-  const Ride& ride = c.ahead.rides[next.to_ride % kRides];
-  const Ride& before = c.ahead.rides[next.from_ride % kRides];
-  const auto speed = [&](const Ride& one) { return DisplacementOf(c, one, 0).p.v.Norm(); };
+  const CarrierBinding& ride = c.ahead.rides[next.to_ride % kRides];
+  const CarrierBinding& before = c.ahead.rides[next.from_ride % kRides];
+  const auto speed = [&](const CarrierBinding& one) { return DisplacementOf(c, one, 0).p.v.Norm(); };
   if (late * (speed(ride) + speed(before)) < kStraightEnough) return true;
   BeginStretch(c, time, s);
   return false;
@@ -218,7 +218,7 @@ void TakeNextTool(const Context& c, const State& s) {
     return;
   }
   ToolAt(c, ahead.next_joints, ahead.next_tool);
-  const Ride& ride = ahead.rides[ahead.next.to_ride % kRides];
+  const CarrierBinding& ride = ahead.rides[ahead.next.to_ride % kRides];
   if (ride.displaces) ahead.next_tool = ReferenceOf(ride) * ahead.next_tool;
 }
 

@@ -1,9 +1,9 @@
 // What everybody sees of a group.
+#include "takt/group/carrier_bindings.h"
 #include "takt/group/group.h"
 #include "takt/group/members.h"
 #include "takt/group/plan.h"
 #include "takt/group/queue.h"
-#include "takt/group/rides.h"
 #include "takt/group/run.h"
 #include "takt/group/systems.h"
 #include "takt/group/track.h"
@@ -35,7 +35,7 @@ void PublishTracking(const Context& c, const State& s, const kinematics::MovingF
   // Until it begins to go over it is on what it comes from.
   const double way = stretch.from + s.pace.now.position - stretch.begin;
   const std::uint64_t number = ShareAt(c.ahead, stretch, way).position > 0 ? stretch.to_ride : stretch.from_ride;
-  const Cargo& cargo = c.ahead.rides[number % kRides].cargo;
+  const CarriedTarget& cargo = c.ahead.rides[number % kRides].cargo;
   if (cargo.carrier == 0) return;
   const kinematics::Pose on = kinematics::ToPose(PlaceOf(c, cargo).GetFrame().Inverse() * tcp.GetFrame());
   out.object_x = on.x;

@@ -15,13 +15,13 @@ void describe(Enumeration<MoveKind>& e) {
   e.value(MoveKind::kJog, "jog", "As long as it is held.");
 }
 
-void describe(Description<Cargo>& d) {
+void describe(Description<CarriedTarget>& d) {
   d.about("Something that lies on a carrier.");
-  d.internal<&Cargo::carrier>("Its number; 0: none.");
-  d.internal<&Cargo::from>("Travel at which it lay there.");
-  d.internal<&Cargo::lies>("Of the origin.");
-  d.internal<&Cargo::has_origin>("Another origin than that of the carrier.");
-  d.internal<&Cargo::origin>("In the MCS.");
+  d.internal<&CarriedTarget::carrier>("Its number; 0: none.");
+  d.internal<&CarriedTarget::from>("Travel at which it lay there.");
+  d.internal<&CarriedTarget::lies>("Of the origin.");
+  d.internal<&CarriedTarget::has_origin>("Another origin than that of the carrier.");
+  d.internal<&CarriedTarget::origin>("In the MCS.");
 }
 
 void describe(Description<Request>& d) {

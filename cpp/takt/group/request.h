@@ -18,14 +18,14 @@ namespace takt::group {
 enum class MoveKind : std::uint8_t { kNone, kLinear, kCircular, kDirect, kPath, kArch, kJog };
 
 // Something that lies on a carrier: its place then, and the carrier's travel since.
-struct Cargo {
+struct CarriedTarget {
   std::uint32_t carrier = 0;  // its number; 0: none, it stands in the MCS
   double from = 0;            // travel at which it lay there
   kinematics::Pose lies;      // seen from the carrier's origin
   bool has_origin = false;    // another one than that of the carrier itself:
   kinematics::Pose origin;    // in the MCS
 
-  bool operator==(const Cargo&) const = default;
+  bool operator==(const CarriedTarget&) const = default;
 };
 
 // Six numbers of the tool, then those of the axes; NaN: not given.
@@ -40,7 +40,7 @@ struct Request {
   CoordinateSystem system = CoordinateSystem::kMcs;
   std::uint32_t pcs = 0;   // from 0
   kinematics::Pose frame;  // where that coordinate system was in the MCS when the command was given
-  Cargo cargo;             // or what it is that of, if that moves
+  CarriedTarget cargo;     // or what it is that of, if that moves
   Numbers to{};
   path::Circle circle;
   std::uint32_t path = 0;    // index of the machine's
@@ -63,7 +63,7 @@ struct Request {
 };
 
 void describe(Enumeration<MoveKind>&);
-void describe(Description<Cargo>&);
+void describe(Description<CarriedTarget>&);
 void describe(Description<Request>&);
 
 }  // namespace takt::group

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "takt/group/carrier_bindings.h"
 #include "takt/group/members.h"
-#include "takt/group/rides.h"
 #include "takt/group/run.h"
 
 namespace takt::group {
@@ -31,8 +31,8 @@ bool RiseStands(const State& s) noexcept {
 void StepRise(const Context& c, const Stretch& stretch, kinematics::MovingFrame& tool, State& s) noexcept {
   Rise& rise = s.rise;
   if (!rise.used) return;
-  const Ride& to = c.ahead.rides[stretch.to_ride % kRides];
-  const Ride& ride = Moves(to) ? to : c.ahead.rides[stretch.from_ride % kRides];
+  const CarrierBinding& to = c.ahead.rides[stretch.to_ride % kRides];
+  const CarrierBinding& ride = Moves(to) ? to : c.ahead.rides[stretch.from_ride % kRides];
   if (!Moves(ride)) return;
   const MovingFrame object = PlaceOf(c, ride.cargo);
   const KDL::Vector up = object.M.R.UnitZ();

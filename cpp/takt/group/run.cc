@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "takt/axis/guidance.h"
+#include "takt/group/carrier_bindings.h"
 #include "takt/group/clutch.h"
 #include "takt/group/jog.h"
 #include "takt/group/join.h"
@@ -12,7 +13,6 @@
 #include "takt/group/members.h"
 #include "takt/group/plan.h"
 #include "takt/group/queue.h"
-#include "takt/group/rides.h"
 #include "takt/group/rise.h"
 #include "takt/group/switches.h"
 #include "takt/group/sync.h"
@@ -209,7 +209,7 @@ bool CanBeTimed(const Context& c, const State& s) {
   // How long it takes is known to the next stop only, and a module wants to know it to the end of its order. Others may
   // give a move later that blends onto what moves.
   const bool to_the_end = c.carriers.modules;
-  if (!to_the_end && std::ranges::any_of(s.cargoes, [](const Cargo& cargo) { return cargo.carrier != 0; }))
+  if (!to_the_end && std::ranges::any_of(s.cargoes, [](const CarriedTarget& cargo) { return cargo.carrier != 0; }))
     return false;
   if (to_the_end && behind == s.done + 1 && behind < s.done + s.queue.count) return false;
   for (std::uint64_t i = s.done; i < behind; ++i) {
@@ -313,7 +313,7 @@ void Sit(const Context& c, State& s) noexcept {
   const Stretch* stretch = Here(c, s);
   const double way = std::clamp(stretch->from + s.pace.now.position - stretch->begin, stretch->from, stretch->to);
   const std::uint64_t number = ShareAt(c.ahead, *stretch, way).position > 0 ? stretch->to_ride : stretch->from_ride;
-  Ride ride = ahead.rides[number % kRides];
+  CarrierBinding ride = ahead.rides[number % kRides];
   ride.boarding.earliest_s = NAN;
   path::Point place = path::PointAt(stretch->segment, way);
   if (s.rise.used) {  // as high as it is
@@ -331,7 +331,7 @@ void Sit(const Context& c, State& s) noexcept {
   s.clutches[0] = clutch;
 }
 
-void SitOn(const Context& c, const Ride& ride, const path::Point& place, State& s) noexcept {
+void SitOn(const Context& c, const CarrierBinding& ride, const path::Point& place, State& s) noexcept {
   LookAhead& ahead = c.ahead;
   ahead.end_ride = ahead.rides_end++;
   ahead.rides[ahead.end_ride % kRides] = ride;
@@ -362,7 +362,7 @@ void SitOn(const Context& c, const Ride& ride, const path::Point& place, State& 
   s.brake = {};
 }
 
-Clutch& SitDown(const Context& c, const Cargo& cargo, double travel, State& s) noexcept {
+Clutch& SitDown(const Context& c, const CarriedTarget& cargo, double travel, State& s) noexcept {
   const End end = Present(c, s);
   s.joints = end.joints;
   if (s.begun) s.way_before += s.pace.now.position;

@@ -40,10 +40,10 @@ bool IsOnRide(const Context& c, const State& s) noexcept;
 bool IsBetweenRides(const Context& c, const State& s) noexcept;
 // Sits down, where it stands, on a carrier whose travel is `travel` [mm or rad] as far as the tool is concerned.
 // Returns the clutch between them, which is not coupled.
-Clutch& SitDown(const Context& c, const Cargo& cargo, double travel, State& s) noexcept;
+Clutch& SitDown(const Context& c, const CarriedTarget& cargo, double travel, State& s) noexcept;
 // Forgets the path and stays where it is on the ride.
 void Sit(const Context& c, State& s) noexcept;
 // The same on another ride, at a place of its still world.
-void SitOn(const Context& c, const Ride& ride, const path::Point& place, State& s) noexcept;
+void SitOn(const Context& c, const CarrierBinding& ride, const path::Point& place, State& s) noexcept;
 
 }  // namespace takt::group

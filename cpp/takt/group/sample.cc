@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "takt/group/boarding.h"
+#include "takt/group/carrier_bindings.h"
 #include "takt/group/failures.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/plan.h"
 #include "takt/group/queue.h"
-#include "takt/group/rides.h"
 
 namespace takt::group {
 

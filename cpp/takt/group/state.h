@@ -84,7 +84,7 @@ struct Track {
   bool ends = false;     // the object has left
   bool in_sync = false;
   std::uint64_t near_cycles = 0;
-  Cargo cargo;
+  CarriedTarget cargo;
   kinematics::CarrierKind kind = kinematics::CarrierKind::kStraight;
   double sense = 1;  // of the travel
   double begin = 0;
@@ -152,7 +152,7 @@ struct State {
   std::array<std::uint32_t, kMaxAxes> members{};  // axis + 1 in each place; 0: none
   bool kinematics_on = true;
   std::array<kinematics::Pose, kProductSystems> product_systems{};  // in the MCS
-  std::array<Cargo, kProductSystems> cargoes{};                     // of those that move instead
+  std::array<CarriedTarget, kProductSystems> cargoes{};             // of those that move instead
   bool tool_changed = false;  // since the machine was made; the frames are in Context::mounting
   kinematics::Pose tool;      // then: on the flange
   double velocity_factor = 1;

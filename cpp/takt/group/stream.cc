@@ -279,9 +279,9 @@ void FollowStream(const Context& c, State& s) noexcept {
     const trajectory::Limits own = member.params.planner_limits();
     const trajectory::Limits catching_up = {own.velocity * k.velocity_factor, own.acceleration * k.acceleration_factor,
                                             own.deceleration * k.acceleration_factor, own.jerk * k.jerk_factor};
-    const auto mode = has_points ? trajectory::ChaseMode::kPosition : trajectory::ChaseMode::kVelocity;
+    const auto mode = has_points ? trajectory::DemandMode::kPosition : trajectory::DemandMode::kVelocity;
     const KinematicState set =
-        trajectory::Chase({own, member.planner, catching_up, period}, mode, before, demand, of.chase);
+        trajectory::FollowDemand({own, member.planner, catching_up, period}, mode, before, demand, of.chase);
     next.position[i] = set.position;
     next.velocity[i] = set.velocity;
     next.acceleration[i] = set.acceleration;

@@ -1,8 +1,9 @@
 // Set points of a group that are streamed from outside (AX-114), as axis/stream.h has those of an axis.
 //
 // A set point becomes one of each axis when it comes: by the inverse kinematics from the one before, so in its branch.
-// Each axis follows its own curve through them, all with the same times, within its limits (trajectory/chase.h).
-// Between set points the tool is off the straight line by what the axes bend in that time.
+// Each axis follows its own curve through them, all with the same times, within its limits
+// (trajectory/demand_follower.h). Between set points the tool is off the straight line by what the axes bend in that
+// time.
 //
 // Invariant: with the set points given, braking each axis with all that it has ends within its SW limits, and outside
 // zones of other groups; a set point that would break that is not given, and the stream ends.

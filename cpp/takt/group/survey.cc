@@ -37,7 +37,7 @@ struct Survey::Inside {
     return c;
   }
 
-  void Begin(const Question& q) {
+  void Begin(const PathCheckRequest& q) {
     MountTool(kinematics::ToFrame(q.tool), fixed.mounting);
     for (std::size_t k = 0; k < kMaxAxes; ++k) {
       state.members[k] = q.members[k] ? static_cast<std::uint32_t>(k + 1) : 0;
@@ -69,7 +69,7 @@ struct Survey::Inside {
     return kinematics::Reason::kNone;
   }
 
-  kinematics::Reason Run(const Question& q, const std::function<bool(const Part&)>& use);
+  kinematics::Reason Run(const PathCheckRequest& q, const std::function<bool(const Part&)>& use);
 
   Fixed fixed;
   LookAhead ahead;
@@ -80,7 +80,7 @@ struct Survey::Inside {
   double way = 0;  // to where `ahead` ends
 };
 
-kinematics::Reason Survey::Inside::Run(const Question& q, const std::function<bool(const Part&)>& use) {
+kinematics::Reason Survey::Inside::Run(const PathCheckRequest& q, const std::function<bool(const Part&)>& use) {
   Begin(q);
   const bool path = q.move.kind == MoveKind::kPath;
   std::optional<Stretch> before;
@@ -120,7 +120,7 @@ kinematics::Reason Survey::Inside::Run(const Question& q, const std::function<bo
 Survey::Survey(const Fixed& fixed) : inside_(std::make_unique<Inside>(fixed)) {}
 Survey::~Survey() = default;
 
-kinematics::Reason Survey::Run(const Question& question, const std::function<bool(const Part&)>& use) {
+kinematics::Reason Survey::Run(const PathCheckRequest& question, const std::function<bool(const Part&)>& use) {
   return inside_->Run(question, use);
 }
 

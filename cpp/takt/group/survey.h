@@ -1,6 +1,6 @@
-// The axes along a path that is asked about (question.h), made once more outside the cycle: all elements of the move in
-// full, and the blends at their corners, so that whatever becomes of a corner has been looked at (but for short chords:
-// join.h). Allocates.
+// The axes along a path that is asked about (path_check_request.h), made once more outside the cycle: all elements of
+// the move in full, and the blends at their corners, so that whatever becomes of a corner has been looked at (but for
+// short chords: join.h). Allocates.
 #pragma once
 
 #include <functional>
@@ -36,7 +36,7 @@ class Survey {
   };
   // One part after the other, until `use` returns false: each blend before what it leads to. The reason, if there is a
   // place without a position of the axes: the last sample is the one before it.
-  kinematics::Reason Run(const Question& question, const std::function<bool(const Part&)>& use);
+  kinematics::Reason Run(const PathCheckRequest& question, const std::function<bool(const Part&)>& use);
 
  private:
   struct Inside;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "takt/group/rides.h"
+#include "takt/group/carrier_bindings.h"
 #include "takt/kinematics/solutions.h"
 
 namespace takt::group {

@@ -5,11 +5,11 @@
 
 #include "takt/core/angle.h"
 #include "takt/core/maths.h"
+#include "takt/group/carrier_bindings.h"
 #include "takt/group/clutch.h"
 #include "takt/group/members.h"
 #include "takt/group/plan.h"
 #include "takt/group/queue.h"
-#include "takt/group/rides.h"
 #include "takt/group/run.h"
 #include "takt/group/systems.h"
 
@@ -136,7 +136,7 @@ void Leave(const Context& c, double distance, double of_tool, State& s) {
 
 ErrorId BeginTracking(const Context& c, Ticket ticket, const TrackConveyorBelt& m, State& s) noexcept {
   Track track;
-  Cargo& cargo = track.cargo;
+  CarriedTarget& cargo = track.cargo;
   cargo.carrier = c.carriers.Find(m.belt.view());
   if (cargo.carrier == 0) return ErrorId::kUnknownTarget;
   cargo.lies = {m.x, m.y, m.z, m.a, m.b, m.c};
@@ -159,7 +159,7 @@ ErrorId BeginTracking(const Context& c, Ticket ticket, const TrackConveyorBelt& 
 
 ErrorId BeginTracking(const Context& c, Ticket ticket, const TrackRotaryTable& m, State& s) noexcept {
   Track track;
-  Cargo& cargo = track.cargo;
+  CarriedTarget& cargo = track.cargo;
   cargo.carrier = c.carriers.Find(m.table.view());
   if (cargo.carrier == 0) return ErrorId::kUnknownTarget;
   cargo.lies = {m.x, m.y, m.z, m.a, m.b, m.c};

@@ -4,13 +4,13 @@
 #include <bit>
 #include <cmath>
 
+#include "takt/group/carrier_bindings.h"
 #include "takt/group/clutch.h"
 #include "takt/group/group.h"
 #include "takt/group/join.h"
 #include "takt/group/make_stretch.h"
 #include "takt/group/members.h"
 #include "takt/group/queue.h"
-#include "takt/group/rides.h"
 #include "takt/group/run.h"
 #include "takt/group/stream.h"
 #include "takt/group/systems.h"
@@ -148,8 +148,8 @@ void MeetBraking(const Context& c, const State& s, const kinematics::MovingFrame
   KDL::Vector up = KDL::Vector::Zero();  // still to be risen
   if (s.rise.used) {
     const Stretch& stretch = *ahead.At(now);
-    const Ride& to = ahead.rides[stretch.to_ride % kRides];
-    const Ride& ride = Moves(to) ? to : ahead.rides[stretch.from_ride % kRides];
+    const CarrierBinding& to = ahead.rides[stretch.to_ride % kRides];
+    const CarrierBinding& ride = Moves(to) ? to : ahead.rides[stretch.from_ride % kRides];
     up = c.mounting.base.M * (s.rise.target * PlaceOf(c, ride.cargo).M.R.UnitZ());
   }
   KDL::Vector along = here, braked = here;
@@ -273,7 +273,7 @@ void NoteZones(const Context& c, const State& s, const kinematics::Joints& joint
 
 void NoteRide(const Context& c, const State& s) noexcept {
   Stretch& next = c.ahead.next;
-  const Ride& ride = c.ahead.rides[next.to_ride % kRides];
+  const CarrierBinding& ride = c.ahead.rides[next.to_ride % kRides];
   if (c.zones.of.empty() || !HasTool(c, s) || next.joints || !Moves(ride)) return;
   const Stretch* here = IsOnRide(c, s) ? Here(c, s) : nullptr;
   if (here && c.ahead.rides[here->to_ride % kRides].cargo == ride.cargo) return;  // it does not board it

@@ -64,7 +64,7 @@ std::optional<engine::DriveSample> DriveGate::Take(std::string_view channel, std
     return {};
   }
   const auto index = static_cast<std::size_t>(drive - drives_.begin());
-  if (const std::optional<Refusal> refusal = WhyNot(*message, index)) {
+  if (const std::optional<Refusal> refusal = Diagnose(*message, index)) {
     const bool asked_for = refusal->reason == Reason::kOld && message->cycle == sent_[index].AgainAt(message->cycle);
     if (!asked_for) Say(channel, *refusal);
     return {};
@@ -74,7 +74,7 @@ std::optional<engine::DriveSample> DriveGate::Take(std::string_view channel, std
   return ToSample(*message, drive->axis);
 }
 
-std::optional<DriveGate::Refusal> DriveGate::WhyNot(const msgs::drive_feedback& m, std::size_t index) const {
+std::optional<DriveGate::Refusal> DriveGate::Diagnose(const msgs::drive_feedback& m, std::size_t index) const {
   const Drive& drive = drives_[index];
   const std::string& axis = machine_.axes[drive.axis].name;
   const std::int64_t sent = sent_[index].cycle;

@@ -73,7 +73,7 @@ class DriveGate {
   };
 
   // Why this message must not reach the engine.
-  std::optional<Refusal> WhyNot(const msgs::drive_feedback& message, std::size_t drive) const;
+  std::optional<Refusal> Diagnose(const msgs::drive_feedback& message, std::size_t drive) const;
   std::string UnknownChannel(std::string_view channel) const;
   void Say(std::string_view channel, const Refusal& refusal);
 

@@ -41,7 +41,7 @@ void NoteLimit(Ticket ticket, const Command& command, State& s) {
 }
 
 // It was refused for what is in the way, and that may move: a border does not.
-bool MayBeGone(const Answer& answer) {
+bool MayBeGone(const AdmissionResult& answer) {
   const ObjectKind kind = answer.object.kind;
   return answer.status.error == ErrorId::kCollision && (kind == ObjectKind::kMover || kind == ObjectKind::kTrack);
 }
@@ -65,13 +65,13 @@ constexpr bool kAlways = kIsOneOf<T, Enable, Disable, Reset, Halt, HaltX, HaltY,
 
 // Does `what` within the terms of a command.
 template <typename What>
-Answer AskFor(const Context& c, Ticket ticket, const Command& command, State& s, const What& what) {
+AdmissionResult AskFor(const Context& c, Ticket ticket, const Command& command, State& s, const What& what) {
   if (!HasGoodNumbers(command)) return Refused(ErrorId::kParameter);
   const Terms terms = TermsOf(c, command, s);
   if (terms.error != ErrorId::kNone) return Refused(terms.error, terms.object);
   const Context within = With(c, terms.params);
   const LimitedBy limited_by = s.limited_by;
-  const Answer answer = what(Given{within, ticket, s});
+  const AdmissionResult answer = what(CommandContext{within, ticket, s});
   if (answer.status.failed()) {
     s.limited_by = limited_by;  // a refused command leaves it
   } else if (terms.sets) {
@@ -80,8 +80,8 @@ Answer AskFor(const Context& c, Ticket ticket, const Command& command, State& s,
   return answer;
 }
 
-Answer AskFor(const Context& c, Ticket ticket, const Command& command, State& s) {
-  return AskFor(c, ticket, command, s, [&](const Given& given) {
+AdmissionResult AskFor(const Context& c, Ticket ticket, const Command& command, State& s) {
+  return AskFor(c, ticket, command, s, [&](const CommandContext& given) {
     return std::visit(
         [&]<typename T>(const T& body) {
           return !kAlways<T> && IsAway(c, s) ? Refused(ErrorId::kPartDisabled) : CarryOut(given, body);
@@ -92,15 +92,15 @@ Answer AskFor(const Context& c, Ticket ticket, const Command& command, State& s)
 
 }  // namespace
 
-Answer MoveAlong(const Context& c, const MoveToPosition& move, State& s) noexcept {
-  return AskFor(c, 0, move, s, [&](const Given& given) {
-    if (const ErrorId why = WhyNot(s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
+AdmissionResult MoveAlong(const Context& c, const MoveToPosition& move, State& s) noexcept {
+  return AskFor(c, 0, move, s, [&](const CommandContext& given) {
+    if (const ErrorId why = Diagnose(s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
     return IsAway(c, s) ? Refused(ErrorId::kPartDisabled) : MoveTo(given, move);
   });
 }
 
 bool Begin(const Context& c, Ticket ticket, const Command& command, State& s, ObjectInfo* in_the_way) noexcept {
-  const Answer answer = AskFor(c, ticket, command, s);
+  const AdmissionResult answer = AskFor(c, ticket, command, s);
   if (in_the_way && MayBeGone(answer)) {
     *in_the_way = answer.object;
     return false;

@@ -12,14 +12,14 @@
 namespace takt::mover {
 
 // A command that has arrived.
-struct Given {
+struct CommandContext {
   const Context& c;
   Ticket ticket;
   State& s;
 };
 
 // What becomes of it.
-struct Answer {
+struct AdmissionResult {
   Status status;
   double value = 0;     // s that it takes, as planned; refused: what the error says of it
   bool goes_on = true;  // it is done later
@@ -27,28 +27,28 @@ struct Answer {
   ObjectInfo object{};  // that is in the way
 };
 
-inline Answer Refused(ErrorId error, const ObjectInfo& object = {}, double value = 0) noexcept {
+inline AdmissionResult Refused(ErrorId error, const ObjectInfo& object = {}, double value = 0) noexcept {
   return {.status = Status::Failed(error), .value = value, .object = object};
 }
-inline Answer Refused(const planar::Verdict& why) noexcept {
+inline AdmissionResult Refused(const planar::Verdict& why) noexcept {
   return Refused(why.error, why.object, why.value);
 }
-inline Answer RefusedGap(double least) noexcept {
+inline AdmissionResult RefusedGap(double least) noexcept {
   return {.status = Status::Failed(ErrorId::kGapTooSmall), .value = least, .object = {}};
 }
-inline Answer Done() noexcept {
+inline AdmissionResult Done() noexcept {
   return {Status::Ok(), 0, false};
 }
 
 // The command gets this slot; who had it is aborted.
-inline void Take(const Given& g, Slot slot) noexcept {
+inline void Take(const CommandContext& g, Slot slot) noexcept {
   End(g.c, slot, FeedbackState::kAborted, ErrorId::kNone, g.s);
   g.s.tickets[slot] = g.ticket;
   g.s.begun[slot] = g.c.cycle.count;
 }
 
 // Why the mover does not do this now.
-inline ErrorId WhyNot(const State& s, Ask ask) noexcept {
+inline ErrorId Diagnose(const State& s, Ask ask) noexcept {
   if (s.state != planar::ObjectState::kEnabled) return ErrorId::kMoverDisabled;
   return Accepts(s.mode, ask) ? ErrorId::kNone : ErrorId::kCommandMode;
 }
@@ -91,7 +91,7 @@ void TakeRoute(const Context& c, const planar::Route& route) noexcept;
 // its way. No less than `wanted` if that is enough in all bends.
 double LeastGap(const Context& c, const State& s, const planar::Rider& rider, double wanted) noexcept;
 // The mover must not cover what a move would cover; the part that it would leave is named.
-inline Answer RefusedThere(const State& s, ErrorId why) noexcept {
+inline AdmissionResult RefusedThere(const State& s, ErrorId why) noexcept {
   const bool leaves = why == ErrorId::kOffStators && s.part != planar::kNoPart;
   return Refused(why, leaves ? ObjectAt(ObjectKind::kPart, s.part) : ObjectInfo{});
 }
@@ -106,53 +106,53 @@ std::uint32_t PartAwaited(const Context& c, const Command& command, const State&
 planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept;
 planar::Way WayOf(TurnDirection direction) noexcept;
 // A move of X and Y in the plane, whatever the mode.
-Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept;
+AdmissionResult MoveTo(const CommandContext& g, const MoveToPosition& command) noexcept;
 // As a mover on a route moves on: its coordinate system is that where it is, and nothing is reported.
-Answer MoveAlong(const Context& c, const MoveToPosition& move, State& s) noexcept;
+AdmissionResult MoveAlong(const Context& c, const MoveToPosition& move, State& s) noexcept;
 // One of C, if it may do what `ask` says.
-Answer Turn(const Given& g, const MoveC& command, Ask ask) noexcept;
+AdmissionResult Turn(const CommandContext& g, const MoveC& command, Ask ask) noexcept;
 
-Answer CarryOut(const Given& g, const Enable& command) noexcept;
-Answer CarryOut(const Given& g, const Disable& command) noexcept;
-Answer CarryOut(const Given& g, const Reset& command) noexcept;
-Answer CarryOut(const Given& g, const Halt& command) noexcept;
-Answer CarryOut(const Given& g, const SetPosition& command) noexcept;
-Answer CarryOut(const Given& g, const MoveToPosition& command) noexcept;
-Answer CarryOut(const Given& g, const MoveZ& command) noexcept;
-Answer CarryOut(const Given& g, const MoveA& command) noexcept;
-Answer CarryOut(const Given& g, const MoveB& command) noexcept;
-Answer CarryOut(const Given& g, const MoveC& command) noexcept;
-Answer CarryOut(const Given& g, const MoveX& command) noexcept;
-Answer CarryOut(const Given& g, const MoveY& command) noexcept;
-Answer CarryOut(const Given& g, const MoveRelativeX& command) noexcept;
-Answer CarryOut(const Given& g, const MoveRelativeY& command) noexcept;
-Answer CarryOut(const Given& g, const MoveRelativeC& command) noexcept;
-Answer CarryOut(const Given& g, const MoveVelocityX& command) noexcept;
-Answer CarryOut(const Given& g, const MoveVelocityY& command) noexcept;
-Answer CarryOut(const Given& g, const MoveVelocityC& command) noexcept;
-Answer CarryOut(const Given& g, const HaltX& command) noexcept;
-Answer CarryOut(const Given& g, const HaltY& command) noexcept;
-Answer CarryOut(const Given& g, const HaltZ& command) noexcept;
-Answer CarryOut(const Given& g, const HaltA& command) noexcept;
-Answer CarryOut(const Given& g, const HaltB& command) noexcept;
-Answer CarryOut(const Given& g, const HaltC& command) noexcept;
-Answer CarryOut(const Given& g, const HaltOnTrack& command) noexcept;
-Answer CarryOut(const Given& g, const JoinTrack& command) noexcept;
-Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept;
-Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept;
-Answer CarryOut(const Given& g, const AdoptTrackOrientation& command) noexcept;
-Answer CarryOut(const Given& g, const GearInPosOnTrack& command) noexcept;
-Answer CarryOut(const Given& g, const GearInPosOnTrackWithMasterMover& command) noexcept;
-Answer CarryOut(const Given& g, const StartExternalSetpointGeneration& command) noexcept;
-Answer CarryOut(const Given& g, const SetExternalSetpoint& command) noexcept;
-Answer CarryOut(const Given& g, const StopExternalSetpointGeneration& command) noexcept;
-Answer CarryOut(const Given& g, const Wait& command) noexcept;
-Answer CarryOut(const Given& g, const Release& command) noexcept;
-Answer CarryOut(const Given& g, const AddToGroup& command) noexcept;
-Answer CarryOut(const Given& g, const RemoveFromGroup& command) noexcept;
-Answer CarryOut(const Given& g, const JoinFormation& command) noexcept;
-Answer CarryOut(const Given& g, const LeaveFormation& command) noexcept;
-Answer CarryOut(const Given& g, const SetRoute& command) noexcept;
-Answer CarryOut(const Given& g, const ContinueRoute& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const Enable& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const Disable& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const Reset& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const Halt& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const SetPosition& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const MoveToPosition& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const MoveZ& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const MoveA& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const MoveB& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const MoveC& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const MoveX& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const MoveY& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const MoveRelativeX& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const MoveRelativeY& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const MoveRelativeC& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const MoveVelocityX& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const MoveVelocityY& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const MoveVelocityC& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const HaltX& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const HaltY& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const HaltZ& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const HaltA& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const HaltB& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const HaltC& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const HaltOnTrack& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const JoinTrack& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const LeaveTrack& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const MoveOnTrack& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const AdoptTrackOrientation& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const GearInPosOnTrack& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const GearInPosOnTrackWithMasterMover& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const StartExternalSetpointGeneration& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const SetExternalSetpoint& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const StopExternalSetpointGeneration& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const Wait& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const Release& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const AddToGroup& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const RemoveFromGroup& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const JoinFormation& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const LeaveFormation& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const SetRoute& command) noexcept;
+AdmissionResult CarryOut(const CommandContext& g, const ContinueRoute& command) noexcept;
 
 }  // namespace takt::mover

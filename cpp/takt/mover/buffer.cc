@@ -327,14 +327,14 @@ void LookBack(const Context& c, State& s) noexcept {
   End(c, kPassing, FeedbackState::kDone, ErrorId::kNone, s);
 }
 
-Answer CarryOut(const Given& g, const Wait& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const Wait& command) noexcept {
   g.s.buffer.until = g.c.cycle.count + static_cast<std::uint64_t>(std::llround(command.duration / g.c.cycle.period_s));
   g.s.buffer.for_release = command.for_release;
   Take(g, kWait);
   return {};
 }
 
-Answer CarryOut(const Given& g, const Release&) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const Release&) noexcept {
   if (g.s.state != planar::ObjectState::kEnabled) return Refused(ErrorId::kMoverDisabled);
   ++g.s.buffer.releases;
   return Done();

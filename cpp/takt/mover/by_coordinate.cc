@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "takt/mover/admission.h"
+#include "takt/mover/area_reservation.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/course.h"
 #include "takt/mover/formation.h"
-#include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
 
 namespace takt::mover {
@@ -110,7 +110,7 @@ std::optional<Plan> PlanEach(const Context& c, const State& s, Coordinate which,
 // Why X and Y may not move so: none.
 planar::Verdict WhyNotSo(const Context& c, const State& s, const PlaneMove& move) {
   if (const ErrorId why = DiagnoseCover(c, s, CoverOf(c, move, s.others.back())); why != ErrorId::kNone) {
-    const Answer answer = RefusedThere(s, why);
+    const AdmissionResult answer = RefusedThere(s, why);
     return {why, answer.object};
   }
   if (const ObjectInfo object = InTheWay(c, move, s.others.back(), false)) return {ErrorId::kCollision, object};
@@ -122,7 +122,7 @@ Slot SlotOf(Coordinate which) {
 }
 
 // X and Y move so from now on, by a command of one of them.
-void Put(const Given& g, Coordinate which, const PlaneMove& move, const Endless& endless) {
+void Put(const CommandContext& g, Coordinate which, const PlaneMove& move, const Endless& endless) {
   State& s = g.s;
   if (s.plane.turns) {  // that turn belonged to the move before
     CoordinateMove& turn = s.others.back();
@@ -139,7 +139,7 @@ void Put(const Given& g, Coordinate which, const PlaneMove& move, const Endless&
   Reserve(g.c, s, false);
 }
 
-Answer MoveEach(const Given& g, Coordinate which, const Goal& goal) {
+AdmissionResult MoveEach(const CommandContext& g, Coordinate which, const Goal& goal) {
   const std::optional<Plan> plan = PlanEach(g.c, g.s, which, goal);
   if (!plan) return Refused(ErrorId::kPlanning);
   if (const planar::Verdict why = WhyNotSo(g.c, g.s, plan->move); why.error != ErrorId::kNone) return Refused(why);
@@ -148,7 +148,7 @@ Answer MoveEach(const Given& g, Coordinate which, const Goal& goal) {
 }
 
 // As far in a direction as there is room: what has room further on has it nearer, too, so halving finds where it ends.
-Answer MoveEndlessly(const Given& g, Coordinate which, double velocity, const Limits& limits) {
+AdmissionResult MoveEndlessly(const CommandContext& g, Coordinate which, double velocity, const Limits& limits) {
   const Context& c = g.c;
   const double sense = std::copysign(1.0, velocity);
   const PlaneState at = At(g.s.plane.motion, Elapsed(c, g.s.plane.begin));
@@ -188,7 +188,7 @@ Answer MoveEndlessly(const Given& g, Coordinate which, double velocity, const Li
 
 // Dynamics of a command of X or Y by itself, no more than it may have.
 template <typename Command>
-Limits LimitsOfEachIn(const Given& g, const Command& command) {
+Limits LimitsOfEachIn(const CommandContext& g, const Command& command) {
   return LimitsOf(command, ParamsOfEach(g.c.params.xy), g.s.limited_by);
 }
 
@@ -201,21 +201,21 @@ MoveToPosition Unsigned(const Command& command) {
           .jerk = command.jerk};
 }
 
-Answer MoveTo(const Given& g, Coordinate which, const auto& command) {
-  if (const ErrorId why = WhyNot(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
+AdmissionResult MoveTo(const CommandContext& g, Coordinate which, const auto& command) {
+  if (const ErrorId why = Diagnose(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
   double x = command.position, y = command.position;
   if (const ErrorId why = ToMoverSystem(g.c, g.s, command.reference, x, y); why != ErrorId::kNone) return Refused(why);
   return MoveEach(g, which, {true, which == kX ? x : y, LimitsOfEachIn(g, command)});
 }
 
-Answer MoveBy(const Given& g, Coordinate which, const auto& command) {
-  if (const ErrorId why = WhyNot(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
+AdmissionResult MoveBy(const CommandContext& g, Coordinate which, const auto& command) {
+  if (const ErrorId why = Diagnose(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
   PlaneState at = At(g.s.plane.motion, Elapsed(g.c, g.s.plane.begin));
   return MoveEach(g, which, {true, Of(at, which).position + command.distance, LimitsOfEachIn(g, command)});
 }
 
-Answer MoveOn(const Given& g, Coordinate which, const auto& command) {
-  if (const ErrorId why = WhyNot(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
+AdmissionResult MoveOn(const CommandContext& g, Coordinate which, const auto& command) {
+  if (const ErrorId why = Diagnose(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
   const Limits limits = LimitsOfEachIn(g, Unsigned(command));
   if (command.velocity == 0) return MoveEach(g, which, {.limits = limits});
   return MoveEndlessly(g, which, command.velocity, limits);
@@ -252,10 +252,10 @@ Plan LeaveAtRest(const Context& c, const State& s, Coordinate which) {
 
 // Dynamics that would lead it where it must not be give way to the greatest ones: with these it comes to rest within
 // what it has reserved.
-Answer HaltEach(const Given& g, Coordinate which, const auto& command) {
+AdmissionResult HaltEach(const CommandContext& g, Coordinate which, const auto& command) {
   State& s = g.s;
   const Context& c = g.c;
-  if (const ErrorId why = WhyNot(s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
+  if (const ErrorId why = Diagnose(s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
   const MoveToPosition as{.deceleration = command.deceleration, .jerk = command.jerk};
   if (!s.plane.each) {
     const PlaneMove soft = RestOnLine(c, s, LimitsOf(as, c.params.xy, s.limited_by));
@@ -318,28 +318,28 @@ void Conclude(const Context& c, Slot slot, State& s) noexcept {
   e = {};
 }
 
-Answer CarryOut(const Given& g, const MoveX& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const MoveX& command) noexcept {
   return MoveTo(g, kX, command);
 }
-Answer CarryOut(const Given& g, const MoveY& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const MoveY& command) noexcept {
   return MoveTo(g, kY, command);
 }
-Answer CarryOut(const Given& g, const MoveRelativeX& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const MoveRelativeX& command) noexcept {
   return MoveBy(g, kX, command);
 }
-Answer CarryOut(const Given& g, const MoveRelativeY& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const MoveRelativeY& command) noexcept {
   return MoveBy(g, kY, command);
 }
-Answer CarryOut(const Given& g, const MoveVelocityX& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const MoveVelocityX& command) noexcept {
   return MoveOn(g, kX, command);
 }
-Answer CarryOut(const Given& g, const MoveVelocityY& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const MoveVelocityY& command) noexcept {
   return MoveOn(g, kY, command);
 }
-Answer CarryOut(const Given& g, const HaltX& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const HaltX& command) noexcept {
   return HaltEach(g, kX, command);
 }
-Answer CarryOut(const Given& g, const HaltY& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const HaltY& command) noexcept {
   return HaltEach(g, kY, command);
 }
 

@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "takt/core/describe_fwd.h"
-#include "takt/core/few.h"
+#include "takt/core/inline_vector.h"
 #include "takt/core/name.h"
 
 namespace takt::mover {
@@ -236,7 +236,7 @@ struct MoveOnTrack {
 enum class SyncDirections : std::uint8_t { kPositive, kNegative, kBoth };
 
 // Tracks one behind the other, each once.
-using Trail = Few<Name, 128>;
+using Trail = InlineVector<Name, 128>;
 
 struct GearInPosOnTrack {  // along tracks, with an axis
   Name master{};
@@ -332,11 +332,11 @@ inline constexpr std::size_t kVisitsPerCommand = 48;
 struct SetRoute {
   std::uint64_t first = 0;  // number of the first of them, that where it is or that where its new route begins
   bool continues = false;   // these follow on those of the command before
-  Few<Visit, kVisitsPerCommand> visits;
+  InlineVector<Visit, kVisitsPerCommand> visits;
 };
 struct ContinueRoute {};  // that it was taken off
 
-using MoverNumbers = Few<std::uint32_t, 1000>;  // from 1, in the order of the machine file
+using MoverNumbers = InlineVector<std::uint32_t, 1000>;  // from 1, in the order of the machine file
 
 // To movers at once: what each was told by SetRoute. Its target is the machine.
 struct StartRoutes {

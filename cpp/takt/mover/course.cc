@@ -142,7 +142,7 @@ void ShowCourse(const Context& c, const State& s) noexcept {
 
 void ShowRest(const Context& c, const State& s) noexcept {
   planar::Guard& guard = GuardOf(c);
-  const planar::MoverNow& now = c.grounds.movers[c.index];
+  const planar::MoverView& now = c.grounds.movers[c.index];
   if (now.comes) {
     Course there;
     planar::Add(planar::AreaThere(now), there);
@@ -199,7 +199,7 @@ ObjectInfo TakeCourseOff(const Context& now, const State& s, const SetPoint& at)
   AddOff(c, s, at, s.external.given, kind);
   const Course course = CourseOnTrack(c, kind);
   planar::Guard& guard = GuardOf(c);
-  Streets& streets = c.streets;
+  TrackNetworkState& streets = c.streets;
   const std::uint32_t found =
       streets.traffic.FindAcross(c.cycle, streets.network, streets.riders, guard, c.index, kind, course);
   if (found == kNobody) {

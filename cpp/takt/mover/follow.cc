@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "takt/core/maths.h"
+#include "takt/mover/area_reservation.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/course.h"
 #include "takt/mover/formation.h"
-#include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
 #include "takt/mover/run.h"
 
@@ -90,7 +90,7 @@ ErrorId GetOff(const Context& c, const PlaneState& off, ObjectInfo& object) {
   const double before = rider.off;
   rider.off = ReachOf(c, off);
   if (rider.off <= before) return ErrorId::kNone;
-  Streets& streets = c.streets;
+  TrackNetworkState& streets = c.streets;
   const std::uint32_t near = streets.traffic.TooNear(c.cycle, streets.network, streets.riders, c.index);
   if (near == planar::kNobody) return ErrorId::kNone;
   object = ObjectAt(ObjectKind::kMover, near);

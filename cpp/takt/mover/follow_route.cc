@@ -155,7 +155,7 @@ trajectory::Limits LimitsFor(const Context& c, const RouteDynamics& dynamics) {
 // Sends it straight on to the place of this visit.
 void Send(const Context& c, std::uint64_t visit, State& s, SurfaceRoute& r) {
   const Visit& to = r.visits[visit];
-  const Answer answer = MoveAlong(c, MoveTo(r.dynamics, to), s);
+  const AdmissionResult answer = MoveAlong(c, MoveTo(r.dynamics, to), s);
   if (!answer.status.failed()) {
     r.sent = visit;
     r.aims = true;

@@ -9,8 +9,8 @@
 #include "takt/core/angle.h"
 #include "takt/core/maths.h"
 #include "takt/mover/admission.h"
+#include "takt/mover/area_reservation.h"
 #include "takt/mover/coordinate.h"
-#include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
 
 namespace takt::mover {
@@ -244,19 +244,19 @@ void MindStar(const Context& c, State& s) noexcept {
   Leave(next, s);
 }
 
-Answer CarryOut(const Given& g, const JoinFormation& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const JoinFormation& command) noexcept {
   State& s = g.s;
   const Fleet& fleet = g.c.fleet;
-  if (const ErrorId why = WhyNot(s, Ask::kJoinFormation); why != ErrorId::kNone) return Refused(why);
+  if (const ErrorId why = Diagnose(s, Ask::kJoinFormation); why != ErrorId::kNone) return Refused(why);
   const auto& names = g.c.streets.movers;
-  const auto found = std::ranges::find(names, command.star.view(), &MoverNow::name);
+  const auto found = std::ranges::find(names, command.star.view(), &MasterMover::name);
   if (found == names.end()) return Refused(ErrorId::kUnknownTarget);
   const auto index = static_cast<std::uint32_t>(found - names.begin());
   const ObjectInfo itself = MoverNumbered(g.c.index), object = MoverNumbered(index);
   if (IsStar(g.c) || index == g.c.index) return Refused(ErrorId::kFormationChain, itself);
   const State& star = fleet.states[index];
   if (IsPlanet(star)) return Refused(ErrorId::kFormationChain, object);
-  if (const ErrorId why = WhyNot(star, Ask::kJoinFormation); why != ErrorId::kNone) return Refused(why, object);
+  if (const ErrorId why = Diagnose(star, Ask::kJoinFormation); why != ErrorId::kNone) return Refused(why, object);
   if (IsAway(g.c, star)) return Refused(ErrorId::kPartDisabled, ObjectAt(ObjectKind::kPart, star.part));
   if (star.system != s.system) return Refused(ErrorId::kReference, object);
   if (!IsResting(g.c, s)) return Refused(ErrorId::kObjectMoves, itself);
@@ -278,9 +278,9 @@ Answer CarryOut(const Given& g, const JoinFormation& command) noexcept {
   return {};
 }
 
-Answer CarryOut(const Given& g, const LeaveFormation&) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const LeaveFormation&) noexcept {
   State& s = g.s;
-  if (const ErrorId why = WhyNot(s, Ask::kLeaveFormation); why != ErrorId::kNone) return Refused(why);
+  if (const ErrorId why = Diagnose(s, Ask::kLeaveFormation); why != ErrorId::kNone) return Refused(why);
   if (!IsResting(StarOf(g.c, s), StateOfStar(g.c, s))) {
     return Refused(ErrorId::kObjectMoves, MoverNumbered(s.formation.star));
   }

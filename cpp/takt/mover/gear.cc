@@ -61,7 +61,7 @@ planar::Verdict Find(const planar::Network& network, const Rider& r, const SyncP
 
 // Tracks from the mover's own one on. kTrail: the one that does not begin where the one before it ends, or has no
 // geometry; its own track, if that is on none of them.
-planar::Verdict RouteAlong(const Streets& streets, const Trail& trail, std::uint32_t own, Route& out) {
+planar::Verdict RouteAlong(const TrackNetworkState& streets, const Trail& trail, std::uint32_t own, Route& out) {
   const planar::Network& network = streets.network;
   out = {};
   Route all;
@@ -108,7 +108,7 @@ std::int8_t SenseOf(SyncDirections directions) {
 }
 
 template <typename Gear>
-SyncPlace SlavePlace(const State& s, const Streets& streets, const Gear& command) {
+SyncPlace SlavePlace(const State& s, const TrackNetworkState& streets, const Gear& command) {
   return {command.slave_sync_track.empty() ? s.track : streets.Find(command.slave_sync_track.view()),
           command.slave_sync_position, command.direction_slave_sync_position,
           command.modulo_tolerance_slave_sync_position};
@@ -116,7 +116,7 @@ SyncPlace SlavePlace(const State& s, const Streets& streets, const Gear& command
 
 // The mover goes along from now on, as `next` says.
 template <typename Gear>
-Answer Couple(const Given& g, const Gear& command, Rider& next, std::uint32_t axis) {
+AdmissionResult Couple(const CommandContext& g, const Gear& command, Rider& next, std::uint32_t axis) {
   State& s = g.s;
   if (const planar::Verdict way = AskRoute(g.c, next.route); way.error != ErrorId::kNone) return Refused(way);
   next.aim = planar::Aim::kFollow;
@@ -150,7 +150,7 @@ void Lose(const Context& c, ErrorId error, State& s) {
 
 }  // namespace
 
-bool IsFollowedBy(const Streets& streets, std::uint32_t master, std::uint32_t mover) noexcept {
+bool IsFollowedBy(const TrackNetworkState& streets, std::uint32_t master, std::uint32_t mover) noexcept {
   for (std::size_t i = 0; i <= streets.riders.size(); ++i) {
     if (mover == master) return true;
     const Rider& r = streets.riders[mover];
@@ -160,10 +160,10 @@ bool IsFollowedBy(const Streets& streets, std::uint32_t master, std::uint32_t mo
   return true;
 }
 
-Answer CarryOut(const Given& g, const GearInPosOnTrack& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const GearInPosOnTrack& command) noexcept {
   State& s = g.s;
-  Streets& streets = g.c.streets;
-  if (const ErrorId why = WhyNot(s, Ask::kMoveOnTrack); why != ErrorId::kNone) return Refused(why);
+  TrackNetworkState& streets = g.c.streets;
+  if (const ErrorId why = Diagnose(s, Ask::kMoveOnTrack); why != ErrorId::kNone) return Refused(why);
   const auto master = std::ranges::find(streets.masters, command.master.view(), &Master::name);
   if (master == streets.masters.end()) return Refused(ErrorId::kUnknownTarget);
   if (!master->known) return Refused(ErrorId::kMasterOff);
@@ -186,12 +186,12 @@ Answer CarryOut(const Given& g, const GearInPosOnTrack& command) noexcept {
   return Couple(g, command, next, static_cast<std::uint32_t>(master - streets.masters.begin()));
 }
 
-Answer CarryOut(const Given& g, const GearInPosOnTrackWithMasterMover& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const GearInPosOnTrackWithMasterMover& command) noexcept {
   State& s = g.s;
-  Streets& streets = g.c.streets;
+  TrackNetworkState& streets = g.c.streets;
   const planar::Network& network = streets.network;
-  if (const ErrorId why = WhyNot(s, Ask::kMoveOnTrack); why != ErrorId::kNone) return Refused(why);
-  const auto found = std::ranges::find(streets.movers, command.master.view(), &MoverNow::name);
+  if (const ErrorId why = Diagnose(s, Ask::kMoveOnTrack); why != ErrorId::kNone) return Refused(why);
+  const auto found = std::ranges::find(streets.movers, command.master.view(), &MasterMover::name);
   if (found == streets.movers.end()) return Refused(ErrorId::kUnknownTarget);
   const auto index = static_cast<std::uint32_t>(found - streets.movers.begin());
   if (IsFollowedBy(streets, g.c.index, index)) return Refused(ErrorId::kCouplingLoop);
@@ -236,14 +236,14 @@ Answer CarryOut(const Given& g, const GearInPosOnTrackWithMasterMover& command) 
 void Lead(const Context& c, State& s) noexcept {
   if (!IsGeared(c, s)) return;
   Rider& rider = c.rider();
-  Streets& streets = c.streets;
+  TrackNetworkState& streets = c.streets;
   if (rider.gear.master == kNobody) {
     const Master& master = streets.masters[s.gear.axis];
     if (!master.known) return Lose(c, ErrorId::kMasterOff, s);
     rider.demand = master.at;
     return;
   }
-  const MoverNow& master = streets.movers[rider.gear.master];
+  const MasterMover& master = streets.movers[rider.gear.master];
   if (!master.enabled || !master.on_track) return Lose(c, ErrorId::kMasterOffTrack, s);
   if (rider.gear.takes_masters_way &&
       !planar::TakeMastersWay(streets.network, streets.riders[rider.gear.master], rider)) {

@@ -10,7 +10,7 @@ inline bool IsGeared(const Context& c, const State& s) noexcept {
   return s.track != planar::kNoTrack && c.rider().on && c.rider().aim == planar::Aim::kFollow;
 }
 // Whether `mover` goes along with this one, be it over others.
-bool IsFollowedBy(const Streets& streets, std::uint32_t master, std::uint32_t mover) noexcept;
+bool IsFollowedBy(const TrackNetworkState& streets, std::uint32_t master, std::uint32_t mover) noexcept;
 
 // Before traffic: where its master is at the end of this cycle, and where that goes. Masters that are lost end the
 // gear.

@@ -1,10 +1,10 @@
 // Into a group of movers and out of it.
 #include "takt/mover/admission.h"
-#include "takt/mover/ground.h"
+#include "takt/mover/area_reservation.h"
 
 namespace takt::mover {
 
-Answer CarryOut(const Given& g, const AddToGroup& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const AddToGroup& command) noexcept {
   const std::uint32_t group = g.c.grounds.Find(command.group.view());
   if (group == 0) return Refused(ErrorId::kParameter);
   Stand(g.c, g.s);
@@ -12,7 +12,7 @@ Answer CarryOut(const Given& g, const AddToGroup& command) noexcept {
   return verdict.error == ErrorId::kNone ? Done() : Refused(verdict.error, verdict.object);
 }
 
-Answer CarryOut(const Given& g, const RemoveFromGroup&) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const RemoveFromGroup&) noexcept {
   const planar::Verdict verdict = planar::RemoveMover(g.c.index, g.c.grounds);
   return verdict.error == ErrorId::kNone ? Done() : Refused(verdict.error, verdict.object);
 }

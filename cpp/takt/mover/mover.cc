@@ -5,6 +5,7 @@
 
 #include "takt/core/describe.h"
 #include "takt/core/maths.h"
+#include "takt/mover/area_reservation.h"
 #include "takt/mover/by_coordinate.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/course.h"
@@ -12,7 +13,6 @@
 #include "takt/mover/follow_route.h"
 #include "takt/mover/formation.h"
 #include "takt/mover/gear.h"
-#include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
 #include "takt/mover/run.h"
 

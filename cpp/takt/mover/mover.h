@@ -12,8 +12,8 @@
 #include "takt/mover/outputs.h"
 #include "takt/mover/params.h"
 #include "takt/mover/state.h"
-#include "takt/mover/streets.h"
-#include "takt/planar/grounds.h"
+#include "takt/mover/track_network_state.h"
+#include "takt/planar/group_registry.h"
 #include "takt/trajectory/planner.h"
 
 namespace takt::mover {
@@ -44,8 +44,8 @@ struct Context {
   Cycle cycle;
   trajectory::Planner& planner;
   FeedbackSink& feedback;
-  Streets& streets;
-  planar::Grounds& grounds;
+  TrackNetworkState& streets;
+  planar::GroupRegistry& grounds;
   std::uint32_t index = 0;  // of the mover
   Fleet fleet{};
 

@@ -4,11 +4,11 @@
 #include <optional>
 
 #include "takt/mover/admission.h"
+#include "takt/mover/area_reservation.h"
 #include "takt/mover/by_coordinate.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/course.h"
 #include "takt/mover/formation.h"
-#include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
 
 namespace takt::mover {
@@ -32,7 +32,8 @@ MoveToPosition WithLimits(MoveToPosition move, const Limits& limits) {
 }
 
 // From one motion to another place: at once if that is quicker, else by way of rest. Nothing: no such motion.
-std::optional<PlaneMove> PlanPlane(const Given& g, const MoveToPosition& to, const Limits& limits, double& duration) {
+std::optional<PlaneMove> PlanPlane(const CommandContext& g, const MoveToPosition& to, const Limits& limits,
+                                   double& duration) {
   const Context& c = g.c;
   if (IsAtCorner(c, g.s.plane)) {
     const PlaneMove& from = g.s.plane;
@@ -86,8 +87,8 @@ std::optional<PlaneMove> PlanPlane(const Given& g, const MoveToPosition& to, con
 }
 
 template <typename Move>
-Answer MoveOne(const Given& g, const Move& command, std::size_t other, Ask ask) {
-  if (const ErrorId why = WhyNot(g.s, ask); why != ErrorId::kNone) return Refused(why);
+AdmissionResult MoveOne(const CommandContext& g, const Move& command, std::size_t other, Ask ask) {
+  if (const ErrorId why = Diagnose(g.s, ask); why != ErrorId::kNone) return Refused(why);
   const CoordinateParams params = ParamsOf(g.c, g.s, other);
   const Limits limits = LimitsOf(command, params, g.s.limited_by);
   if (command.position < params.lower || command.position > params.upper) {
@@ -106,7 +107,7 @@ Answer MoveOne(const Given& g, const Move& command, std::size_t other, Ask ask) 
 
 }  // namespace
 
-Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
+AdmissionResult MoveTo(const CommandContext& g, const MoveToPosition& command) noexcept {
   State& s = g.s;
   const Limits limits = LimitsOf(command, g.c.params.xy, s.limited_by);
   double duration = 0;
@@ -160,20 +161,20 @@ Answer MoveTo(const Given& g, const MoveToPosition& command) noexcept {
   return {Status::Ok(), duration};
 }
 
-Answer CarryOut(const Given& g, const MoveToPosition& command) noexcept {
-  if (const ErrorId why = WhyNot(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
+AdmissionResult CarryOut(const CommandContext& g, const MoveToPosition& command) noexcept {
+  if (const ErrorId why = Diagnose(g.s, Ask::kMoveToPosition); why != ErrorId::kNone) return Refused(why);
   MoveToPosition to = command;
   const ErrorId why = ToMoverSystem(g.c, g.s, command.reference, to.x, to.y);
   return why == ErrorId::kNone ? MoveTo(g, to) : Refused(why);
 }
 
-Answer CarryOut(const Given& g, const MoveZ& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const MoveZ& command) noexcept {
   return MoveOne(g, command, 0, Ask::kMoveAuxiliary);
 }
-Answer CarryOut(const Given& g, const MoveA& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const MoveA& command) noexcept {
   return MoveOne(g, command, 1, Ask::kMoveAuxiliary);
 }
-Answer CarryOut(const Given& g, const MoveB& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const MoveB& command) noexcept {
   return MoveOne(g, command, 2, Ask::kMoveAuxiliary);
 }
 
@@ -181,7 +182,7 @@ namespace {
 
 // C is its own to turn, as `ask` says.
 ErrorId WhyNotTurn(const State& s, Ask ask) {
-  const ErrorId why = WhyNot(s, ask);
+  const ErrorId why = Diagnose(s, ask);
   if (why != ErrorId::kNone) return why;
   return s.plane.turns ? ErrorId::kCommandMode : ErrorId::kNone;  // then C belongs to another move
 }
@@ -192,7 +193,7 @@ bool IsInside(const Context& c, const CoordinateMove& turn) {
 }
 
 // Why C may not move so; a good answer: it may.
-Answer WhyNotTurning(const Given& g, const CoordinateMove& move) {
+AdmissionResult WhyNotTurning(const CommandContext& g, const CoordinateMove& move) {
   const State& s = g.s;
   if (!IsInside(g.c, move) && (IsStar(g.c) || !IsPlaneResting(g.c, s))) return Refused(ErrorId::kOutsideWindow);
   if (!IsOnTrack(s)) {
@@ -207,7 +208,7 @@ Answer WhyNotTurning(const Given& g, const CoordinateMove& move) {
 }
 
 // From now on C moves so.
-Answer PutTurn(const Given& g, const CoordinateMove& move, const Endless& endless) {
+AdmissionResult PutTurn(const CommandContext& g, const CoordinateMove& move, const Endless& endless) {
   State& s = g.s;
   if (!IsInside(g.c, move)) {
     if (s.mode == CommandMode::kFreeMovement) s.mode = CommandMode::kCRotationFreeMovement;
@@ -224,7 +225,8 @@ Answer PutTurn(const Given& g, const CoordinateMove& move, const Endless& endles
 
 // To `target`, a position that depends on where C is and would come to rest.
 template <typename Command, typename Target>
-Answer TurnTo(const Given& g, const Command& command, Ask ask, const Target& target, const Endless& endless = {}) {
+AdmissionResult TurnTo(const CommandContext& g, const Command& command, Ask ask, const Target& target,
+                       const Endless& endless = {}) {
   State& s = g.s;
   if (const ErrorId why = WhyNotTurn(s, ask); why != ErrorId::kNone) return Refused(why);
   CoordinateMove move = s.others.back();
@@ -234,13 +236,13 @@ Answer TurnTo(const Given& g, const Command& command, Ask ask, const Target& tar
   const double to = target(from, limits);
   if (!PlanCoordinate(g.c.planner, from, to, limits, free, move.profile)) return Refused(ErrorId::kPlanning);
   move.begin = g.c.cycle.count;
-  if (const Answer why = WhyNotTurning(g, move); why.status.failed()) return why;
+  if (const AdmissionResult why = WhyNotTurning(g, move); why.status.failed()) return why;
   return PutTurn(g, move, endless);
 }
 
 // Dynamics that would turn it further than it may give way to the greatest ones: with these it comes to rest within
 // what it has reserved.
-Answer HaltTurn(const Given& g, const MoveC& command) {
+AdmissionResult HaltTurn(const CommandContext& g, const MoveC& command) {
   State& s = g.s;
   if (const ErrorId why = WhyNotTurn(s, Ask::kMoveC); why != ErrorId::kNone) return Refused(why);
   CoordinateMove move = s.others.back();
@@ -254,9 +256,9 @@ Answer HaltTurn(const Given& g, const MoveC& command) {
 }
 
 // Z, A or B comes to rest.
-Answer HaltOne(const Given& g, const MoveToPosition& command, std::size_t other) {
+AdmissionResult HaltOne(const CommandContext& g, const MoveToPosition& command, std::size_t other) {
   State& s = g.s;
-  if (const ErrorId why = WhyNot(s, Ask::kMoveAuxiliary); why != ErrorId::kNone) return Refused(why);
+  if (const ErrorId why = Diagnose(s, Ask::kMoveAuxiliary); why != ErrorId::kNone) return Refused(why);
   const CoordinateParams params = ParamsOf(g.c, s, other);
   const Limits limits = LimitsOf(command, params, s.limited_by);
   CoordinateMove& move = s.others[other];
@@ -268,20 +270,20 @@ Answer HaltOne(const Given& g, const MoveToPosition& command, std::size_t other)
 
 }  // namespace
 
-Answer Turn(const Given& g, const MoveC& command, Ask ask) noexcept {
+AdmissionResult Turn(const CommandContext& g, const MoveC& command, Ask ask) noexcept {
   return TurnTo(g, command, ask, [&](const KinematicState& from, const Limits& limits) {
     return TargetOf(g.c.params, from, trajectory::StopPosition(from, limits), command);
   });
 }
 
-Answer CarryOut(const Given& g, const MoveC& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const MoveC& command) noexcept {
   return Turn(g, command, Ask::kMoveC);
 }
-Answer CarryOut(const Given& g, const MoveRelativeC& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const MoveRelativeC& command) noexcept {
   return TurnTo(g, command, Ask::kMoveC,
                 [&](const KinematicState& from, const Limits&) { return from.position + command.distance; });
 }
-Answer CarryOut(const Given& g, const MoveVelocityC& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const MoveVelocityC& command) noexcept {
   if (command.velocity == 0) return HaltTurn(g, {.deceleration = command.deceleration, .jerk = command.jerk});
   const MoveC as{.velocity = std::abs(command.velocity),
                  .acceleration = command.acceleration,
@@ -294,16 +296,16 @@ Answer CarryOut(const Given& g, const MoveVelocityC& command) noexcept {
   return TurnTo(
       g, as, Ask::kMoveC, [&](const KinematicState&, const Limits&) { return sense * kFar; }, endless);
 }
-Answer CarryOut(const Given& g, const HaltZ& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const HaltZ& command) noexcept {
   return HaltOne(g, {.deceleration = command.deceleration, .jerk = command.jerk}, 0);
 }
-Answer CarryOut(const Given& g, const HaltA& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const HaltA& command) noexcept {
   return HaltOne(g, {.deceleration = command.deceleration, .jerk = command.jerk}, 1);
 }
-Answer CarryOut(const Given& g, const HaltB& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const HaltB& command) noexcept {
   return HaltOne(g, {.deceleration = command.deceleration, .jerk = command.jerk}, 2);
 }
-Answer CarryOut(const Given& g, const HaltC& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const HaltC& command) noexcept {
   return HaltTurn(g, {.deceleration = command.deceleration, .jerk = command.jerk});
 }
 

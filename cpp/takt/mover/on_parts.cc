@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/mover/area_reservation.h"
 #include "takt/mover/formation.h"
-#include "takt/mover/ground.h"
 #include "takt/planar/course.h"
 
 namespace takt::mover {

@@ -27,7 +27,7 @@ ObjectInfo TrackOf(std::uint32_t index) {
 }
 
 // As its geometry and its ranges have been made for.
-bool IsSmallEnough(const MoverParams& mover, const TrackNow& track) {
+bool IsSmallEnough(const MoverParams& mover, const TrackView& track) {
   return std::max(mover.width, mover.height) <= std::max(track.width, track.height) &&
          std::min(mover.width, mover.height) <= std::min(track.width, track.height);
 }
@@ -61,7 +61,7 @@ std::uint32_t PartBetween(const Context& c, std::uint32_t from, std::uint32_t to
 // The first part that is not where a way from one track to another needs it, over as few tracks as can be; kNoPart:
 // wherever the parts are, there is no such way.
 std::uint32_t PartOnTheWay(const Context& c, std::uint32_t from, std::uint32_t to) {
-  Streets& streets = c.streets;
+  TrackNetworkState& streets = c.streets;
   planar::RouteSearch& search = streets.search;
   std::ranges::fill(search.settled, std::uint8_t{0});
   // Breadth first; the queue is in search.queue.
@@ -101,7 +101,7 @@ planar::Verdict NoWayTo(const Context& c, const planar::Destination& to, const p
 }
 
 // To a place, as a command onto or from a track says.
-Answer MoveAs(const auto& command, const Given& g, double x, double y, double c) {
+AdmissionResult MoveAs(const auto& command, const CommandContext& g, double x, double y, double c) {
   return MoveTo(g, {.x = x,
                     .y = y,
                     .c = c,
@@ -127,10 +127,10 @@ planar::Way WayOf(TurnDirection direction) noexcept {
   }
 }
 
-Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const JoinTrack& command) noexcept {
   State& s = g.s;
-  Streets& streets = g.c.streets;
-  if (const ErrorId why = WhyNot(s, Ask::kJoinTrack); why != ErrorId::kNone) return Refused(why);
+  TrackNetworkState& streets = g.c.streets;
+  if (const ErrorId why = Diagnose(s, Ask::kJoinTrack); why != ErrorId::kNone) return Refused(why);
   if (!IsPlaneResting(g.c, s)) return Refused(ErrorId::kCommandMode);
   const std::uint32_t track = streets.Find(command.track.view());
   if (track == planar::kNoTrack) return Refused(ErrorId::kParameter);
@@ -163,7 +163,7 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
   }
   const KinematicState turned = Now(g.c, s.others.back());
   const double c = TargetOf(g.c.params, turned, turned.position, {.direction = TurnDirection::kShortestWay});
-  const Answer answer = MoveAs(command, g, nearest.place.x, nearest.place.y, c);
+  const AdmissionResult answer = MoveAs(command, g, nearest.place.x, nearest.place.y, c);
   if (answer.status.failed()) {
     rider = {};
     return answer;
@@ -174,10 +174,10 @@ Answer CarryOut(const Given& g, const JoinTrack& command) noexcept {
   return answer;
 }
 
-Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const LeaveTrack& command) noexcept {
   State& s = g.s;
-  Streets& streets = g.c.streets;
-  if (const ErrorId why = WhyNot(s, Ask::kLeaveTrack); why != ErrorId::kNone) return Refused(why);
+  TrackNetworkState& streets = g.c.streets;
+  if (const ErrorId why = Diagnose(s, Ask::kLeaveTrack); why != ErrorId::kNone) return Refused(why);
   if (!IsPlaneResting(g.c, s)) return Refused(ErrorId::kCommandMode);
   if (streets.uses[s.track].moving > 0) return Refused(ErrorId::kTrackMode, TrackOf(s.track));
   double x = command.x, y = command.y;
@@ -187,7 +187,7 @@ Answer CarryOut(const Given& g, const LeaveTrack& command) noexcept {
   const planar::Place at = streets.At(s.track, g.c.rider().at.position).place;
   s.plane.motion = StandingAt(at.x, at.y);
   s.plane.begin = g.c.cycle.count;
-  const Answer answer = MoveAs(command, g, x, y, command.c);
+  const AdmissionResult answer = MoveAs(command, g, x, y, command.c);
   if (answer.status.failed()) {
     s.plane = {};  // it stays on its place
     return answer;
@@ -240,7 +240,7 @@ void TakeRoute(const Context& c, const planar::Route& route) noexcept {
 }
 
 planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept {
-  Streets& streets = c.streets;
+  TrackNetworkState& streets = c.streets;
   const std::uint32_t track = command.track.empty() ? s.track : streets.Find(command.track.view());
   if (track == planar::kNoTrack) return {ErrorId::kParameter, {}};
   const planar::Road& road = streets.network[track];
@@ -268,9 +268,9 @@ std::uint32_t PartAwaited(const Context& c, const Command& command, const State&
   return IsOnItsWay(c, part) ? part : planar::kNoPart;
 }
 
-Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const MoveOnTrack& command) noexcept {
   State& s = g.s;
-  if (const ErrorId why = WhyNot(s, Ask::kMoveOnTrack); why != ErrorId::kNone) return Refused(why);
+  if (const ErrorId why = Diagnose(s, Ask::kMoveOnTrack); why != ErrorId::kNone) return Refused(why);
   planar::Rider next = g.c.rider();
   next.pace = PaceOf(g.c.params, LimitsOf(command, g.c.params.xy, s.limited_by), command.dynamics_reduction);
   if (const planar::Verdict way = FindWay(g.c, command, s, next); way.error != ErrorId::kNone) {
@@ -286,7 +286,7 @@ Answer CarryOut(const Given& g, const MoveOnTrack& command) noexcept {
   return {Status::Ok(), planar::TimeAlone(g.c.planner, g.c.streets.network, next)};
 }
 
-Answer CarryOut(const Given& g, const AdoptTrackOrientation& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const AdoptTrackOrientation& command) noexcept {
   return Turn(g,
               {.position = 0,
                .direction = command.direction,

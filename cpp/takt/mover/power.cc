@@ -9,7 +9,7 @@ namespace takt::mover {
 using planar::ObjectState;
 using trajectory::Limits;
 
-Answer CarryOut(const Given& g, const Enable&) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const Enable&) noexcept {
   switch (g.s.state) {
     case ObjectState::kEnabled:
       return Done();
@@ -25,7 +25,7 @@ Answer CarryOut(const Given& g, const Enable&) noexcept {
   }
 }
 
-Answer CarryOut(const Given& g, const Disable&) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const Disable&) noexcept {
   switch (g.s.state) {
     case ObjectState::kDisabled:
       return Done();
@@ -44,7 +44,7 @@ Answer CarryOut(const Given& g, const Disable&) noexcept {
   return {};
 }
 
-Answer CarryOut(const Given& g, const Reset&) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const Reset&) noexcept {
   switch (g.s.state) {
     case ObjectState::kErrorPending:
       return Refused(ErrorId::kState);
@@ -60,7 +60,7 @@ Answer CarryOut(const Given& g, const Reset&) noexcept {
   }
 }
 
-Answer CarryOut(const Given& g, const SetPosition& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const SetPosition& command) noexcept {
   if (g.s.state != ObjectState::kDisabled) return Refused(ErrorId::kState);
   planar::Spot at;
   const ErrorId why =
@@ -82,7 +82,7 @@ Answer CarryOut(const Given& g, const SetPosition& command) noexcept {
 namespace {
 
 // The star sees it and brings all of the formation to rest, which goes on.
-Answer HaltPlanet(const Given& g) {
+AdmissionResult HaltPlanet(const CommandContext& g) {
   for (const Slot slot : {kMoveZ, kMoveA, kMoveB, kWait}) End(g.c, slot, FeedbackState::kAborted, ErrorId::kNone, g.s);
   AbortBuffered(g.c, g.s);
   g.s.buffer.releases = 0;
@@ -93,7 +93,7 @@ Answer HaltPlanet(const Given& g) {
 
 }  // namespace
 
-Answer CarryOut(const Given& g, const Halt& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const Halt& command) noexcept {
   if (g.s.state != ObjectState::kEnabled) return Refused(ErrorId::kMoverDisabled);
   if (IsPlanet(g.s)) return HaltPlanet(g);
   const MoveToPosition as{.deceleration = command.deceleration, .jerk = command.jerk};
@@ -106,9 +106,9 @@ Answer CarryOut(const Given& g, const Halt& command) noexcept {
   return {Status::Ok(), planar::Brake(rider.at, rider.pace.brakes()).ends_s.back()};
 }
 
-Answer CarryOut(const Given& g, const HaltOnTrack& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const HaltOnTrack& command) noexcept {
   State& s = g.s;
-  if (const ErrorId why = WhyNot(s, Ask::kHaltOnTrack); why != ErrorId::kNone) return Refused(why);
+  if (const ErrorId why = Diagnose(s, Ask::kHaltOnTrack); why != ErrorId::kNone) return Refused(why);
   const MoveToPosition as{.deceleration = command.deceleration, .jerk = command.jerk};
   const Limits limits = LimitsOf(as, g.c.params.xy, s.limited_by);
   for (const Slot slot : {kPlane, kPassing}) End(g.c, slot, FeedbackState::kAborted, ErrorId::kNone, s);

@@ -25,7 +25,7 @@ std::uint64_t LastOf(const SurfaceRoute& r) {
   return r.takes ? r.draft.last() : r.last();
 }
 
-Answer RefusedRoute(RouteProblem problem) {
+AdmissionResult RefusedRoute(RouteProblem problem) {
   return Refused(ErrorId::kRoute, {}, static_cast<double>(problem));
 }
 planar::Verdict RefusedRoute(RouteProblem problem, std::size_t mover) {
@@ -64,7 +64,7 @@ RouteProblem WhyNotBegin(const Context& c, const State& s, const SurfaceRoute& r
 }
 
 ErrorId WhyNotAble(const State& s) {
-  if (const ErrorId why = WhyNot(s, Ask::kMoveToPosition); why != ErrorId::kNone) return why;
+  if (const ErrorId why = Diagnose(s, Ask::kMoveToPosition); why != ErrorId::kNone) return why;
   const bool free = s.mode == CommandMode::kFreeMovement && s.external.mode == SetpointMode::kNone && !IsPlanet(s);
   return free ? ErrorId::kNone : ErrorId::kCommandMode;
 }
@@ -196,7 +196,7 @@ void BeginDraft(const Context& c, const RouteDynamics& dynamics, State& s, Surfa
 
 }  // namespace
 
-Answer CarryOut(const Given& g, const SetRoute& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const SetRoute& command) noexcept {
   SurfaceRoute& r = RouteOf(g.c, g.c.index);
   const auto visits = command.visits.all();
   const bool continues = command.continues;
@@ -220,7 +220,7 @@ Answer CarryOut(const Given& g, const SetRoute& command) noexcept {
   return {.status = Status::Ok(), .goes_on = !continues, .waits = !continues, .object = {}};
 }
 
-Answer CarryOut(const Given& g, const ContinueRoute&) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const ContinueRoute&) noexcept {
   State& s = g.s;
   SurfaceRoute& r = RouteOf(g.c, g.c.index);
   if (const ErrorId why = WhyNotAble(s); why != ErrorId::kNone) return Refused(why);

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "takt/mover/follow_route.h"
-#include "takt/planar/grounds.h"
+#include "takt/planar/group_registry.h"
 
 namespace takt::mover {
 

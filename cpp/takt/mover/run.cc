@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "takt/mover/area_reservation.h"
 #include "takt/mover/coordinate.h"
 #include "takt/mover/follow.h"
 #include "takt/mover/formation.h"
-#include "takt/mover/ground.h"
 #include "takt/mover/on_parts.h"
 
 namespace takt::mover {

@@ -5,11 +5,11 @@
 
 namespace takt::mover {
 
-Answer CarryOut(const Given& g, const StartExternalSetpointGeneration& command) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const StartExternalSetpointGeneration& command) noexcept {
   State& s = g.s;
   const bool alone = command.mode == SetpointMode::kAbsolute;
   if (command.mode == SetpointMode::kNone) return Refused(ErrorId::kParameter);
-  const ErrorId why = WhyNot(s, alone ? Ask::kExternalAbsolute : Ask::kExternalRelative);
+  const ErrorId why = Diagnose(s, alone ? Ask::kExternalAbsolute : Ask::kExternalRelative);
   if (why != ErrorId::kNone) return Refused(why);
   if (s.external.mode != SetpointMode::kNone) return Refused(ErrorId::kCommandMode);
   if (alone ? !IsResting(g.c, s) : IsOnRoute(s)) return Refused(ErrorId::kCommandMode);
@@ -23,7 +23,7 @@ Answer CarryOut(const Given& g, const StartExternalSetpointGeneration& command) 
   return {};
 }
 
-Answer CarryOut(const Given& g, const SetExternalSetpoint& p) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const SetExternalSetpoint& p) noexcept {
   External& external = g.s.external;
   if (external.mode == SetpointMode::kNone) return Refused(ErrorId::kCommandMode);
   double x = p.x, y = p.y;
@@ -41,7 +41,7 @@ Answer CarryOut(const Given& g, const SetExternalSetpoint& p) noexcept {
   return Done();
 }
 
-Answer CarryOut(const Given& g, const StopExternalSetpointGeneration&) noexcept {
+AdmissionResult CarryOut(const CommandContext& g, const StopExternalSetpointGeneration&) noexcept {
   State& s = g.s;
   if (s.external.mode == SetpointMode::kNone) return Refused(ErrorId::kCommandMode);
   End(g.c, kExternal, FeedbackState::kDone, ErrorId::kNone, s);

@@ -94,8 +94,9 @@ inline constexpr std::uint32_t kNoStar = 0xffffffff;
 // What a mover goes along with; the rest of it lies with its place on tracks (planar/gear.h).
 inline constexpr std::uint32_t kNoMaster = 0xffffffff;
 struct GearState {
-  std::uint32_t axis = kNoMaster;  // number of the master among Streets::masters; kNoMaster: a mover, or nothing
-  bool in_sync = false;            // as last said
+  std::uint32_t axis =
+      kNoMaster;         // number of the master among TrackNetworkState::masters; kNoMaster: a mover, or nothing
+  bool in_sync = false;  // as last said
 };
 
 // A planet's place in a formation (mover/formation.h), and what a star remembers of its own.

@@ -64,7 +64,7 @@ void Return(const Context& c, Ticket ticket, group::State& g, State& s) {
 
 void CarryOut(const Context& c, Ticket ticket, double, const Control& command, group::State& g, State& s) {
   const Inputs was = s.inputs;
-  TakeGiven(command, s.inputs);
+  ApplyPatch(command, s.inputs);
   s.reset |= s.inputs.reset_error && !was.reset_error;
   s.abort |= s.inputs.abort && !was.abort;
   s.ack |= s.inputs.ack_gripper && !was.ack_gripper;
@@ -103,7 +103,7 @@ bool WaitingTargetsFit(const State& s) {
 
 void CarryOut(const Context& c, Ticket ticket, double, const Configure& command, group::State&, State& s) {
   const Settings was = s.settings;
-  TakeGiven(command, s.settings);
+  ApplyPatch(command, s.settings);
   // Workpieces in one system: where it lifts from would be forgotten.
   const bool fits = TargetFits(s.settings) && WorkpieceSystemsFit(s.settings) &&
                     (c.params.belts.empty() || (TargetSystemFits(s.settings) && WaitingTargetsFit(s)));
@@ -118,7 +118,7 @@ void CarryOut(const Context& c, Ticket ticket, double, const ConfigureBelt& comm
   const std::uint32_t belt = command.belt.value_or(1);
   if (belt > c.params.belts.size()) return Refuse(c, ticket, ErrorId::kUnknownTarget, s);
   BeltSettings changed = s.belts[belt - 1];
-  TakeGiven(command, changed);
+  ApplyPatch(command, changed);
   const conveyor::BeltParams& params = *c.belts[belt - 1].params;
   const bool fits = TurnsFit(changed) && RangeFits(changed) && LeaveFits(changed) && RangeMeets(changed, params) &&
                     LeaveMeets(changed, params);

@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "takt/core/describe_fwd.h"
-#include "takt/core/given.h"
+#include "takt/core/patch.h"
 #include "takt/pickplace/places.h"
 #include "takt/pickplace/settings.h"
 

@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "takt/core/maths.h"
+#include "takt/group/carrier_bindings.h"
 #include "takt/group/members.h"
-#include "takt/group/rides.h"
 #include "takt/group/switches.h"
 #include "takt/group/systems.h"
 #include "takt/kinematics/rotations.h"

@@ -127,16 +127,16 @@ Place StartOf(const Context& c, const group::State& g, const State& s) {
   return s.at_known ? s.at : PresentPlace(c, g);
 }
 
-struct Given {
+struct QueuedLegs {
   ErrorId error = ErrorId::kNone;
   std::uint64_t first = 0;
   std::uint64_t last = 0;
 };
 
 // From a leg on.
-Given GiveLegs(const Context& c, const Profile& profile, std::uint32_t from, const PathRamps& ramps,
-               bool keep_orientation, group::State& g, State& s) {
-  Given given{profile.error, g.done + g.queue.count, 0};
+QueuedLegs GiveLegs(const Context& c, const Profile& profile, std::uint32_t from, const PathRamps& ramps,
+                    bool keep_orientation, group::State& g, State& s) {
+  QueuedLegs given{profile.error, g.done + g.queue.count, 0};
   const group::Directions closed = ClosedOn(c, g, profile, from, StartOf(c, g, s), keep_orientation);
   if (closed.any()) {
     s.error_axes |= AxesOf(c, g, closed);
@@ -179,7 +179,7 @@ void Park(const Context& c, std::uint32_t belt, group::State& g, State& s) {
                                  .parks = true});
   const Shape shape = ShapeFromHere(c, g, ShapeOf(s.settings), s);
   const Profile profile = MakeProfile(start, target, shape, SystemsOf(c, g, start, target));
-  const Given given = GiveLegs(c, profile, 0, RampsOf(s.settings), s.settings.keep_orientation, g, s);
+  const QueuedLegs given = GiveLegs(c, profile, 0, RampsOf(s.settings), s.settings.keep_orientation, g, s);
   if (given.error != ErrorId::kNone) return Fail(c, given.error, g, s);
   const bool from_belt = s.at_belt != 0 || s.low;
   SetPlace(target, 0, 0, s);
@@ -224,7 +224,7 @@ void Begin(const Context& c, group::State& g, Order& order, State& s) {
   order.next_leg = 0;
   order.pulsed = false;
   if (&order == &s.orders[0]) s.profile_time = 0;  // not known yet
-  const Given given = GiveLegs(c, order.profile, 0, order.ramps, order.shape.keep_orientation, g, s);
+  const QueuedLegs given = GiveLegs(c, order.profile, 0, order.ramps, order.shape.keep_orientation, g, s);
   if (given.error != ErrorId::kNone) {
     NoteLeft(order, true, s);
     return Fail(c, given.error, g, s);
@@ -250,7 +250,7 @@ void BeginAgain(const Context& c, group::State& g, Order& order, State& s) {
     leg.height = std::max(0.0, crest - std::max(height(PresentPlace(c, g)), height(leg.to)));
     order.start = PresentPlace(c, g);
   }
-  const Given given = GiveLegs(c, order.profile, order.next_leg, order.ramps, order.shape.keep_orientation, g, s);
+  const QueuedLegs given = GiveLegs(c, order.profile, order.next_leg, order.ramps, order.shape.keep_orientation, g, s);
   if (given.error != ErrorId::kNone) return Fail(c, given.error, g, s);
   order.first = given.first;
   order.last = given.last;

@@ -29,7 +29,7 @@ KDL::Vector In(const Frame& system, const Place& place) {
   return system * KDL::Vector(place.pose.x, place.pose.y, place.pose.z);
 }
 
-struct Maker {
+struct ProfileBuilder {
   const Systems& systems;
   Profile profile;
   KDL::Vector at;      // where the last leg ends
@@ -56,7 +56,7 @@ struct Maker {
 
 // Point 2, over the target. The tool gets into step on the leg there, before it is low: where it stands at that point
 // already, the leg leads further up (PP-61).
-Place PointOver(const Place& target, const Place& start, double distance, const Maker& m) {
+Place PointOver(const Place& target, const Place& start, double distance, const ProfileBuilder& m) {
   const Place over = Above(target, distance);
   const bool boards =
       target.system == group::CoordinateSystem::kPcs && (start.system != target.system || start.pcs != target.pcs);
@@ -71,7 +71,7 @@ Profile Refused(ErrorId error) {
 }
 
 // To or from a parking position.
-Profile Parking(const Place& start, const Place& target, const Shape& shape, Maker& m) {
+Profile Parking(const Place& start, const Place& target, const Shape& shape, ProfileBuilder& m) {
   const double up = shape.height + (target.parks ? shape.start_distance : shape.target_distance);
   const double radius = shape.height + shape.radius;
   const bool both = start.parks && target.parks;
@@ -124,7 +124,7 @@ Profile MakeProfile(const Place& start, const Place& target, const Shape& shape,
   if (start.system == CoordinateSystem::kAcs || target.system == CoordinateSystem::kAcs) {
     return Refused(ErrorId::kParameter);
   }
-  Maker m{systems, {}, In(systems.start, start), {}, 0};
+  ProfileBuilder m{systems, {}, In(systems.start, start), {}, 0};
   if (start.parks || target.parks) return Parking(start, target, shape, m);
   const bool arch = shape.mode == PathMode::kElliptical;
   if (arch && !(IsUpright(systems.base * systems.start) && IsUpright(systems.base * systems.target))) {

@@ -8,7 +8,7 @@
 
 #include "takt/conveyor/params.h"
 #include "takt/core/describe_fwd.h"
-#include "takt/core/given.h"
+#include "takt/core/patch.h"
 #include "takt/group/commands.h"
 #include "takt/pickplace/places.h"
 

@@ -103,29 +103,29 @@ class ConflictSearch {
  private:
   static constexpr double kFinest = 1e-3;  // mm
 
-  enum class Answer { kFree, kPerhaps, kConflict };
+  enum class Occupancy { kFree, kPerhaps, kConflict };
 
   void Look(const Cell& cell, double from, double to) {
     const CellStretch stretch = StretchOf(a_, on_a_, cell, from, to);
-    Answer answer = Answer::kFree;
-    for (std::size_t i = 0; i < others_.size() && answer != Answer::kConflict; ++i) {
+    Occupancy answer = Occupancy::kFree;
+    for (std::size_t i = 0; i < others_.size() && answer != Occupancy::kConflict; ++i) {
       answer = std::max(answer, Against(stretch, b_.cells[i], others_[i]));
     }
-    if (answer == Answer::kFree) return;
-    if (answer == Answer::kConflict || stretch.spread <= resolution_ / 5) return Add(from, to);
+    if (answer == Occupancy::kFree) return;
+    if (answer == Occupancy::kConflict || stretch.spread <= resolution_ / 5) return Add(from, to);
     Look(cell, from, (from + to) / 2);
     Look(cell, (from + to) / 2, to);
   }
 
-  Answer Against(const CellStretch& stretch, const Cell& cell, const CellStretch& other) const {
+  Occupancy Against(const CellStretch& stretch, const Cell& cell, const CellStretch& other) const {
     const double least = (other.middle.center - stretch.middle.center).norm() - Radius(on_a_) - Radius(on_b_);
-    if (least - (stretch.to - stretch.from + other.to - other.from) / 2 >= clearance_) return Answer::kFree;
-    if (Separation(stretch.swept, other.swept) - stretch.stray - other.stray >= clearance_) return Answer::kFree;
-    if (Separation(stretch.middle, Facing(stretch, other)) + stretch.spread < clearance_) return Answer::kConflict;
-    if (other.stray <= stretch.spread / 4) return Answer::kPerhaps;
+    if (least - (stretch.to - stretch.from + other.to - other.from) / 2 >= clearance_) return Occupancy::kFree;
+    if (Separation(stretch.swept, other.swept) - stretch.stray - other.stray >= clearance_) return Occupancy::kFree;
+    if (Separation(stretch.middle, Facing(stretch, other)) + stretch.spread < clearance_) return Occupancy::kConflict;
+    if (other.stray <= stretch.spread / 4) return Occupancy::kPerhaps;
     const double middle = (other.from + other.to) / 2;
-    const Answer first = Against(stretch, cell, StretchOf(b_, on_b_, cell, other.from, middle));
-    if (first == Answer::kConflict) return first;
+    const Occupancy first = Against(stretch, cell, StretchOf(b_, on_b_, cell, other.from, middle));
+    if (first == Occupancy::kConflict) return first;
     return std::max(first, Against(stretch, cell, StretchOf(b_, on_b_, cell, middle, other.to)));
   }
 

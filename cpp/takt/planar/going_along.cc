@@ -8,7 +8,7 @@
 
 #include "takt/core/describe.h"
 #include "takt/planar/send.h"
-#include "takt/trajectory/chase.h"
+#include "takt/trajectory/demand_follower.h"
 
 namespace takt::planar {
 namespace {
@@ -81,8 +81,9 @@ double TimeOn(const Stretch& stretch, const Way& way, double place) {
 KinematicState GoAlong(trajectory::Planner& planner, const Rider& r, const KinematicState& demand, double period_s,
                        bool& exact) noexcept {
   const trajectory::Limits own = LimitsNow(r);
-  trajectory::ChaseState chase;
-  KinematicState next = Chase({own, planner, own, period_s}, trajectory::ChaseMode::kPosition, r.at, demand, chase);
+  trajectory::DemandFollowerState chase;
+  KinematicState next =
+      FollowDemand({own, planner, own, period_s}, trajectory::DemandMode::kPosition, r.at, demand, chase);
   exact = chase.in_step;
   const int sense = r.gear.was_in_step ? 0 : r.gear.sense;
   if (sense != 0 && (sense * next.velocity < 0 || sense * Peak(next, own.jerk) < -kTolerance)) {

@@ -149,16 +149,16 @@ std::vector<Bend> BendsOf(const Track& track) {
   return bends;
 }
 
-class Maker {
+class LayoutBuilder {
  public:
-  explicit Maker(const Layout& layout) : layout_(layout), standing_(layout.elements.size()) {}
+  explicit LayoutBuilder(const Layout& layout) : layout_(layout), standing_(layout.elements.size()) {}
 
   Making Make(Track& out) {
     for (const auto* link : {&layout_.from, &layout_.to}) {
       if (const Problem p = Check(*link); p != Problem::kNone) return {p, 0};
     }
     if (layout_.closed && (layout_.from || layout_.to)) return {Problem::kLinked, 0};
-    for (const auto step : {&Maker::StandAll, &Maker::DirectPositions, &Maker::Join}) {
+    for (const auto step : {&LayoutBuilder::StandAll, &LayoutBuilder::DirectPositions, &LayoutBuilder::Join}) {
       if (const Making making = (this->*step)(); making.problem != Problem::kNone) return making;
     }
     if (track_.pieces.empty()) return {Problem::kEmpty, 0};
@@ -310,7 +310,7 @@ class Maker {
 }  // namespace
 
 Making MakeTrack(const Layout& layout, Track& out) {
-  return Maker(layout).Make(out);
+  return LayoutBuilder(layout).Make(out);
 }
 
 }  // namespace takt::planar

@@ -61,18 +61,18 @@ bool Carries(const Environment& environment, const TrackArea& track, const Place
   return planar::Carries(environment, Shifted(track.stretches.front(), origin));
 }
 
-Spot SpotOf(std::size_t track, const Surroundings& around) noexcept {
+Spot SpotOf(std::size_t track, const StaticObstacles& around) noexcept {
   return track < around.spots.size() ? around.spots[track] : Spot{};
 }
 
-const TrackArea* Moving(std::size_t track, std::uint32_t level, const Surroundings& around,
+const TrackArea* Moving(std::size_t track, std::uint32_t level, const StaticObstacles& around,
                         const Reservations& r) noexcept {
   const bool counts = track < around.tracks.size() && r.tracks[track].moving && SpotOf(track, around).system == level;
   return counts ? around.tracks[track] : nullptr;
 }
 
 // An area in the coordinate system of a track.
-bool Near(const Area& area, const Extent& extent, std::size_t track, const Surroundings& around) noexcept {
+bool Near(const Area& area, const Extent& extent, std::size_t track, const StaticObstacles& around) noexcept {
   const Place by = Place{} - SpotOf(track, around).origin;
   return planar::Near(Shifted(area, by), Shifted(extent, by), *around.tracks[track], kClearance);
 }
@@ -103,7 +103,7 @@ void Leave(std::uint32_t mover, Reservations& r) noexcept {
   r.turns[mover] = {};
 }
 
-ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around, const Reservations& r) noexcept {
+ObjectInfo Ask(std::uint32_t mover, const Move& move, const StaticObstacles& around, const Reservations& r) noexcept {
   const Reservation& own = r.movers[mover];
   const Area area = AreaOf(own, move);
   const Extent extent = ExtentOf(area);
@@ -171,7 +171,7 @@ void Link(std::uint32_t mover, std::uint32_t network, Reservations& r) noexcept 
   r.movers[mover].network = network;
 }
 
-ObjectInfo AskTrack(std::uint32_t track, const Surroundings& around, const Reservations& r) noexcept {
+ObjectInfo AskTrack(std::uint32_t track, const StaticObstacles& around, const Reservations& r) noexcept {
   if (track >= around.tracks.size() || !around.tracks[track]) return {};
   const TrackArea& own = *around.tracks[track];
   const Spot spot = SpotOf(track, around);

@@ -74,7 +74,7 @@ struct Reservations {
 Reservations MakeReservations(std::size_t movers, std::size_t tracks);
 
 // What does not change from cycle to cycle. Tracks that are not in the group have no area.
-struct Surroundings {
+struct StaticObstacles {
   const Environment* environment = nullptr;  // of coordinate system 0; none: no border
   std::span<const TrackArea* const> tracks{};
   std::span<const Spot> spots{};  // where the coordinates of each track count from; none: all from the origin of 0
@@ -91,7 +91,7 @@ void Leave(std::uint32_t mover, Reservations& r) noexcept;
 // With what the mover would collide: the first of movers, then of tracks that are Moving, then the environment (number
 // 1). None: the way is free. A track of its own network does not count for a mover that turns on it. What only touches
 // counts, except the border of the environment.
-ObjectInfo Ask(std::uint32_t mover, const Move& move, const Surroundings& around, const Reservations& r) noexcept;
+ObjectInfo Ask(std::uint32_t mover, const Move& move, const StaticObstacles& around, const Reservations& r) noexcept;
 // Of a move whose way is free, and that asks in its turn: the mover that has waited longer for some of that area, and
 // will get it soon, as the mover in its way is leaving. So none that waits is overtaken for ever by others that do; and
 // none waits for one that cannot go.
@@ -106,7 +106,7 @@ void End(std::uint32_t mover, Reservations& r) noexcept;
 void Link(std::uint32_t mover, std::uint32_t network, Reservations& r) noexcept;
 
 // With what the track would collide if it were Moving; movers and tracks of its own network do not count.
-ObjectInfo AskTrack(std::uint32_t track, const Surroundings& around, const Reservations& r) noexcept;
+ObjectInfo AskTrack(std::uint32_t track, const StaticObstacles& around, const Reservations& r) noexcept;
 void TakeTrack(std::uint32_t track, Reservations& r) noexcept;
 void EndTrack(std::uint32_t track, Reservations& r) noexcept;
 

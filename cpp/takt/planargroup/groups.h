@@ -1,5 +1,6 @@
 // All groups of movers of a machine, stage by stage of the cycle: whether they watch. What they watch is the ground
-// (planar/grounds.h), which movers ask. Nothing here allocates, locks, throws or reads a clock, but for the making.
+// (planar/group_registry.h), which movers ask. Nothing here allocates, locks, throws or reads a clock, but for the
+// making.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +10,7 @@
 #include "takt/core/cycle.h"
 #include "takt/core/describe_fwd.h"
 #include "takt/core/feedback.h"
-#include "takt/planar/grounds.h"
+#include "takt/planar/group_registry.h"
 #include "takt/planargroup/commands.h"
 #include "takt/planargroup/outputs.h"
 
@@ -33,7 +34,7 @@ struct Groups {
 
 struct Context {
   Groups& groups;
-  planar::Grounds& grounds;
+  planar::GroupRegistry& grounds;
   Cycle cycle;
   FeedbackSink& feedback;
 };

@@ -54,7 +54,7 @@ struct AddToGroup {  // of movers
 };
 struct RemoveFromGroup {};
 
-// The answer to a question (desk.h); no command of people.
+// The answer to a question (build_queues.h); no command of people.
 struct TrackMade {
   std::uint64_t number = 0;  // of the question
   planar::Problem problem = planar::Problem::kNone;

@@ -64,8 +64,8 @@ void describe(Description<Order>& d) {
   d.internal<&O::only_there>("The link is in force there alone.");
 }
 
-void describe(Description<Works>& d) {
-  using W = Works;
+void describe(Description<PendingEdits>& d) {
+  using W = PendingEdits;
   d.about("Changes of all tracks, one made after the other.");
   d.internal<&W::orders>("They.");
   d.internal<&W::first>("Which of them is the first.");

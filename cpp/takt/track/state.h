@@ -67,7 +67,7 @@ struct Order {
 };
 
 // Changes of all tracks, one made after the other.
-struct Works {
+struct PendingEdits {
   std::array<Order, kOrders> orders{};  // a ring
   std::uint32_t first = 0;
   std::uint32_t count = 0;
@@ -82,6 +82,6 @@ void describe(Enumeration<OrderKind>&);
 void describe(Description<Links>&);
 void describe(Description<State>&);
 void describe(Description<Order>&);
-void describe(Description<Works>&);
+void describe(Description<PendingEdits>&);
 
 }  // namespace takt::track

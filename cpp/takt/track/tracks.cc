@@ -7,7 +7,7 @@
 #include "takt/core/in_range.h"
 #include "takt/track/build.h"
 #include "takt/track/on_parts.h"
-#include "takt/track/works.h"
+#include "takt/track/pending_edits.h"
 
 namespace takt::track {
 
@@ -45,7 +45,7 @@ void StepOne(const Context& c, std::uint32_t track, State& s) {
   if (s.since >= c.cycle.count) return;  // each state lasts a cycle at least
   switch (s.state) {
     case ObjectState::kEnabling:
-      if (!IsInWorks(c.tracks.works, track)) EndEnabling(c, s);
+      if (!HasPendingEdit(c.tracks.works, track)) EndEnabling(c, s);
       break;
     case ObjectState::kDisabling:
       Enter(c, ObjectState::kDisabled, s);

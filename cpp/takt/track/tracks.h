@@ -10,12 +10,12 @@
 
 #include "takt/core/cycle.h"
 #include "takt/core/feedback.h"
-#include "takt/planar/grounds.h"
+#include "takt/planar/group_registry.h"
 #include "takt/planar/parts.h"
 #include "takt/planar/rider.h"
 #include "takt/planar/track.h"
+#include "takt/track/build_queues.h"
 #include "takt/track/commands.h"
-#include "takt/track/desk.h"
 #include "takt/track/outputs.h"
 #include "takt/track/params.h"
 #include "takt/track/state.h"
@@ -52,7 +52,7 @@ struct Tracks {
   std::vector<State> states;
   std::vector<Sketch> sketches;  // what each is given by; the states have their hashes
   std::vector<Outputs> outputs;
-  Works works;
+  PendingEdits works;
 
   // What follows from the states.
   std::vector<const planar::Track*> ways;  // null: none, then the length is 0
@@ -66,13 +66,13 @@ struct Tracks {
   std::vector<std::uint8_t> reached;  // by track: scratch of a search through links
   std::vector<Usage> usages;          // of each
 
-  Desk desk;
+  BuildQueues desk;
   bool sent = false;  // the question has found room in the queue
 };
 
 struct Context {
   Tracks& tracks;
-  planar::Grounds& grounds;
+  planar::GroupRegistry& grounds;
   Cycle cycle;
   FeedbackSink& feedback;
 };

@@ -23,7 +23,7 @@ AlongPath Least(const AlongPath& a, const AlongPath& b) noexcept {
           std::min(a.deceleration, b.deceleration), std::min(a.jerk, b.jerk)};
 }
 
-Strength Least(const Strength& a, const Strength& b, double square) noexcept {
+AccelerationCap Least(const AccelerationCap& a, const AccelerationCap& b, double square) noexcept {
   const double at_rest = std::min(a.at_rest, b.at_rest);
   const double last = std::min(a.At(square), b.At(square));
   const double gentle = std::min(a.gentle, b.gentle);
@@ -77,8 +77,8 @@ double SquareAt(const PathPoint& point, const CoordinateLimits& limits, double s
   return square;
 }
 
-Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordinates>& third,
-                    const CoordinateLimits& limits, double square, double build_up_s) noexcept {
+AccelerationCap AccelerationCapAt(const PathPoint& point, const std::array<double, kPathCoordinates>& third,
+                                  const CoordinateLimits& limits, double square, double build_up_s) noexcept {
   const auto most_at = [&](double v, bool together) {
     double most = CoordinateLimits::kNone;
     for (std::size_t k = 0; k < limits.count; ++k) {

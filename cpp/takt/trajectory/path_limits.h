@@ -66,7 +66,7 @@ struct PathPoint {
 };
 
 // An acceleration that falls with the square of the speed.
-struct Strength {
+struct AccelerationCap {
   double at_rest = CoordinateLimits::kNone;
   double fading = 0;  // per square of the speed
   double least = 0;   // it falls no further
@@ -74,10 +74,10 @@ struct Strength {
 
   double At(double square) const noexcept { return std::max(least, at_rest - fading * square); }
   double Gentle(double square) const noexcept { return gentle * At(square); }
-  bool operator==(const Strength&) const = default;
+  bool operator==(const AccelerationCap&) const = default;
 };
 // Beneath both up to a square of the speed.
-Strength Least(const Strength& a, const Strength& b, double square) noexcept;
+AccelerationCap Least(const AccelerationCap& a, const AccelerationCap& b, double square) noexcept;
 
 // The limits of acceleration of one place, those of coordinates as lines over the square of the speed.
 struct AccelerationBounds {
@@ -86,7 +86,7 @@ struct AccelerationBounds {
   std::array<double, kPathCoordinates> reach{};  // at standstill, to both sides
   double acceleration = 0;                       // along the way
   double deceleration = 0;
-  Strength strength;  // either way
+  AccelerationCap strength;  // either way
 
   // `full`: the deceleration along the way does not count.
   double Least(double square, bool full = false) const noexcept;
@@ -109,8 +109,8 @@ double SquareAt(const PathPoint& point, const CoordinateLimits& limits, double s
 // back within `build_up_s`: for the jerk of the coordinates, q''' v³ + 3 q'' v a + q' j. A line beneath it.
 // `third`: how large the third derivative of each is. With its share
 // `gentle` the three parts may come together, and the speed may grow while it builds up.
-Strength StrengthAt(const PathPoint& point, const std::array<double, kPathCoordinates>& third,
-                    const CoordinateLimits& limits, double square, double build_up_s) noexcept;
+AccelerationCap AccelerationCapAt(const PathPoint& point, const std::array<double, kPathCoordinates>& third,
+                                  const CoordinateLimits& limits, double square, double build_up_s) noexcept;
 
 // The largest square of the speed up to `highest` from which an acceleration within the bounds leads to `later` at
 // most, `length` further on.

@@ -2,7 +2,7 @@
 // more than their limits the window is weakened, and the way gone again.
 //
 // A few of these rounds bring nearly everything within the limits. A motion that may not go as fast (override, a stop
-// on the path) is not looked at, and is more careful in bends by itself (Strength::gentle).
+// on the path) is not looked at, and is more careful in bends by itself (AccelerationCap::gentle).
 #pragma once
 
 #include <array>

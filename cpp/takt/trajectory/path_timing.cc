@@ -98,7 +98,7 @@ KinematicState PathTiming::Law::At(double t) const noexcept {
 }
 
 PathTiming::PathTiming(double period_s)
-    : period_s_(period_s), maker_(std::make_unique<Maker>(period_s)), current_(period_s), next_(period_s) {}
+    : period_s_(period_s), maker_(std::make_unique<PlanWorker>(period_s)), current_(period_s), next_(period_s) {}
 
 void PathTiming::Clear() noexcept {
   active_ = braking_ = final_ = reserved_ = slows_ = false;

@@ -94,8 +94,8 @@ class PathTiming {
   Planner planner_;
   // While a plan is ordered next_ belongs to the thread that makes it.
   enum class OrderState : std::uint8_t { kNone, kOrdered, kMade };
-  struct Maker {
-    explicit Maker(double period_s) : course(kIntervals, period_s) {}
+  struct PlanWorker {
+    explicit PlanWorker(double period_s) : course(kIntervals, period_s) {}
 
     Planner profiles;
     PathPlanner planner{kIntervals, kPathCoordinates + 1};
@@ -107,7 +107,7 @@ class PathTiming {
     PathCourse course;  // of a refinement
     PathPlan plan{kIntervals};
   };
-  std::unique_ptr<Maker> maker_;
+  std::unique_ptr<PlanWorker> maker_;
   Law current_, next_;
   std::uint64_t tick_ = 0;
   bool active_ = false;

@@ -64,13 +64,13 @@ void PathWindow::Append(const PathPoint& point, bool stop) noexcept {
     node.own = std::min(node.own, square);
     before.own = std::min(before.own, square);
     before.cap = std::min(before.cap, square);
-    const Strength strength = StrengthAt(before.at, third, limits_, before.own, before.build_up_s);
+    const AccelerationCap strength = AccelerationCapAt(before.at, third, limits_, before.own, before.build_up_s);
     before.own_strength = Least(before.own_strength, strength, before.own);
     before.bounds.strength = Least(before.bounds.strength, strength, before.cap);
     Spread(end_ - 1);
   }
   node.cap = node.own;
-  node.own_strength = node.bounds.strength = StrengthAt(point, third, limits_, node.own, build_up_s_);
+  node.own_strength = node.bounds.strength = AccelerationCapAt(point, third, limits_, node.own, build_up_s_);
   Spread(end_++);
 }
 
@@ -91,7 +91,7 @@ void PathWindow::Spread(std::uint64_t i) noexcept {
       break;
     }
     const double cap = std::min(before.cap, node.own);
-    const Strength strength = Least(before.bounds.strength, node.own_strength, cap);
+    const AccelerationCap strength = Least(before.bounds.strength, node.own_strength, cap);
     if (before.cap == cap && before.bounds.strength == strength) continue;
     before.cap = cap;
     before.bounds.strength = strength;
@@ -138,7 +138,7 @@ void PathWindow::Weaken(double from, double to, std::uint64_t first, const PathS
     node.own *= shares.square;
     node.cap *= shares.square;
     for (std::size_t k = 0; k < node.bounds.count; ++k) node.bounds.reach[k] *= shares.acceleration;
-    for (Strength* strength : {&node.own_strength, &node.bounds.strength}) {
+    for (AccelerationCap* strength : {&node.own_strength, &node.bounds.strength}) {
       strength->at_rest *= shares.strength;
       strength->fading *= shares.strength;
       strength->least *= shares.strength;

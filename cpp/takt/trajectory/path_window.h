@@ -4,7 +4,7 @@
 // The motion is made in two steps. A raw motion, with accelerations that may step, keeps all limits of velocity and
 // acceleration; what is gone is its mean over the time T in which accelerations build up. So the acceleration takes at
 // least T from one value to another, and what it may be at all follows from the jerk allowed along the way, and from
-// that of the coordinates (StrengthAt). The mean comes to rest T after the raw motion does.
+// that of the coordinates (AccelerationCapAt). The mean comes to rest T after the raw motion does.
 //
 // From the end of the window backwards each node gets its ceiling: the largest speed of the raw motion from which the
 // rest of the window can still be gone within all limits, down to a stop at its end. Whoever is beneath the ceiling in
@@ -32,8 +32,8 @@ struct PathShares {
 struct PathNode {
   PathPoint at;
   AccelerationBounds bounds;
-  double build_up_s = 0;  // T
-  Strength own_strength;  // what the bends at this place say; those of bounds hold for places near by, too
+  double build_up_s = 0;         // T
+  AccelerationCap own_strength;  // what the bends at this place say; those of bounds hold for places near by, too
   // Squares of speeds.
   double own = 0;      // what the limits at this place say
   double cap = 0;      // and those of places so near that the mean is taken over them, too

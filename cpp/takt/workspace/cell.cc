@@ -31,9 +31,9 @@ std::vector<std::size_t> LinksMeantBy(const std::string& name, const std::vector
   return on;
 }
 
-class Maker {
+class CellBuilder {
  public:
-  Maker(const WorkspaceParams& params, const kinematics::Kinematics& kinematics, std::string_view folder)
+  CellBuilder(const WorkspaceParams& params, const kinematics::Kinematics& kinematics, std::string_view folder)
       : params_(params), folder_(folder), links_(kinematics::LinksOf(kinematics)), parts_(PartsOf(params, kinematics)) {
     cell_.kinematics = kinematics;
     cell_.bounds = params.bounds;
@@ -204,7 +204,7 @@ std::vector<Part> PartsOf(const WorkspaceParams& params, const kinematics::Kinem
 }
 
 MadeCell MakeCell(const WorkspaceParams& params, const kinematics::Kinematics& kinematics, std::string_view folder) {
-  return Maker(params, kinematics, folder).Run();
+  return CellBuilder(params, kinematics, folder).Run();
 }
 
 }  // namespace takt::workspace

@@ -16,7 +16,7 @@ constexpr std::string_view kPackage = "package://";
 constexpr std::string_view kFile = "file://";
 
 // What is wrong with a mesh for us; empty: nothing.
-std::string WhyNot(const UrdfShape& shape) {
+std::string Diagnose(const UrdfShape& shape) {
   std::string extension = std::filesystem::path(shape.mesh).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   const std::string of = "link " + Quoted(shape.link) + " of the URDF has the mesh " + Quoted(shape.mesh);
@@ -71,7 +71,7 @@ UrdfLinks LinksOfUrdf(const kinematics::SerialParams& serial, const kinematics::
         break;
       case UrdfShape::Kind::kMesh:
         solid.mesh = {FileOfMesh(shape.mesh, folder, urdf_folder), shape.size[0]};
-        if (out.problem.empty()) out.problem = WhyNot(shape);
+        if (out.problem.empty()) out.problem = Diagnose(shape);
         break;
     }
   }

@@ -249,7 +249,7 @@ def _products(recording: Recording, scene: Mapping[str, Any]) -> Iterator[tuple[
 
 
 def products_on(belt: str, size: Any, rows: Iterable[Any], time_s: float) -> dict[str, Any]:
-    """The entity of all that lies on a belt: rows as those of `takt.lying.rows_of`."""
+    """The entity of all that lies on a belt: rows as those of `takt.belt_object_log.rows_of`."""
     cubes = []
     for _, x, y, z, turn, taken, near in rows:
         half = math.radians(turn) / 2

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 from takt import _core, msgs
+from takt.belt_object_log import objects_of, rows_of
 from takt.errors import ConfigError
 from takt.keys import Key, not_the_key
-from takt.lying import objects_of, rows_of
 from takt.network import open_network
 from takt.remote import JUMP_S
 from takt.scene import rounded_poses

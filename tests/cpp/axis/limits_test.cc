@@ -164,13 +164,13 @@ TEST(Commands, BeyondTheLimitsAreRefusedAndDisturbNothing) {
 
 // AX-06 for people: the sentence names the argument, the limit and what was found.
 TEST(Commands, SayWhyTheyAreRefused) {
-  const std::string why = WhyNot(MoveAbsolute{.position = 1, .velocity = 900}, LinearParams());
+  const std::string why = Diagnose(MoveAbsolute{.position = 1, .velocity = 900}, LinearParams());
   EXPECT_NE(why.find("velocity"), std::string::npos) << why;
   EXPECT_NE(why.find("500"), std::string::npos) << why;
   EXPECT_NE(why.find("900"), std::string::npos) << why;
-  EXPECT_EQ(WhyNot(MoveAbsolute{.position = 1}, LinearParams()), "");
-  EXPECT_EQ(WhyNot(Reset{}, LinearParams()), "");
-  EXPECT_NE(WhyNot(MoveAbsolute{.position = 361}, RotaryParams()), "");
+  EXPECT_EQ(Diagnose(MoveAbsolute{.position = 1}, LinearParams()), "");
+  EXPECT_EQ(Diagnose(Reset{}, LinearParams()), "");
+  EXPECT_NE(Diagnose(MoveAbsolute{.position = 361}, RotaryParams()), "");
 }
 
 // Where nothing can be planned the command fails with 3004 and the motion in progress is kept to its stop. With a jerk
@@ -339,9 +339,9 @@ TEST(Commands, OutsideWhatPositionsAndSensesThereAreAreRefused) {
     const Ticket t = rig->Give(command);
     rig->Step();
     EXPECT_EQ(rig->lives[t].error_id, ErrorId::kParameter);
-    EXPECT_NE(WhyNot(command, rig->params), "");
+    EXPECT_NE(Diagnose(command, rig->params), "");
   }
-  EXPECT_EQ(WhyNot(MoveVelocity{.velocity = 1, .direction = Direction::kShortest}, LinearParams()),
+  EXPECT_EQ(Diagnose(MoveVelocity{.velocity = 1, .direction = Direction::kShortest}, LinearParams()),
             "direction: expected another value, this command has no such direction");
 }
 

@@ -182,7 +182,7 @@ TEST(Override, RefusesWhatIsNoFactor) {
     const Ticket ticket = rig.Give(bad);
     rig.Step();
     EXPECT_EQ(rig.lives[ticket].error_id, ErrorId::kParameter);
-    EXPECT_NE(WhyNot(bad, rig.params), "");
+    EXPECT_NE(Diagnose(bad, rig.params), "");
   }
   EXPECT_EQ(rig.state.override_factors, (Override{0.5, 0.6, 0.7}));
 }

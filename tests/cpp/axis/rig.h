@@ -139,7 +139,7 @@ class Rig {
     }
   }
 
-  Surrounding machine_;
+  MachineView machine_;
   std::vector<FeedbackEvent> storage_;
   FeedbackSink sink_;
   std::vector<std::function<void()>> pending_;

@@ -50,7 +50,7 @@ struct Nested {
 void describe(Description<Nested>& d) {
   d.about("Nested.");
   d.internal<&Nested::many>("Many.");
-  d.internal<&Nested::few>("Few.");
+  d.internal<&Nested::few>("InlineVector.");
   d.internal<&Nested::optionals>("Optionals.");
   d.internal<&Nested::list>("List.");
   d.internal<&Nested::text>("Text.");

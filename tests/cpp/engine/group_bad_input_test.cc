@@ -59,7 +59,7 @@ TEST(GroupBadInput, IsRefusedAsTextWithASentence) {
       const ParsedCommand parsed = ParseCommand(machine, text.target, text.verb, text.arguments);
       EXPECT_EQ(parsed.error, ErrorId::kParameter) << wrong.what;
       EXPECT_THAT(parsed.sentence, HasSubstr(std::string(wrong.field) + ": expected ")) << wrong.what;
-      EXPECT_THAT(group::WhyNot(wrong.command), HasSubstr(std::string(wrong.field) + ": expected ")) << wrong.what;
+      EXPECT_THAT(group::Diagnose(wrong.command), HasSubstr(std::string(wrong.field) + ": expected ")) << wrong.what;
       ++refused;
     }
   }

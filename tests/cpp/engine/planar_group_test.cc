@@ -224,7 +224,7 @@ class Hall {
       Count();
       for (std::uint32_t k = 0; k < kMovers; ++k) ExpectFree(k);
     }
-    const planar::Ground& ground = talk_.engine.grounds().grounds[0];
+    const planar::GroupReservations& ground = talk_.engine.grounds().grounds[0];
     for (std::uint32_t i = 0; i < kMovers; ++i) {
       const mover::Outputs& at = Of(i);
       const planar::Area area = planar::AreaOf(ground.reserved.movers[i]);

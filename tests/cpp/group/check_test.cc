@@ -23,8 +23,8 @@ Rig WatchedGantry() {
   return Watched([] { return Gantry(); });
 }
 
-std::optional<Question> Asked(Rig& rig) {
-  Question question, last;
+std::optional<PathCheckRequest> Asked(Rig& rig) {
+  PathCheckRequest question, last;
   bool any = false;
   while (rig.questions->TryPop(question)) {
     last = question;
@@ -33,20 +33,20 @@ std::optional<Question> Asked(Rig& rig) {
   return any ? std::optional(last) : std::nullopt;
 }
 
-PathChecked Free(const Question& question) {
+PathChecked Free(const PathCheckRequest& question) {
   return {.number = question.number};
 }
-PathChecked Blocked(const Question& question) {
+PathChecked Blocked(const PathCheckRequest& question) {
   return {.number = question.number, .trouble = Trouble::kCollision, .first = 8, .second = 9, .place = 12.5};
 }
 
 // Answers whatever is asked after so many cycles, until a move has ended.
 void RunAnswering(Rig& rig, Ticket move, int late = 0, double seconds = 20) {
-  std::optional<Question> open;
+  std::optional<PathCheckRequest> open;
   int left = 0;
   for (auto n = std::llround(seconds / rig.cycle.period_s); n > 0 && !rig.lives[move].ended(); --n) {
     rig.Step();
-    if (std::optional<Question> asked = Asked(rig)) {
+    if (std::optional<PathCheckRequest> asked = Asked(rig)) {
       open = asked;
       left = late;
     }
@@ -64,7 +64,7 @@ TEST(Check, NothingMovesBeforeTheAnswer) {
   const std::vector<KinematicState> before = rig.trace.back().set;
   const Ticket move = rig.Give(MoveLinearAbsolute{.x = 100});
   rig.Run(0.5);
-  const std::optional<Question> question = Asked(rig);
+  const std::optional<PathCheckRequest> question = Asked(rig);
   ASSERT_TRUE(question);
   EXPECT_EQ(question->move.ticket, move);
   EXPECT_EQ(rig.trace.back().set, before);
@@ -181,7 +181,7 @@ TEST(Check, AnAnswerThatIsNotWaitedForIsDropped) {
         }
         const Ticket second = rig.Give(MoveLinearAbsolute{.x = 200, .buffer_mode = kBlending});
         rig.Run(0.05);
-        const std::optional<Question> question = Asked(rig);
+        const std::optional<PathCheckRequest> question = Asked(rig);
         ASSERT_TRUE(question);
         const Ticket end = rig.Give(one.command);
         rig.Step();
@@ -208,7 +208,7 @@ TEST(Check, AFaultEndsTheWaiting) {
   rig.Start();
   const Ticket move = rig.Give(MoveLinearAbsolute{.x = 100});
   rig.Run(0.01);
-  const std::optional<Question> question = Asked(rig);
+  const std::optional<PathCheckRequest> question = Asked(rig);
   rig.inputs[1].drive_fault = true;
   rig.Step();
   rig.Give(Free(*question));
@@ -223,14 +223,14 @@ TEST(Check, AnAbortingMoveIsAskedAboutInstead) {
   rig.Start();
   const Ticket first = rig.Give(MoveLinearAbsolute{.x = 100});
   rig.Run(0.01);
-  const std::optional<Question> old = Asked(rig);
+  const std::optional<PathCheckRequest> old = Asked(rig);
   const Ticket second = rig.Give(MoveLinearAbsolute{.y = 50});
   rig.Step();
   rig.Give(Blocked(*old));
   rig.Run(0.01);
   EXPECT_TRUE(rig.lives[first].aborted);
   EXPECT_FALSE(rig.lives[second].ended());
-  const std::optional<Question> now = Asked(rig);
+  const std::optional<PathCheckRequest> now = Asked(rig);
   ASSERT_TRUE(now);
   EXPECT_GT(now->number, old->number);
   rig.Give(Free(*now));
@@ -335,7 +335,7 @@ TEST(Check, APathIsOneQuestion) {
   const Ticket move = rig.Give(MovePath{
       .path = Name::Of("long"), .transition_mode = TransitionMode::kMaxCornerDeviation, .transition_parameter = 0.5});
   rig.Run(0.2);
-  const std::optional<Question> question = Asked(rig);
+  const std::optional<PathCheckRequest> question = Asked(rig);
   ASSERT_TRUE(question);
   EXPECT_EQ(rig.out().x, 0);
   rig.Give(Free(*question));
@@ -400,7 +400,7 @@ struct SeenPart {
   std::vector<workspace::Sample> samples;
 };
 
-std::vector<SeenPart> Surveyed(Rig& rig, const Question& question) {
+std::vector<SeenPart> Surveyed(Rig& rig, const PathCheckRequest& question) {
   Survey survey({rig.params, rig.mounting, *rig.kinematics, rig.paths, rig.cycle});
   std::vector<SeenPart> seen;
   EXPECT_EQ(survey.Run(question,
@@ -440,7 +440,7 @@ TEST(Survey, IsWhatIsGone) {
     int blends = 0;
     for (int n = 0; n < 60000 && !rig.lives[last].ended(); ++n) {
       rig.Step();
-      const std::optional<Question> question = Asked(rig);
+      const std::optional<PathCheckRequest> question = Asked(rig);
       if (!question) continue;
       for (const SeenPart& part : Surveyed(rig, *question)) {
         all.insert(all.end(), part.samples.begin(), part.samples.end());
@@ -503,8 +503,8 @@ TEST(Check, TakesNoMemoryInTheCycle) {
   rig.Start();
   rig.Step();
   Context c = rig.Now();
-  EXPECT_EQ(WhyNot(PathChecked{}), "");
-  EXPECT_EQ(WhyNot(MovePath{.path = Name::Of("long")}), "");
+  EXPECT_EQ(Diagnose(PathChecked{}), "");
+  EXPECT_EQ(Diagnose(MovePath{.path = Name::Of("long")}), "");
   const long before = AllocationsOfThisThread();
   Apply(c, 1000, 0, MovePath{.path = Name::Of("long")}, rig.state);
   std::uint64_t answered = 0;
@@ -512,7 +512,7 @@ TEST(Check, TakesNoMemoryInTheCycle) {
     Step(c, rig.state);
     for (std::size_t k = 0; k < 3; ++k) axis::Move(rig.AxisContext(k), rig.states[k]);
     c.feedback.Clear();
-    Question question;
+    PathCheckRequest question;
     if (!rig.questions->TryPop(question)) continue;
     ++answered;
     Apply(c, 0, 0, Free(question), rig.state);
@@ -541,7 +541,7 @@ TEST(Check, PathsThatBeginOnABelt) {
           stays ? rig.Give(MoveLinearAbsolute{.z = 40, .coordinate_system = CoordinateSystem::kPcs, .pcs = 3})
                 : rig.Give(MoveLinearAbsolute{.x = 10, .y = 0, .z = 30});
       rig.Run(0.05);
-      const std::optional<Question> question = Asked(rig);
+      const std::optional<PathCheckRequest> question = Asked(rig);
       ASSERT_TRUE(question);
       EXPECT_NEAR(ToolOf(rig).p.y(), 200, 1e-6);
       EXPECT_NEAR(ToolOf(rig).p.z(), 0, 1e-6);

@@ -213,9 +213,9 @@ TEST(Limits, NoMemoryIsTakenInTheCycle) {
       MoveDirectAbsolute{.a1 = 10, .buffer_mode = BufferMode::kBuffered},
   };
   // What a command may be is described when it is first asked for; an engine asks for all when it starts.
-  for (const Command& move : moves) EXPECT_EQ(WhyNot(move), "");
+  for (const Command& move : moves) EXPECT_EQ(Diagnose(move), "");
   for (const Command& other : {Command{Interrupt{}}, Command{Continue{}}, Command{Stop{}}})
-    EXPECT_EQ(WhyNot(other), "");
+    EXPECT_EQ(Diagnose(other), "");
   Outputs out;
   const long before = AllocationsOfThisThread();
   Ticket ticket = 1000;

@@ -15,11 +15,11 @@ using kinematics::KinematicsParams;
 using kinematics::Pose;
 
 // What each axis can do: speed, acceleration, jerk.
-struct Strength {
+struct AxisCapability {
   double velocity = 1500, acceleration = 10000, jerk = 500000;
 };
 
-inline Rig Machine(KinematicsParams mechanism, std::vector<std::string> names, Strength strength, PathLimits path,
+inline Rig Machine(KinematicsParams mechanism, std::vector<std::string> names, AxisCapability strength, PathLimits path,
                    std::vector<PathTable> paths = {}, const Pose& base = {}, const Pose& tool = {}) {
   GroupParams p;
   p.name = "group";

@@ -63,7 +63,7 @@ class Rig {
     slip_counts.resize(axes.size());
     ahead = std::make_unique<LookAhead>(trajectory::CoordinateLimits{}, cycle.period_s);
     mounting = MakeMounting(params);
-    questions = std::make_unique<Questions>(4);
+    questions = std::make_unique<PathCheckRequests>(4);
     state = MakeState(members);
   }
 
@@ -164,7 +164,7 @@ class Rig {
   std::vector<ServoOutputs> commanded;
   std::vector<double> slip_counts;  // measured beyond what is commanded
   std::unique_ptr<LookAhead> ahead;
-  std::unique_ptr<Questions> questions;  // with a workspace
+  std::unique_ptr<PathCheckRequests> questions;  // with a workspace
   Carriers carriers;
   State state;
   Cycle cycle;
@@ -190,7 +190,7 @@ class Rig {
     }
   }
 
-  axis::Surrounding machine_;
+  axis::MachineView machine_;
   std::vector<FeedbackEvent> storage_;
   FeedbackSink sink_;
   std::vector<std::function<void()>> pending_;

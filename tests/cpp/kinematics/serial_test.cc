@@ -204,7 +204,7 @@ TEST(Serial, TakesRangesFromUrdf) {
   EXPECT_NEAR(camera.p.z(), 437, 1e-9);
 }
 
-std::string WhyNot(const std::string& xml, const std::string& base = "", const std::string& tip = "") {
+std::string Diagnose(const std::string& xml, const std::string& base = "", const std::string& tip = "") {
   std::string why;
   EXPECT_FALSE(ReadUrdf(xml, base, tip, why));
   return why;
@@ -213,25 +213,25 @@ std::string WhyNot(const std::string& xml, const std::string& base = "", const s
 // GR-11: what is wrong with a URDF is said in a sentence.
 TEST(Serial, SaysWhatIsWrongWithAUrdf) {
   const std::string cobra = TextOf("cobra.urdf");
-  EXPECT_EQ(WhyNot("nonsense"), "this is no URDF that can be read");
-  EXPECT_EQ(WhyNot("<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='fixed'><parent link='a'/>"
-                   "<child link='b'/><origin xyz='1 two 3'/></joint></robot>"),
+  EXPECT_EQ(Diagnose("nonsense"), "this is no URDF that can be read");
+  EXPECT_EQ(Diagnose("<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='fixed'><parent link='a'/>"
+                     "<child link='b'/><origin xyz='1 two 3'/></joint></robot>"),
             "this is no URDF that can be read");
-  EXPECT_EQ(WhyNot(cobra), "the URDF has several ends (camera, tool ...): say which one is the tip");
-  EXPECT_EQ(WhyNot(cobra, "", "hand"), "the URDF has no link 'hand'");
-  EXPECT_EQ(WhyNot(cobra, "foot", "tool"), "the URDF has no link 'foot'");
-  EXPECT_EQ(WhyNot(cobra, "camera", "tool"), "no joints lead from 'camera' to 'tool'");
-  EXPECT_EQ(WhyNot(cobra, "tool", "tool"), "base and tip are the same link");
-  EXPECT_EQ(WhyNot(cobra, "arm2", "camera"), "the chain has no axes");
+  EXPECT_EQ(Diagnose(cobra), "the URDF has several ends (camera, tool ...): say which one is the tip");
+  EXPECT_EQ(Diagnose(cobra, "", "hand"), "the URDF has no link 'hand'");
+  EXPECT_EQ(Diagnose(cobra, "foot", "tool"), "the URDF has no link 'foot'");
+  EXPECT_EQ(Diagnose(cobra, "camera", "tool"), "no joints lead from 'camera' to 'tool'");
+  EXPECT_EQ(Diagnose(cobra, "tool", "tool"), "base and tip are the same link");
+  EXPECT_EQ(Diagnose(cobra, "arm2", "camera"), "the chain has no axes");
   std::string floating = cobra;
   floating.replace(floating.find("prismatic"), 9, "floating");
-  EXPECT_EQ(WhyNot(floating, "", "tool"), "joint 'j3' neither slides nor turns about one axis");
+  EXPECT_EQ(Diagnose(floating, "", "tool"), "joint 'j3' neither slides nor turns about one axis");
   std::string idle = cobra;
   idle.replace(idle.find("axis xyz=\"0 0 1\""), 16, "axis xyz=\"0 0 0\"");
-  EXPECT_EQ(WhyNot(idle, "", "tool"), "joint 'j1' has an axis without a direction");
+  EXPECT_EQ(Diagnose(idle, "", "tool"), "joint 'j1' has an axis without a direction");
   std::string mimic = cobra;
   mimic.replace(mimic.find("<limit"), 0, "<mimic joint=\"j2\"/>");
-  EXPECT_EQ(WhyNot(mimic, "", "tool"), "joint 'j1' copies another one, which a chain cannot");
+  EXPECT_EQ(Diagnose(mimic, "", "tool"), "joint 'j1' copies another one, which a chain cannot");
 
   // A chain has a beginning, and one way to each link.
   const auto joint = [](const std::string& name, const std::string& from, const std::string& to) {
@@ -242,19 +242,19 @@ TEST(Serial, SaysWhatIsWrongWithAUrdf) {
   const std::string no_urdf = "this is no URDF that can be read";
   const std::string in_loop = ": link 'a' is in a loop of joints, or hangs on one";
   const std::string loop = links + joint("j", "a", "b") + joint("k", "b", "a") + joint("l", "c", "d") + "</robot>";
-  EXPECT_EQ(WhyNot(loop, "c", "b"), no_urdf + in_loop);
-  EXPECT_EQ(WhyNot(links + joint("j", "a", "b") + joint("k", "b", "c") + joint("l", "c", "d") + joint("m", "d", "a") +
-                   "</robot>"),
+  EXPECT_EQ(Diagnose(loop, "c", "b"), no_urdf + in_loop);
+  EXPECT_EQ(Diagnose(links + joint("j", "a", "b") + joint("k", "b", "c") + joint("l", "c", "d") + joint("m", "d", "a") +
+                     "</robot>"),
             no_urdf + in_loop);  // without a root
   const std::string closed =
       links + joint("j", "a", "b") + joint("k", "a", "c") + joint("l", "b", "d") + joint("m", "c", "d") + "</robot>";
-  EXPECT_EQ(WhyNot(closed, "a", "d"), "link 'd' hangs on two joints, which a chain cannot");
-  EXPECT_EQ(WhyNot("<robot name='r'></robot>"), no_urdf);
+  EXPECT_EQ(Diagnose(closed, "a", "d"), "link 'd' hangs on two joints, which a chain cannot");
+  EXPECT_EQ(Diagnose("<robot name='r'></robot>"), no_urdf);
   // Only continuous axes go without limits.
   for (const char* type : {"revolute", "prismatic"}) {
     std::string unlimited = joint("j", "a", "b");
     unlimited.replace(unlimited.find("continuous"), 10, type);
-    EXPECT_EQ(WhyNot("<robot name='r'><link name='a'/><link name='b'/>" + unlimited + "</robot>"), no_urdf);
+    EXPECT_EQ(Diagnose("<robot name='r'><link name='a'/><link name='b'/>" + unlimited + "</robot>"), no_urdf);
   }
 
   std::ostringstream nine;
@@ -263,7 +263,7 @@ TEST(Serial, SaysWhatIsWrongWithAUrdf) {
     nine << "<link name='l" << n << "'/><joint name='j" << n << "' type='continuous'><parent link='l" << n - 1
          << "'/><child link='l" << n << "'/><axis xyz='0 0 1'/></joint>";
   }
-  EXPECT_EQ(WhyNot(nine.str() + "</robot>"), "the chain has more than 8 axes");
+  EXPECT_EQ(Diagnose(nine.str() + "</robot>"), "the chain has more than 8 axes");
 }
 
 }  // namespace

@@ -100,11 +100,11 @@ class TrackRig {
   ErrorId Do(std::size_t mover, const Command& command) { return End(Give(mover, command)).error; }
   ErrorId Join(std::size_t mover, const std::string& track) { return Do(mover, JoinTrack{.track = Name::Of(track)}); }
 
-  Streets streets;
+  TrackNetworkState streets;
   std::vector<MoverParams> params;
-  planar::Grounds grounds;
+  planar::GroupRegistry grounds;
   std::vector<std::unique_ptr<planar::Track>> ways;
-  std::vector<TrackNow> now;
+  std::vector<TrackView> now;
   std::vector<State> states;
   std::vector<Outputs> out;
   Cycle cycle{0, kPeriod};

@@ -25,7 +25,7 @@ class Rig {
 
   Context context() { return {params, cycle, planner, feedback, streets, grounds}; }
 
-  // Given in the cycle that comes.
+  // CommandContext in the cycle that comes.
   Ticket Give(const Command& command) {
     Apply(context(), ++ticket, command, state);
     Hear();
@@ -60,8 +60,8 @@ class Rig {
   const FeedbackEvent& Of(Ticket of) { return answers[of]; }
 
   MoverParams params;
-  Streets streets{1, {}};
-  planar::Grounds grounds{1, 0, 0, {}};
+  TrackNetworkState streets{1, {}};
+  planar::GroupRegistry grounds{1, 0, 0, {}};
   Cycle cycle;
   trajectory::Planner planner;
   std::vector<FeedbackEvent> storage = std::vector<FeedbackEvent>(64);

@@ -80,8 +80,8 @@ class Troop {
   std::vector<Inputs> inputs;
   std::vector<Outputs> outs;
   std::vector<Ticket> joins;
-  Streets streets{params.size(), {}};
-  planar::Grounds grounds{params.size(), 0, 1, {"cell"}};
+  TrackNetworkState streets{params.size(), {}};
+  planar::GroupRegistry grounds{params.size(), 0, 1, {"cell"}};
   Cycle cycle;
   trajectory::Planner planner;
   std::vector<FeedbackEvent> storage = std::vector<FeedbackEvent>(4096);

@@ -9,7 +9,7 @@
 namespace takt::planar {
 namespace {
 
-using testing::Streets;
+using testing::TrackNetworkState;
 using testing::Watcher;
 
 const Pace kEasyPace = testing::PaceOf(1000, 8000, 200000);
@@ -36,7 +36,7 @@ TEST(Borders, TheGapReachesOverShortTracks) {  // PL-24
       const std::vector<Layout> layouts = Cut(lengths);
       const auto last = static_cast<std::uint32_t>(between + 1);
       for (const double gap : {120.0, 300.0}) {
-        Streets streets(layouts, 2);
+        TrackNetworkState streets(layouts, 2);
         streets.Put(0, 0, 100, kEasyPace, 120);
         streets.Put(1, last, 5, kEasyPace, gap);  // the larger one counts
         streets.Send(0, 0, 1500);
@@ -65,7 +65,7 @@ TEST(Borders, TheGapReachesBackOverShortTracks) {  // PL-24
   for (const std::uint32_t over : {3U, 5U, 6U, 8U, 12U}) {
     std::vector<Layout> layouts = Cut({1000, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 1000});
     layouts.push_back({{testing::Line({0, 500}, {400, 500}), testing::Line({990, 0}, {1000, 0})}});
-    Streets streets(layouts, 2);
+    TrackNetworkState streets(layouts, 2);
     streets.Put(0, 0, 500, kEasyPace, 120);
     streets.Put(1, 14, 100, kEasyPace, 120);
     streets.Send(0, over, 5);
@@ -89,7 +89,7 @@ TEST(Borders, TheGapReachesBackOverShortTracks) {  // PL-24
 TEST(Borders, FaceToFaceIsADeadlock) {  // PL-26
   for (const int later : {1300, 1500, 1700}) {
     for (const double from : {300.0, 400.0}) {
-      Streets streets(Cut({1500, 1500}), 2);
+      TrackNetworkState streets(Cut({1500, 1500}), 2);
       streets.Put(0, 1, from, kEasyPace, 120);
       streets.Put(1, 0, 0, kEasyPace, 200);
       ASSERT_TRUE(streets.Send(1, 1, from - 100));
@@ -111,7 +111,7 @@ Layout Ring() {
 }
 
 // How far it goes, with its sign.
-double Went(Streets& streets, const Destination& to) {
+double Went(TrackNetworkState& streets, const Destination& to) {
   const double before = streets[0].at.position + streets[0].origin;
   EXPECT_TRUE(streets.Send(0, to));
   EXPECT_TRUE(streets.Run(20));
@@ -120,7 +120,7 @@ double Went(Streets& streets, const Destination& to) {
 
 // Turns come on top wherever the mover stands, also at its target, or within the tolerance of it.
 TEST(Borders, TurnsOfALoopAreMade) {  // PL-12
-  Streets streets({Ring()}, 1);
+  TrackNetworkState streets({Ring()}, 1);
   const double length = streets.track(0).length;
   for (const std::uint32_t turns : {0U, 1U, 3U}) {
     for (const double tolerance : {0.0, 1.0}) {

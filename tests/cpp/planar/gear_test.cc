@@ -14,7 +14,7 @@ namespace takt::planar {
 namespace {
 
 using testing::Straight;
-using testing::Streets;
+using testing::TrackNetworkState;
 using testing::Watcher;
 
 // An axis that goes from one random velocity to the next, and now and then jumps.
@@ -57,7 +57,7 @@ class Axis {
   double time_ = 0, hold_ = 0;
 };
 
-void Couple(Streets& streets, std::uint32_t mover, double offset, std::uint32_t master = kNobody) {
+void Couple(TrackNetworkState& streets, std::uint32_t mover, double offset, std::uint32_t master = kNobody) {
   Rider& r = streets[mover];
   r.aim = Aim::kFollow;
   r.gear = {.master = master, .offset = offset};
@@ -67,7 +67,7 @@ TEST(Gear, FollowsWhatItsLimitsAllowBitForBit) {  // PL-14
   for (unsigned trial = 0; trial < 20; ++trial) {
     testing::Random random(trial);
     const Pace pace = testing::PaceOf(random.Between(500, 2000), random.Between(3000, 15000), random.Between(5e4, 4e5));
-    Streets streets({Straight(100000)}, 1);
+    TrackNetworkState streets({Straight(100000)}, 1);
     streets.Put(0, 0, 50000, pace);
     Couple(streets, 0, 50000);
     Axis axis({0.9 * pace.limits.velocity, 0.9 * pace.limits.acceleration, 0.9 * pace.limits.deceleration,
@@ -93,7 +93,7 @@ TEST(Gear, KeepsItsLimitsWhateverTheMasterDoes) {  // PL-14
   for (unsigned trial = 0; trial < 20; ++trial) {
     testing::Random random(100 + trial);
     const Pace pace = testing::PaceOf(random.Between(500, 2000), random.Between(3000, 15000), random.Between(5e4, 4e5));
-    Streets streets({Straight(200000)}, 1);
+    TrackNetworkState streets({Straight(200000)}, 1);
     streets.Put(0, 0, 100000, pace);
     Couple(streets, 0, 100000);
     streets[0].gear.tolerance = trial % 2 == 0 ? 0 : 1;
@@ -133,7 +133,7 @@ TEST(Gear, KeepsItsLimitsWhateverTheMasterDoes) {  // PL-14
 TEST(Gear, GetsIntoStepTheWayItMay) {  // PL-14
   const Pace pace = testing::PaceOf(1000, 8000, 200000);
   for (const int sense : {0, 1, -1}) {
-    Streets streets({Straight(3000)}, 1);
+    TrackNetworkState streets({Straight(3000)}, 1);
     streets.Put(0, 0, 1500, pace);
     Couple(streets, 0, 0);
     streets[0].gear.sense = static_cast<std::int8_t>(sense);
@@ -160,7 +160,7 @@ TEST(Gear, ComesFromBehindWithoutPassing) {  // PL-14
     const Pace pace = testing::PaceOf(random.Between(500, 2000), random.Between(3000, 15000), random.Between(5e4, 4e5));
     const Pace its =
         testing::PaceOf(random.Between(0.5, 1) * pace.limits.velocity, pace.limits.acceleration, pace.limits.jerk);
-    Streets streets({Straight(5000), Straight(5000)}, 2);
+    TrackNetworkState streets({Straight(5000), Straight(5000)}, 2);
     streets.Put(0, 0, 0, pace);
     streets.Put(1, 1, 0, its);
     const double target = random.Between(50, 4000);
@@ -183,7 +183,7 @@ TEST(Gear, ComesFromBehindWithoutPassing) {  // PL-14
 // Its master's place is behind it and it may only go forwards: it waits for its master, which waits for it.
 TEST(Gear, MayWaitForItsMaster) {  // PL-14, PL-26
   const Pace pace = testing::PaceOf(1000, 8000, 200000);
-  Streets streets({Straight(3000)}, 2);
+  TrackNetworkState streets({Straight(3000)}, 2);
   streets.Put(0, 0, 600, testing::PaceOf(100, 8000, 200000), 200);
   streets.Put(1, 0, 1000, pace, 200);
   Couple(streets, 1, -300, 0);
@@ -211,7 +211,7 @@ TEST(Gear, LetsAPlaceComeThatIsOnItsWay) {  // PL-14
   for (const double from : {0.0, 1000.0}) {
     for (const int sense : {-1, 0, 1}) {
       const double back = from > 0 ? -1 : 1;
-      Streets streets({Straight(1000)}, 1);
+      TrackNetworkState streets({Straight(1000)}, 1);
       streets.Put(0, 0, from, pace);
       Couple(streets, 0, from + 400 * back);
       streets[0].gear.sense = static_cast<std::int8_t>(sense);
@@ -248,7 +248,7 @@ TEST(Gear, LetsAPlaceComeThatIsOnItsWay) {  // PL-14
 TEST(Gear, StopsWhereItsWayEnds) {  // PL-14
   const Pace pace = testing::PaceOf(1000, 8000, 200000);
   for (const bool forward : {true, false}) {
-    Streets streets({Straight(1000)}, 1);
+    TrackNetworkState streets({Straight(1000)}, 1);
     streets.Put(0, 0, 500, pace);
     Couple(streets, 0, 500);
     Watcher watcher(streets);
@@ -276,7 +276,7 @@ TEST(Gear, StopsWhereItsWayEnds) {  // PL-14
 
 // Each goes along with the one before it, at just the gap that it has to keep: they are one body.
 TEST(Gear, AConvoyIsRigid) {  // PL-14
-  Streets streets({Straight(30000)}, 11);
+  TrackNetworkState streets({Straight(30000)}, 11);
   const Pace pace = testing::PaceOf(1500, 10000, 200000);
   for (std::uint32_t i = 0; i < 11; ++i) {
     streets.Put(i, 0, 4000 - 200.0 * i, pace, 200);
@@ -309,7 +309,7 @@ TEST(Gear, AConvoyIsRigid) {  // PL-14
 // The same, but they come from somewhere behind: they close up, without shaking, and then are one body.
 TEST(Gear, AConvoyClosesUp) {  // PL-14
   testing::Random random(7);
-  Streets streets({Straight(60000)}, 11);
+  TrackNetworkState streets({Straight(60000)}, 11);
   const Pace pace = testing::PaceOf(1500, 10000, 200000);
   const Pace slow = testing::PaceOf(1000, 10000, 200000);
   double place = 8000;
@@ -354,7 +354,7 @@ TEST(Gear, SlowsDownInCurves) {  // PL-14, PL-21
                    testing::Line({1900, 1700}, {5000, 1700})}};
     const Pace pace = testing::PaceOf(2000, 10000, 200000, random.Between(3000, 8000));
     const Pace pace_of_master = testing::PaceOf(random.Between(300, 1700), 8000, 150000);
-    Streets streets({layout, Straight(10000)}, 2);
+    TrackNetworkState streets({layout, Straight(10000)}, 2);
     streets.Put(0, 0, 0, pace);
     streets.Put(1, 1, 0, pace_of_master);
     Couple(streets, 0, 0, 1);
@@ -391,7 +391,7 @@ TEST(Gear, AConvoyGoesThroughSwitches) {  // PL-14, PL-34
   const Layout left{{testing::Line({2000, 0}, {2300, 0}), testing::Line({2600, 300}, {4000, 300})}};
   const Layout right{{testing::Line({2000, 0}, {2300, 0}), testing::Line({2600, -300}, {4000, -300})}};
   const Layout on{{testing::Line({4000, 300}, {6000, 300})}};
-  Streets streets({in, left, right, on}, 6);
+  TrackNetworkState streets({in, left, right, on}, 6);
   const Pace pace = testing::PaceOf(600, 5000, 100000, 8000);
   for (std::uint32_t i = 0; i < 6; ++i) {
     streets.Put(i, 0, 1500 - 200.0 * i, pace, 200);
@@ -422,7 +422,7 @@ TEST(Gear, AConvoyGoesThroughSwitches) {  // PL-14, PL-34
   EXPECT_LE(watcher.lateral, 1 + 1e-6);
 }
 
-bool Follows(Streets& streets, std::uint32_t mover, std::uint32_t master) {
+bool Follows(TrackNetworkState& streets, std::uint32_t mover, std::uint32_t master) {
   while (mover != master) {
     const Rider& r = streets[mover];
     if (r.aim != Aim::kFollow || r.gear.master == kNobody) return false;
@@ -439,7 +439,7 @@ TEST(Gear, NobodyComesTooNear) {  // PL-14, PL-23, PL-24
   for (int trial = 0; trial < trials; ++trial) {
     testing::Random random(static_cast<unsigned>(trial));
     const std::vector<Layout> layouts = testing::RandomCity(random, 14, 100);
-    Streets streets(layouts, 14);
+    TrackNetworkState streets(layouts, 14);
     std::uint32_t put = 0;
     for (std::uint32_t track = 0; track < layouts.size(); ++track) {
       const Road& road = streets.network()[track];

@@ -12,7 +12,7 @@
 namespace takt::planar {
 namespace {
 
-using testing::Streets;
+using testing::TrackNetworkState;
 using testing::Watcher;
 
 const Pace kBriskPace = testing::PaceOf(2000, 10000, 200000);
@@ -47,7 +47,7 @@ Layout Serpentine(double distance) {
 
 // Where it is is known but for rounding, and so is whether that is on its track.
 TEST(Limits, AMoverMayBeBeforeItsTrackByRounding) {
-  Streets streets({Corner()}, 1);
+  TrackNetworkState streets({Corner()}, 1);
   for (const double place : {-1.2e-13, 0.0, 100.0}) {
     streets.Put(0, 0, -1.2e-13, kBriskPace);
     const Start start{&streets[0].route, -1.2e-13, 1, 0, 0};
@@ -63,7 +63,7 @@ TEST(Limits, ALowerJerkIsNoReasonToGetTooFast) {  // PL-15
   for (const double jerk : {1000.0, 5000.0, 20000.0}) {
     for (const double velocity : {2000.0, 500.0}) {
       for (const int after : {60, 100, 150}) {
-        Streets streets({{{testing::Line({0, 0}, {20000, 0})}}}, 1);
+        TrackNetworkState streets({{{testing::Line({0, 0}, {20000, 0})}}}, 1);
         streets.Put(0, 0, 0, kBriskPace);
         Watcher watcher(streets);
         streets.watch = [&] { watcher.Look(); };
@@ -97,7 +97,7 @@ TEST(Limits, LessDynamicsAreNoReasonToTakeACurveTooFast) {  // PL-21
   for (const Pace& pace : paces) {
     for (const double place : {200.0, 1000.0, 1260.0, 1400.0}) {
       for (const bool geared : {false, true}) {
-        Streets streets({Corner()}, 1);
+        TrackNetworkState streets({Corner()}, 1);
         streets.Put(0, 0, 0, kBriskPace);
         Watcher watcher(streets);
         streets.watch = [&] { watcher.Look(); };
@@ -128,7 +128,7 @@ TEST(Limits, VectorsKeepTheirMaximaInCurvesAndTransitions) {  // PL-82
       for (const double jerk : {40000.0, 150000.0, 900000.0}) {
         for (const double lateral : {1500.0, 5000.0, 9000.0}) {
           const Pace pace = testing::InPlane(testing::PaceOf(2500, 9000, jerk, lateral));
-          Streets streets({layout}, 1);
+          TrackNetworkState streets({layout}, 1);
           streets.Put(0, 0, 0, pace);
           streets.Send(0, 0, streets.track(0).length);
           Watcher watcher(streets);
@@ -156,7 +156,7 @@ TEST(Limits, VectorsKeepTheirMaximaInCurvesAndTransitions) {  // PL-82
 TEST(Limits, AHaltBrakesAsItIsTold) {  // PL-11
   for (const double deceleration : {500.0, 3000.0, 10000.0}) {
     for (const double jerk : {5000.0, 50000.0}) {
-      Streets streets({{{testing::Line({0, 0}, {20000, 0})}}}, 2);
+      TrackNetworkState streets({{{testing::Line({0, 0}, {20000, 0})}}}, 2);
       streets.Put(0, 0, 0, kBriskPace, 200);
       streets.Send(0, 0, 19000);
       for (int i = 0; i < 1000; ++i) streets.Step();
@@ -179,7 +179,7 @@ TEST(Limits, AHaltBrakesAsItIsTold) {  // PL-11
       EXPECT_LE(watcher.jerk, jerk / 200000 * (1 + 1e-6));
     }
   }
-  Streets streets({{{testing::Line({0, 0}, {20000, 0})}}}, 2);
+  TrackNetworkState streets({{{testing::Line({0, 0}, {20000, 0})}}}, 2);
   streets.Put(0, 0, 0, kBriskPace, 200);
   streets.Put(1, 0, 250, kBriskPace, 200);
   streets.Send(0, 0, 18000);
@@ -209,7 +209,7 @@ TEST(Limits, AreKeptWhateverAMoverIsTold) {  // PL-14, PL-15, PL-21
     const std::vector<Layout> layouts = testing::RandomCity(random, 10, 100);
     const auto tracks = static_cast<std::uint32_t>(layouts.size());
     if (tracks == 0) continue;
-    Streets streets(layouts, 3);
+    TrackNetworkState streets(layouts, 3);
     std::vector<Pace> most;
     for (std::uint32_t k = 0; k < 3; ++k) {
       most.push_back(testing::PaceOf(random.Between(500, 3000), random.Between(3000, 15000), random.Between(5e4, 4e5),

@@ -13,7 +13,7 @@
 namespace takt::planar {
 namespace {
 
-using testing::Streets;
+using testing::TrackNetworkState;
 
 // The tracks of tests/tools/track_problems.py: what they are made of, limits, and a solver's time.
 TEST(Optimum, TracksWithCurvesTakeFivePercentLongerAtMost) {
@@ -30,7 +30,7 @@ TEST(Optimum, TracksWithCurvesTakeFivePercentLongerAtMost) {
     ASSERT_EQ(MakeTrack(layout, track).problem, Problem::kNone);
     ASSERT_NEAR(track.length, double(p["length"]), 1e-3) << "other tracks than the solver had";
     const Pace pace = testing::PaceOf(p["velocity"], p["acceleration"], p["jerk"], p["lateral"]);
-    Streets streets({layout}, 1);
+    TrackNetworkState streets({layout}, 1);
     streets.Put(0, 0, 0, pace);
     streets.Send(0, 0, track.length);
     ASSERT_TRUE(streets.Run(30));

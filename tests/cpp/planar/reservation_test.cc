@@ -82,7 +82,7 @@ TEST(ReservationsOfTracks, RefuseWhatIsTaken) {
   const Track track = testing::Make({.elements = {Line({0, 0}, {400, 0})}});
   const TrackArea area = MakeTrackArea(track, kMover, 7);
   const TrackArea* tracks[] = {&area};
-  const Surroundings around{.tracks = tracks};
+  const StaticObstacles around{.tracks = tracks};
   Reservations r = MakeReservations(2, 1);
   Settle(0, kMover, At(0, 0), r);
   Settle(1, kMover, At(240, 0), r);
@@ -422,7 +422,7 @@ TEST(ReservationsOfMovers, AllocateNothing) {
   const Environment surface = Surface({{0, 0}, {240, 0}, {480, 0}});
   const TrackArea area = MakeTrackArea(testing::Make({.elements = {Line({120, 120}, {300, 120})}}), kMover, 0);
   const TrackArea* tracks[] = {&area};
-  const Surroundings around{.environment = &surface, .tracks = tracks};
+  const StaticObstacles around{.environment = &surface, .tracks = tracks};
   Reservations r = MakeReservations(2, 1);
   const long before = AllocationsOfThisThread();
   Settle(0, kMover, At(120, 120), r);

@@ -89,7 +89,7 @@ std::vector<Layout> RandomCity(Random& random, int count, double size) {
   return layouts;
 }
 
-Streets::Streets(const std::vector<Layout>& layouts, std::uint32_t movers, double size)
+TrackNetworkState::TrackNetworkState(const std::vector<Layout>& layouts, std::uint32_t movers, double size)
     : riders_(movers),
       traffic_({movers, static_cast<std::uint32_t>(layouts.size())}),
       search_(layouts.size()),
@@ -119,7 +119,7 @@ Streets::Streets(const std::vector<Layout>& layouts, std::uint32_t movers, doubl
   for (std::uint32_t i = 0; i < layouts.size(); ++i) SetLeads(i, network_);
 }
 
-Rider& Streets::Put(std::uint32_t mover, std::uint32_t track, double s, const Pace& pace, double gap) {
+Rider& TrackNetworkState::Put(std::uint32_t mover, std::uint32_t track, double s, const Pace& pace, double gap) {
   Rider& r = riders_[mover];
   r = {};
   r.on = true;
@@ -133,21 +133,21 @@ Rider& Streets::Put(std::uint32_t mover, std::uint32_t track, double s, const Pa
   return r;
 }
 
-bool Streets::Send(std::uint32_t mover, std::uint32_t track, double s) {
+bool TrackNetworkState::Send(std::uint32_t mover, std::uint32_t track, double s) {
   return Send(mover, {.track = track, .position = s});
 }
 
-bool Streets::Send(std::uint32_t mover, const Destination& to) {
+bool TrackNetworkState::Send(std::uint32_t mover, const Destination& to) {
   return planar::Send(network_, search_, to, riders_[mover]);
 }
 
-void Streets::Step() {
+void TrackNetworkState::Step() {
   traffic_.Step(cycle_, planner_, network_, riders_);
   ++cycle_.count;
   if (watch) watch();
 }
 
-bool Streets::Run(double seconds) {
+bool TrackNetworkState::Run(double seconds) {
   const double end = now() + seconds;
   const auto there = [](const Rider& r) { return !r.on || r.aim != Aim::kTarget || r.there; };
   while (now() < end) {
@@ -157,12 +157,12 @@ bool Streets::Run(double seconds) {
   return false;
 }
 
-TrackPoint Streets::PointOf(std::uint32_t mover) const {
+TrackPoint TrackNetworkState::PointOf(std::uint32_t mover) const {
   const Rider& r = riders_[mover];
   return At(*tracks_[r.route.first()], r.at.position);
 }
 
-double Streets::MissingOf(const std::function<double(const Rider&)>& gap) const {
+double TrackNetworkState::MissingOf(const std::function<double(const Rider&)>& gap) const {
   double most = -INFINITY;
   for (std::size_t i = 0; i < riders_.size(); ++i) {
     const Rider& a = riders_[i];
@@ -185,7 +185,7 @@ double Streets::MissingOf(const std::function<double(const Rider&)>& gap) const 
   return most;
 }
 
-double Streets::Nearest() const {
+double TrackNetworkState::Nearest() const {
   double least = INFINITY;
   for (std::uint32_t i = 0; i < riders_.size(); ++i) {
     for (std::uint32_t k = 0; k < i; ++k) {

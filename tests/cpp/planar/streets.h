@@ -35,10 +35,10 @@ inline Layout Straight(double length) {
   return {{Line({0, 0}, {length, 0})}};
 }
 
-class Streets {
+class TrackNetworkState {
  public:
   // Tracks by their layout; links from ends to starts that are at the same place.
-  explicit Streets(const std::vector<Layout>& layouts, std::uint32_t movers, double size = 100);
+  explicit TrackNetworkState(const std::vector<Layout>& layouts, std::uint32_t movers, double size = 100);
 
   Network& network() { return network_; }
   std::vector<Rider>& riders() { return riders_; }
@@ -104,7 +104,7 @@ std::vector<Layout> RandomCity(Random& random, int tracks, double size);
 // the lengths of acceleration and jerk as vectors, where they are bounded.
 class Watcher {
  public:
-  explicit Watcher(Streets& streets) : streets_(streets) {}
+  explicit Watcher(TrackNetworkState& streets) : streets_(streets) {}
   void Look();
 
   double speed = 0;         // largest share of the limit
@@ -115,7 +115,7 @@ class Watcher {
   double vector_jerk = 0;
 
  private:
-  Streets& streets_;
+  TrackNetworkState& streets_;
   std::vector<KinematicState> before_;
   std::vector<double> ways_, most_;
   std::vector<Place> pushes_;  // acceleration in the plane, mm/s²

@@ -17,7 +17,7 @@ namespace takt::planar {
 namespace {
 
 using testing::Straight;
-using testing::Streets;
+using testing::TrackNetworkState;
 using testing::Watcher;
 
 TEST(Traffic, AMoverAloneTakesNoLongerThanThePlannerNeeds) {  // PL-12, PL-15
@@ -25,7 +25,7 @@ TEST(Traffic, AMoverAloneTakesNoLongerThanThePlannerNeeds) {  // PL-12, PL-15
   for (int trial = 0; trial < 50; ++trial) {
     const double length = random.Between(500, 5000);
     const Pace pace = testing::PaceOf(random.Between(300, 3000), random.Between(3000, 20000), random.Between(5e4, 5e5));
-    Streets streets({Straight(length)}, 1);
+    TrackNetworkState streets({Straight(length)}, 1);
     const double from = random.Between(0, length), to = random.Between(0, length);
     streets.Put(0, 0, from, pace);
     ASSERT_TRUE(streets.Send(0, 0, to));
@@ -46,7 +46,7 @@ TEST(Traffic, AMoverAloneTakesNoLongerThanThePlannerNeeds) {  // PL-12, PL-15
 }
 
 TEST(Traffic, AMoverStopsBehindAnother) {  // PL-24
-  Streets streets({Straight(3000)}, 2);
+  TrackNetworkState streets({Straight(3000)}, 2);
   const Pace pace = testing::PaceOf(2000, 10000, 200000);
   streets.Put(0, 0, 100, pace, 200);
   streets.Put(1, 0, 1500, pace, 200);
@@ -62,7 +62,7 @@ TEST(Traffic, AMoverStopsBehindAnother) {  // PL-24
 // A target just at the gap behind another is reached.
 TEST(Traffic, GoesUpToTheGap) {  // PL-24
   for (const double from : {100.0, 1200.0, 1299.9, 1299.9995}) {
-    Streets streets({Straight(3000)}, 2);
+    TrackNetworkState streets({Straight(3000)}, 2);
     const Pace pace = testing::PaceOf(2000, 10000, 200000);
     streets.Put(0, 0, from, pace, 200);
     streets.Put(1, 0, 1500, pace, 200);
@@ -75,7 +75,8 @@ TEST(Traffic, GoesUpToTheGap) {  // PL-24
 // How often the jerk of a mover turns round, by more than half of its limit.
 class Turns {
  public:
-  explicit Turns(Streets& streets) : streets_(streets), before_(streets.riders().size()), last_(before_.size()) {}
+  explicit Turns(TrackNetworkState& streets)
+      : streets_(streets), before_(streets.riders().size()), last_(before_.size()) {}
   void Look() {
     for (std::size_t i = 0; i < before_.size(); ++i) {
       const Rider& r = streets_[i];
@@ -88,12 +89,12 @@ class Turns {
   int count = 0;
 
  private:
-  Streets& streets_;
+  TrackNetworkState& streets_;
   std::vector<double> before_, last_;
 };
 
 TEST(Traffic, FollowsWithoutChatter) {  // PL-25
-  Streets streets({Straight(20000)}, 2);
+  TrackNetworkState streets({Straight(20000)}, 2);
   streets.Put(0, 0, 100, testing::PaceOf(2000, 10000, 200000), 200);
   streets.Put(1, 0, 1500, testing::PaceOf(700, 10000, 200000), 200);
   streets.Send(0, 0, 19000);
@@ -115,7 +116,7 @@ TEST(Traffic, FollowsWithoutChatter) {  // PL-25
 // Twenty movers at their gaps, with different dynamics, start and stop with the first one, again and again.
 TEST(Traffic, AStreamOpensAndClosesLikeAnAccordion) {  // PL-25
   testing::Random random(3);
-  Streets streets({Straight(60000)}, 20);
+  TrackNetworkState streets({Straight(60000)}, 20);
   for (std::uint32_t i = 0; i < 20; ++i) {
     const Pace pace =
         testing::PaceOf(random.Between(1500, 2000), random.Between(8000, 12000), random.Between(1e5, 3e5));
@@ -156,7 +157,7 @@ TEST(Traffic, AStreamOpensAndClosesLikeAnAccordion) {  // PL-25
 TEST(Traffic, NobodyBrakesHarderThanTheFirst) {  // PL-25
   testing::Random random(5);
   for (int trial = 0; trial < 10; ++trial) {
-    Streets streets({Straight(9000)}, 20);
+    TrackNetworkState streets({Straight(9000)}, 20);
     for (std::uint32_t i = 0; i < 20; ++i) {
       const Pace pace =
           i == 0 ? testing::PaceOf(500, 4000, 8e4)
@@ -204,7 +205,7 @@ TEST(Traffic, TakesCurvesNotMuchSlowerThanCanBe) {  // PL-15, PL-21
     Track track;
     if (MakeTrack(layout, track).problem != Problem::kNone) continue;
     const Pace pace = testing::PaceOf(2000, 10000, 400000, random.Between(3000, 10000));
-    Streets streets({layout}, 1);
+    TrackNetworkState streets({layout}, 1);
     streets.Put(0, 0, 0, pace);
     streets.Send(0, 0, track.length);
     Watcher watcher(streets);
@@ -260,7 +261,7 @@ TEST(Traffic, SaysHowLongAWayTakes) {  // PL-12
     const double velocity = random.Between(300, 3000), acceleration = random.Between(3000, 20000);
     Pace pace = testing::PaceOf(velocity, acceleration, random.Between(5e4, 5e5));
     if (random.Coin()) pace = testing::InPlane(pace);
-    Streets streets(layouts, 1);
+    TrackNetworkState streets(layouts, 1);
     streets.Put(0, 0, random.Between(0, 300), pace);
     const auto last = static_cast<std::uint32_t>(tracks - 1);
     ASSERT_TRUE(streets.Send(0, last, streets.track(last).length));
@@ -286,7 +287,7 @@ TEST(Traffic, SaysHowLongTurnsTake) {  // PL-12
       ring.closed = true;
       ring.elements.push_back(testing::Arc({radius, 0}, {-radius, 0}, {0, 0}, false));
       ring.elements.push_back(testing::Arc({-radius, 0}, {radius, 0}, {0, 0}, false));
-      Streets streets({ring}, 1);
+      TrackNetworkState streets({ring}, 1);
       streets.Put(0, 0, 10, testing::PaceOf(2000, 10000, 200000));
       ASSERT_TRUE(streets.Send(
           0,
@@ -303,7 +304,7 @@ TEST(Traffic, GivesWayWhereTracksJoin) {  // PL-23, PL-24
   Layout below{{testing::Line({0, 0}, {1000, 0}), testing::Line({1300, 200}, {1600, 200})}};
   Layout above{{testing::Line({0, 400}, {1000, 400}), testing::Line({1300, 200}, {1600, 200})}};
   Layout on{{testing::Line({1600, 200}, {3000, 200})}};
-  Streets streets({below, above, on}, 2);
+  TrackNetworkState streets({below, above, on}, 2);
   EXPECT_GT(streets.network()[0].range_at_end, 300);
   const Pace pace = testing::PaceOf(1000, 8000, 200000);
   streets.Put(0, 0, 100, pace, 200);
@@ -326,7 +327,7 @@ TEST(Traffic, StopsWhereTheRangeBegins) {  // PL-24
   Layout above{{testing::Line({0, 400}, {1000, 400}), testing::Line({1300, 200}, {1600, 200})}};
   Layout on{{testing::Line({1600, 200}, {3000, 200})}};
   for (const double gap : {150.0, 700.0}) {
-    Streets streets({below, above, on}, 2);
+    TrackNetworkState streets({below, above, on}, 2);
     const double length = streets.track(0).length, range = streets.network()[1].range_at_end;
     const Pace pace = testing::PaceOf(1000, 8000, 200000);
     streets.Put(0, 0, length - 100, pace, 150);
@@ -350,7 +351,7 @@ TEST(Traffic, NobodyGetsSideBySideIntoAJoinByBeingTold) {  // PL-13, PL-24
   Layout on{{testing::Line({1600, 200}, {3000, 200})}};
   const Pace pace = testing::PaceOf(1000, 8000, 200000);
   for (const bool gap : {true, false}) {
-    Streets streets({below, above, on}, 3);
+    TrackNetworkState streets({below, above, on}, 3);
     for (const std::uint32_t k : {0U, 1U}) {
       streets.Put(k, k, streets.track(k).length - streets.network()[k].range_at_end - 0.5, pace, 150);
     }
@@ -396,7 +397,7 @@ TEST(Traffic, KeepsClearOfTracksThatRunBeside) {  // PL-24
   const Pace pace = testing::PaceOf(1000, 8000, 200000);
   for (const bool end : {true, false}) {
     const Bends bends(end);
-    Streets streets({bends.outer, bends.inner, bends.common}, 2);
+    TrackNetworkState streets({bends.outer, bends.inner, bends.common}, 2);
     const double lead = end ? LeadAtEnd(streets.network(), 1, 0) : LeadAtStart(streets.network(), 0, 1);
     EXPECT_GT(lead, 170 + 50);
     double nearest = INFINITY;
@@ -432,7 +433,7 @@ TEST(Traffic, LeadsAreAsLongAsTheyHaveToBe) {  // PL-24
   constexpr double kStep = 4;
   for (int trial = 0; trial < 5; ++trial) {
     const std::vector<Layout> layouts = testing::RandomCity(random, 14, 100);
-    Streets streets(layouts, 0);
+    TrackNetworkState streets(layouts, 0);
     Network& network = streets.network();
     const double reach = network[0].reach;
     // Of movers so large: what LeadAtStart and LeadAtEnd are to be.
@@ -480,7 +481,7 @@ TEST(Traffic, GoesBeforeOneThatIsJustAtTheGap) {  // PL-24
   Layout on{{testing::Line({1600, 200}, {3000, 200})}};
   const Pace pace = testing::PaceOf(1000, 8000, 200000);
   for (int trial = 0; trial < 20; ++trial) {
-    Streets streets({below, above, on}, 2);
+    TrackNetworkState streets({below, above, on}, 2);
     // It counts there already, while the other one stands where it begins to.
     const double ahead = 600 + 7.1 * trial, behind = 800 + 7.1 * trial;
     streets.network().roads[0].range_at_end = 1000;
@@ -499,7 +500,7 @@ TEST(Traffic, KeepsMoreAwayFromWhoIsOffItsPlace) {  // PL-13, PL-24
                                     {{testing::Line({2000, 0}, {2100, 0}), testing::Line({2500, 300}, {2900, 300})}},
                                     {{testing::Line({2000, 0}, {2100, 0}), testing::Line({2500, -300}, {2900, -300})}}};
   for (const bool at_node : {false, true}) {
-    Streets streets(layouts, 2);
+    TrackNetworkState streets(layouts, 2);
     streets.Put(0, 0, 100, pace, 200);
     streets.Put(1, at_node ? 1 : 0, at_node ? 40 : 1500, pace, 200).off = 70;
     EXPECT_EQ(streets.TooNear(1), kNobody);
@@ -517,7 +518,7 @@ TEST(Traffic, KeepsMoreAwayFromWhoIsOffItsPlace) {  // PL-13, PL-24
 }
 
 TEST(Traffic, FaceToFaceIsADeadlock) {  // PL-26
-  Streets streets({Straight(3000)}, 3);
+  TrackNetworkState streets({Straight(3000)}, 3);
   const Pace pace = testing::PaceOf(1000, 8000, 200000);
   for (std::uint32_t i = 0; i < 3; ++i) streets.Put(i, 0, 200 + 1000 * i, pace, 200);
   streets.Send(0, 0, 2900);
@@ -589,7 +590,7 @@ class CityProperty : public ::testing::TestWithParam<int> {
   int joins = 0, refused_joins = 0;
   testing::Random random{static_cast<unsigned>(GetParam())};
   const std::vector<Layout> layouts = testing::RandomCity(random, 14, 100);
-  Streets streets{layouts, 50};
+  TrackNetworkState streets{layouts, 50};
   std::vector<trajectory::Limits> most{50};  // of each
 };
 

@@ -55,7 +55,7 @@ struct Rig {
   }
 
   Groups groups{1};
-  planar::Grounds grounds{2, 0, 1, {"cell"}};
+  planar::GroupRegistry grounds{2, 0, 1, {"cell"}};
   environment::Environments environments{{{.name = "floor", .stators = {{-120, -120}, {120, -120}}}}};
   Cycle cycle;
   std::vector<FeedbackEvent> storage = std::vector<FeedbackEvent>(64);
@@ -245,7 +245,7 @@ TEST(PlanarGroups, AllocateNothingInTheCycle) {
   Rig rig;
   const mover::MoverParams params{.name = "one"};
   mover::State state = mover::MakeState(params);
-  mover::Streets streets(2, {});
+  mover::TrackNetworkState streets(2, {});
   trajectory::Planner planner;
   const auto context = [&] {
     return mover::Context{params, rig.cycle, planner, rig.feedback, streets, rig.grounds, 0};
@@ -292,7 +292,7 @@ TEST(PlanarGroups, AllocateNothingInTheCycle) {
 // EN-11: all memory is described.
 TEST(PlanarGroups, AreDescribed) {
   EXPECT_THAT(Verify(TypeOf<State>()), ::testing::IsEmpty());
-  EXPECT_THAT(Verify(TypeOf<planar::Ground>()), ::testing::IsEmpty());
+  EXPECT_THAT(Verify(TypeOf<planar::GroupReservations>()), ::testing::IsEmpty());
   EXPECT_THAT(Verify(TypeOf<environment::State>()), ::testing::IsEmpty());
 }
 

@@ -43,7 +43,7 @@ class Rig {
   }
   // What was asked for is made between two cycles.
   void Work() {
-    while (const std::optional<Answer> answer = Make(tracks.desk)) Apply(context(), answer->track, 0, answer->made);
+    while (const std::optional<BuiltTrack> answer = Make(tracks.desk)) Apply(context(), answer->track, 0, answer->made);
   }
   void Steps(int count) {
     for (int i = 0; i < count; ++i) {
@@ -60,7 +60,7 @@ class Rig {
   const State& state(std::size_t track) const { return tracks.states[track]; }
 
   Tracks tracks;
-  planar::Grounds grounds;
+  planar::GroupRegistry grounds;
   Cycle cycle{1, 0.001};
   std::vector<FeedbackEvent> storage;
   FeedbackSink feedback;

@@ -42,9 +42,9 @@ TEST(ObjectStates, TableIsThatOfTheManual) {
 }
 
 TEST(Tracks, AreDescribedToTheLastMember) {
-  for (const Type* type : {&TypeOf<State>(), &TypeOf<Works>(), &TypeOf<Order>(), &TypeOf<Links>(), &TypeOf<Sketch>(),
-                           &TypeOf<Outputs>(), &TypeOf<TrackParams>(), &TypeOf<ElementParams>(), &TypeOf<AppendLine>(),
-                           &TypeOf<AppendCircle>(), &TypeOf<TrackMade>()}) {
+  for (const Type* type : {&TypeOf<State>(), &TypeOf<PendingEdits>(), &TypeOf<Order>(), &TypeOf<Links>(),
+                           &TypeOf<Sketch>(), &TypeOf<Outputs>(), &TypeOf<TrackParams>(), &TypeOf<ElementParams>(),
+                           &TypeOf<AppendLine>(), &TypeOf<AppendCircle>(), &TypeOf<TrackMade>()}) {
     EXPECT_EQ(Verify(*type), std::vector<std::string>{}) << type->name;
   }
 }

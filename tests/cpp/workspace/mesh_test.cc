@@ -21,7 +21,7 @@ using testing::Line;
 using testing::Say;
 using testing::Text;
 
-std::string WhyNot(const std::string& bytes) {
+std::string Diagnose(const std::string& bytes) {
   std::string why;
   EXPECT_FALSE(ReadStl(bytes, 1, why)) << bytes.substr(0, 80);
   return why;
@@ -67,29 +67,29 @@ TEST(Stl, IsReadAsProgramsWriteIt) {
 
 // GR-13
 TEST(Stl, SaysWhatIsWrong) {
-  EXPECT_EQ(WhyNot(""), "this is no STL: neither a text that begins with 'solid' nor long enough for a binary file");
-  EXPECT_EQ(WhyNot("solid empty\nendsolid empty\n"), "this STL holds no triangles");
-  EXPECT_EQ(WhyNot(Binary({})), "this STL holds no triangles");
+  EXPECT_EQ(Diagnose(""), "this is no STL: neither a text that begins with 'solid' nor long enough for a binary file");
+  EXPECT_EQ(Diagnose("solid empty\nendsolid empty\n"), "this STL holds no triangles");
+  EXPECT_EQ(Diagnose(Binary({})), "this STL holds no triangles");
   std::string cut = Binary(BoxFacets(1, 1, 1));
   cut.resize(cut.size() - 30);
-  EXPECT_EQ(WhyNot(cut), "this is no STL: 12 triangles would need 684 bytes, found 654");
-  EXPECT_EQ(WhyNot("solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\nendfacet\nendsolid\n"),
+  EXPECT_EQ(Diagnose(cut), "this is no STL: 12 triangles would need 684 bytes, found 654");
+  EXPECT_EQ(Diagnose("solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\nendfacet\nendsolid\n"),
             "line 7: a facet has 2 vertices instead of three");
-  EXPECT_EQ(WhyNot("solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 1 1\nendfacet\n"),
+  EXPECT_EQ(Diagnose("solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nvertex 0 1 1\nendfacet\n"),
             "line 6: a facet has more than three vertices");
-  EXPECT_EQ(WhyNot("solid\nfacet\nvertex 0 0\n"), "line 3: expected three numbers behind 'vertex'");
-  EXPECT_EQ(WhyNot("solid\nfacet\nvertex 0 0 1mm\n"), "line 3: expected three numbers behind 'vertex'");
-  EXPECT_EQ(WhyNot("solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 nan\nendfacet\n"),
+  EXPECT_EQ(Diagnose("solid\nfacet\nvertex 0 0\n"), "line 3: expected three numbers behind 'vertex'");
+  EXPECT_EQ(Diagnose("solid\nfacet\nvertex 0 0 1mm\n"), "line 3: expected three numbers behind 'vertex'");
+  EXPECT_EQ(Diagnose("solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 nan\nendfacet\n"),
             "line 6: a facet has a vertex that is no number");
-  EXPECT_EQ(WhyNot("solid\nfacet\nvertex 0 0 0\n"), "the text ends within a facet");
-  EXPECT_EQ(WhyNot("solid\rfacet\rvertex 0 0\r"), "line 3: expected three numbers behind 'vertex'");
-  EXPECT_EQ(WhyNot("solid\nfacet\nvertex 0 0 0\nfacet\n"), "line 4: a facet begins within another");
-  EXPECT_EQ(WhyNot("solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 2 0 0\nendfacet\n"),
+  EXPECT_EQ(Diagnose("solid\nfacet\nvertex 0 0 0\n"), "the text ends within a facet");
+  EXPECT_EQ(Diagnose("solid\rfacet\rvertex 0 0\r"), "line 3: expected three numbers behind 'vertex'");
+  EXPECT_EQ(Diagnose("solid\nfacet\nvertex 0 0 0\nfacet\n"), "line 4: a facet begins within another");
+  EXPECT_EQ(Diagnose("solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 2 0 0\nendfacet\n"),
             "this STL holds no triangles");
   std::string infinite = Binary(BoxFacets(1, 1, 1));
   const float x = std::numeric_limits<float>::infinity();
   std::memcpy(infinite.data() + 84 + 50 + 12, &x, sizeof x);
-  EXPECT_EQ(WhyNot(infinite), "triangle 2 has a corner that is no number");
+  EXPECT_EQ(Diagnose(infinite), "triangle 2 has a corner that is no number");
 }
 
 // GR-13: a broken file is named by the place in the machine file and its own name.

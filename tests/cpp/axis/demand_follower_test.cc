@@ -1,5 +1,5 @@
 // Following a demand: within limits whatever it does, and in step with it where that is possible. AX-13, AX-43, AX-45.
-#include "takt/trajectory/chase.h"
+#include "takt/trajectory/demand_follower.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 namespace takt::axis {
 namespace {
 
-using trajectory::ChaseMode;
-using trajectory::ChaseState;
+using trajectory::DemandFollowerState;
+using trajectory::DemandMode;
 
 // A master that goes from one random velocity to the next.
 class Master {
@@ -48,10 +48,10 @@ class Follower {
  public:
   explicit Follower(const AxisParams& p) : params(p) {}
 
-  void Step(ChaseMode mode, const KinematicState& demand) {
+  void Step(DemandMode mode, const KinematicState& demand) {
     const trajectory::Limits own = params.planner_limits();
     const KinematicState before = at;
-    at = Chase({params.planner_limits(), planner, own, kPeriod}, mode, before, demand, state);
+    at = FollowDemand({params.planner_limits(), planner, own, kPeriod}, mode, before, demand, state);
     EXPECT_LE(std::abs(at.velocity), own.velocity * (1 + 1e-8));
     const double limit = at.velocity * at.acceleration > 0 ? own.acceleration : own.deceleration;
     // Where the sense turns within a step, what was allowed for growing may still be there for falling.
@@ -70,7 +70,7 @@ class Follower {
   AxisParams params;
   trajectory::Planner planner;
   KinematicState at;
-  ChaseState state;
+  DemandFollowerState state;
 };
 
 AxisParams Drawn(std::mt19937& random) {
@@ -83,7 +83,7 @@ AxisParams Drawn(std::mt19937& random) {
   return p;
 }
 
-TEST(Chase, KeepsTheLimitsWhateverTheDemand) {  // AX-13
+TEST(DemandFollower, KeepsTheLimitsWhateverTheDemand) {  // AX-13
   for (unsigned seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
@@ -101,13 +101,13 @@ TEST(Chase, KeepsTheLimitsWhateverTheDemand) {  // AX-13
       KinematicState demand = master.Next(Follower::kPeriod);
       demand.position += jump;
       if (seed % 5 == 4) demand.velocity += std::normal_distribution(0.0, 5.0)(random);  // measured, with noise
-      follower.Step(seed % 2 == 0 ? ChaseMode::kPosition : ChaseMode::kVelocity, demand);
+      follower.Step(seed % 2 == 0 ? DemandMode::kPosition : DemandMode::kVelocity, demand);
       if (testing::Test::HasFailure()) FAIL() << "cycle " << i;
     }
   }
 }
 
-TEST(Chase, GetsInStepWithAWeakerMasterAndStaysThere) {  // AX-43, AX-45
+TEST(DemandFollower, GetsInStepWithAWeakerMasterAndStaysThere) {  // AX-43, AX-45
   for (unsigned seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
@@ -119,7 +119,7 @@ TEST(Chase, GetsInStepWithAWeakerMasterAndStaysThere) {  // AX-43, AX-45
     masters.jerk *= 0.8;
     Master master(masters, random);
     follower.at.position = std::uniform_real_distribution(-20.0, 20.0)(random);
-    const ChaseMode mode = seed % 2 == 0 ? ChaseMode::kPosition : ChaseMode::kVelocity;
+    const DemandMode mode = seed % 2 == 0 ? DemandMode::kPosition : DemandMode::kVelocity;
     int first = -1;
     double offset = 0;
     for (int i = 0; i < 8000; ++i) {
@@ -133,26 +133,26 @@ TEST(Chase, GetsInStepWithAWeakerMasterAndStaysThere) {  // AX-43, AX-45
       if (first < 0) continue;
       ASSERT_TRUE(follower.state.in_step) << "lost in cycle " << i << ", gained in " << first;
       EXPECT_NEAR(follower.at.velocity, demand.velocity, 1e-9 * masters.velocity);
-      EXPECT_NEAR(follower.at.position - demand.position, mode == ChaseMode::kPosition ? 0 : offset, 1e-9);
+      EXPECT_NEAR(follower.at.position - demand.position, mode == DemandMode::kPosition ? 0 : offset, 1e-9);
     }
     EXPECT_GE(first, 0);
   }
 }
 
-TEST(Chase, TakesADemandThatContinuesTheMotionBitForBit) {
+TEST(DemandFollower, TakesADemandThatContinuesTheMotionBitForBit) {
   Follower follower(LinearParams());
   trajectory::Profile profile;
   ASSERT_TRUE(follower.planner.ToPosition({}, 100, 0, follower.params.planner_limits(), profile).ok());
   for (int i = 1; i < 800; ++i) {
     const KinematicState demand = profile.At(i * Follower::kPeriod);
-    follower.Step(ChaseMode::kPosition, demand);
+    follower.Step(DemandMode::kPosition, demand);
     ASSERT_TRUE(follower.state.in_step) << i;
     EXPECT_EQ(follower.at.position, demand.position);
     EXPECT_EQ(follower.at.velocity, demand.velocity);
   }
 }
 
-TEST(Chase, CatchesUpInTheLeastTime) {  // a place ahead of a demand at constant speed: the move there in its frame
+TEST(DemandFollower, CatchesUpInTheLeastTime) {  // a place ahead of a demand at constant speed: the move there in its frame
   Follower follower(LinearParams());
   const trajectory::Limits own = follower.params.planner_limits();
   follower.at = {-30, 200, 0};
@@ -163,7 +163,7 @@ TEST(Chase, CatchesUpInTheLeastTime) {  // a place ahead of a demand at constant
   int cycles = 0;
   while (!follower.state.in_step && cycles < 5000) {
     ++cycles;
-    follower.Step(ChaseMode::kPosition, {200 * cycles * Follower::kPeriod, 200, 0});
+    follower.Step(DemandMode::kPosition, {200 * cycles * Follower::kPeriod, 200, 0});
   }
   EXPECT_NEAR(cycles * Follower::kPeriod, least.duration(), 0.003);
 }

@@ -29,7 +29,7 @@ Signal = tuple[str, str]
 
 
 @dataclass(frozen=True)
-class Complaint:
+class FailedAssertion:
     text: str  # what it says, and where it stands
     when_s: float | None  # None: it was asked of the whole recording
     components: frozenset[str] = frozenset()  # what it names, some of which are components
@@ -37,7 +37,7 @@ class Complaint:
     name: str = ASSERT
 
     @staticmethod
-    def of(error: AssertionError, path: Path, when_s: float | None = None) -> Complaint:
+    def of(error: AssertionError, path: Path, when_s: float | None = None) -> FailedAssertion:
         """`path`: the scenario's file, whose line says where it stands; what it names is told by the line that raised
         it."""
         stack = traceback.extract_tb(error.__traceback__)
@@ -50,20 +50,20 @@ class Complaint:
         known = {**last.f_globals, **last.f_locals}
         variables = {one.name for word in words if isinstance(one := known.get(word), Component)}
         quoted = frozenset(re.findall(r"[\"']([^\"']+)[\"']", line))
-        return Complaint(said + where + _at(when_s), when_s, quoted.union(variables), words)
+        return FailedAssertion(said + where + _at(when_s), when_s, quoted.union(variables), words)
 
     @staticmethod
-    def of_broken(error: TaktError, path: Path, when_s: float) -> Complaint:
+    def of_broken(error: TaktError, path: Path, when_s: float) -> FailedAssertion:
         """A command that was waited for ended in an error, or something that was waited for did not happen."""
         stack = traceback.extract_tb(error.__traceback__)
         places: Sequence[Place] = [(frame.filename, frame.lineno or 0) for frame in reversed(stack)]
         name, target = "wait", frozenset[str]()
         if isinstance(error, CommandError):  # where it was given says more than where it was waited for
             name, target, places = COMMAND, frozenset({error.feedback.target}), error.feedback.given_at or places
-        return Complaint(f"{error}{_where(places, path)}{_at(when_s)}", when_s, target, name=name)
+        return FailedAssertion(f"{error}{_where(places, path)}{_at(when_s)}", when_s, target, name=name)
 
     @staticmethod
-    def of_ignored(ignored: Sequence[Feedback], path: Path) -> Complaint | None:
+    def of_ignored(ignored: Sequence[Feedback], path: Path) -> FailedAssertion | None:
         """Commands that were refused, which the scenario never noticed; None: there are none."""
         if not ignored:
             return None
@@ -72,17 +72,17 @@ class Complaint:
         others = f", and {counted(len(ignored) - 1, 'command')} more" if len(ignored) > 1 else ""
         text = f"{CommandError(first)}{where}: nothing asked what became of it{others}"
         when = when_s if np.isfinite(when_s) else None
-        return Complaint(text, when, frozenset({first.target}), name=COMMAND)
+        return FailedAssertion(text, when, frozenset({first.target}), name=COMMAND)
 
     def told(self) -> dict[str, Any]:
         """As recordings keep it."""
         return {**asdict(self), "components": sorted(self.components), "words": sorted(self.words)}
 
     @staticmethod
-    def again(told: Mapping[str, Any]) -> Complaint:
+    def again(told: Mapping[str, Any]) -> FailedAssertion:
         """The one that was told."""
         sets = {name: frozenset(told[name]) for name in ("components", "words")}
-        return Complaint(told["text"], told["when_s"], **sets, name=told["name"])
+        return FailedAssertion(told["text"], told["when_s"], **sets, name=told["name"])
 
     def verdict(self, recording: Recording) -> Verdict:
         """With the curves of the components that are named; of the fields that are, or of the usual ones."""

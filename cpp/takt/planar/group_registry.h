@@ -20,7 +20,7 @@
 namespace takt::planar {
 
 // A mover as it is at the end of a cycle.
-struct MoverNow {
+struct MoverView {
   Footprint mover{};
   std::uint32_t system = 0;        // coordinate system that it is in
   Pose pose{};                     // in that
@@ -33,14 +33,14 @@ struct MoverNow {
 };
 
 // What is remembered of a group.
-struct Ground {
+struct GroupReservations {
   bool watches = false;  // it is enabled: only then anything is reserved or refused
   bool waits = false;    // moves of its movers wait for their area instead of being refused; as the machine file says
   Reservations reserved;
 };
 
-struct Grounds {
-  Grounds(std::size_t movers, std::size_t tracks, std::size_t environments, std::vector<std::string> groups);
+struct GroupRegistry {
+  GroupRegistry(std::size_t movers, std::size_t tracks, std::size_t environments, std::vector<std::string> groups);
 
   std::uint32_t Find(std::string_view group) const noexcept;
   // 0: none, or it does not watch.
@@ -49,7 +49,7 @@ struct Grounds {
   }
   // The environment of a group, from 1; 0: none.
   std::uint32_t EnvironmentOf(std::uint32_t group) const noexcept;
-  Surroundings Around(std::uint32_t group) const noexcept;
+  StaticObstacles Around(std::uint32_t group) const noexcept;
   std::uint32_t NetworkOf(std::uint32_t track) const noexcept {
     return areas[track] ? areas[track]->network : kNoTrack;
   }
@@ -58,10 +58,10 @@ struct Grounds {
   std::vector<std::uint32_t> group_of_mover;
   std::vector<std::uint32_t> group_of_track;
   std::vector<std::uint32_t> group_of_environment;
-  std::vector<Ground> grounds;  // by group, from 0
+  std::vector<GroupReservations> grounds;  // by group, from 0
 
   // What follows from the states of others.
-  std::vector<MoverNow> movers;
+  std::vector<MoverView> movers;
   std::vector<const TrackArea*> areas;       // by track; null: it has no length
   std::vector<Spot> spots;                   // by track: where the part that it lies on is
   std::vector<std::uint8_t> moving;          // by track: it is Moving
@@ -78,39 +78,39 @@ struct Verdict {
 };
 
 // With what a mover would collide in its group; none where that does not watch. And what follows for what is reserved.
-ObjectInfo AskMove(std::uint32_t mover, const Move& move, const Grounds& g) noexcept;
+ObjectInfo AskMove(std::uint32_t mover, const Move& move, const GroupRegistry& g) noexcept;
 // What its group knows of a move that waits in its turn; null: the group does not watch.
-Turn* TurnOf(std::uint32_t mover, Grounds& g) noexcept;
-void TakeMove(std::uint32_t mover, const Move& move, Grounds& g) noexcept;
+Turn* TurnOf(std::uint32_t mover, GroupRegistry& g) noexcept;
+void TakeMove(std::uint32_t mover, const Move& move, GroupRegistry& g) noexcept;
 // As `movers` says it is now.
-void AdvanceMover(std::uint32_t mover, Grounds& g) noexcept;
+void AdvanceMover(std::uint32_t mover, GroupRegistry& g) noexcept;
 // Its area where its part brings it.
-Area AreaThere(const MoverNow& now) noexcept;
+Area AreaThere(const MoverView& now) noexcept;
 // Whom a part brings to where this area is; whether or not they have a group. `but`: not this one.
-ObjectInfo WhoComes(std::uint32_t but, std::uint32_t system, const Area& area, const Grounds& g) noexcept;
+ObjectInfo WhoComes(std::uint32_t but, std::uint32_t system, const Area& area, const GroupRegistry& g) noexcept;
 // It is set to another place in this coordinate system, if there is room: no mover stands there, in a group or not,
 // none is brought there, and nothing that its group has reserved is in the way.
-Verdict SetDown(std::uint32_t mover, const Pose& pose, std::uint32_t system, Grounds& g) noexcept;
+Verdict SetDown(std::uint32_t mover, const Pose& pose, std::uint32_t system, GroupRegistry& g) noexcept;
 
 // Whether a mover may move along these tracks, each of which is in the mover's group if that watches; and it does.
-Verdict AskTracks(std::uint32_t mover, std::span<const std::uint32_t> tracks, const Grounds& g) noexcept;
-void TakeTracks(std::span<const std::uint32_t> tracks, Grounds& g) noexcept;
+Verdict AskTracks(std::uint32_t mover, std::span<const std::uint32_t> tracks, const GroupRegistry& g) noexcept;
+void TakeTracks(std::span<const std::uint32_t> tracks, GroupRegistry& g) noexcept;
 
 // Into a group and out of it. What comes into a group that watches must rest, and have room there.
-Verdict AddMover(std::uint32_t mover, std::uint32_t group, Grounds& g) noexcept;
-Verdict AddTrack(std::uint32_t track, std::uint32_t group, Grounds& g) noexcept;
-Verdict AddEnvironment(std::uint32_t environment, std::uint32_t group, Grounds& g) noexcept;
-Verdict RemoveMover(std::uint32_t mover, Grounds& g) noexcept;
-Verdict RemoveTrack(std::uint32_t track, Grounds& g) noexcept;
-Verdict RemoveEnvironment(std::uint32_t environment, Grounds& g) noexcept;
+Verdict AddMover(std::uint32_t mover, std::uint32_t group, GroupRegistry& g) noexcept;
+Verdict AddTrack(std::uint32_t track, std::uint32_t group, GroupRegistry& g) noexcept;
+Verdict AddEnvironment(std::uint32_t environment, std::uint32_t group, GroupRegistry& g) noexcept;
+Verdict RemoveMover(std::uint32_t mover, GroupRegistry& g) noexcept;
+Verdict RemoveTrack(std::uint32_t track, GroupRegistry& g) noexcept;
+Verdict RemoveEnvironment(std::uint32_t environment, GroupRegistry& g) noexcept;
 
 // From now on the group watches, if all that is in it rests and has room; else the object is who does not.
-Verdict Watch(std::uint32_t group, Grounds& g) noexcept;
-void Unwatch(std::uint32_t group, Grounds& g) noexcept;
+Verdict Watch(std::uint32_t group, GroupRegistry& g) noexcept;
+void Unwatch(std::uint32_t group, GroupRegistry& g) noexcept;
 
 // The tracks that are Moving: at the end of a cycle.
-void AdvanceTracks(Grounds& g) noexcept;
+void AdvanceTracks(GroupRegistry& g) noexcept;
 
-void describe(Description<Ground>&);
+void describe(Description<GroupReservations>&);
 
 }  // namespace takt::planar

@@ -17,7 +17,7 @@
 namespace takt::mover {
 
 // A track as the machine has it now.
-struct TrackNow {
+struct TrackView {
   const planar::Track* way = nullptr;  // null: none
   double length = 0;                   // mm; another way may lie at the same address
   bool enabled = false;
@@ -43,7 +43,7 @@ struct Master {
   bool known = false;   // `at` means something
 };
 // A mover that others may follow.
-struct MoverNow {
+struct MasterMover {
   std::string name;
   bool enabled = false;
   bool on_track = false;  // and neither joining nor leaving it
@@ -57,9 +57,9 @@ struct TrackUse {
   std::uint32_t one = planar::kNobody;  // of them: who moves, joins or leaves rather than who stands
 };
 
-struct Streets {
+struct TrackNetworkState {
   // Without parts of a surface if they are not given; else they must live as long.
-  Streets(std::size_t movers, std::vector<std::string> tracks, const planar::Parts* parts = nullptr);
+  TrackNetworkState(std::size_t movers, std::vector<std::string> tracks, const planar::Parts* parts = nullptr);
 
   // kNoTrack: there is none of that name.
   std::uint32_t Find(std::string_view track) const noexcept;
@@ -74,14 +74,14 @@ struct Streets {
   planar::Traffic traffic;
   std::vector<planar::Rider> riders;  // by mover
   std::vector<TrackUse> uses;         // by track
-  std::vector<TrackNow> tracks;       // as the network was made of
+  std::vector<TrackView> tracks;      // as the network was made of
   // By track: those that it leads on to where their parts are as their links want them, be they there now or not.
   std::vector<planar::Links> declared;
   std::vector<Master> masters;
-  std::vector<MoverNow> movers;
+  std::vector<MasterMover> movers;
 };
 
 // Takes over what has changed. Only where geometry or links did it takes more than a look.
-void Refresh(std::span<const TrackNow> tracks, Streets& streets) noexcept;
+void Refresh(std::span<const TrackView> tracks, TrackNetworkState& streets) noexcept;
 
 }  // namespace takt::mover

@@ -1,4 +1,5 @@
-// Changes of geometry on their way: each is looked at, made outside the cycle (desk.h) and taken over, one at a time.
+// Changes of geometry on their way: each is looked at, made outside the cycle (build_queues.h) and taken over, one at a
+// time.
 #pragma once
 
 #include "takt/track/tracks.h"
@@ -6,8 +7,8 @@
 namespace takt::track {
 
 // False: no room.
-bool Put(const Order& order, Works& works) noexcept;
-bool IsInWorks(const Works& works, std::uint32_t track) noexcept;
+bool Put(const Order& order, PendingEdits& works) noexcept;
+bool HasPendingEdit(const PendingEdits& works, std::uint32_t track) noexcept;
 
 // Ends what needs nobody's help, and asks about the next one.
 void StepWorks(const Context& c) noexcept;

@@ -1,4 +1,4 @@
-#include "takt/group/rides.h"
+#include "takt/group/carrier_bindings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +60,7 @@ MovingFrame Mix(const MovingFrame& from, const MovingFrame& to, const KinematicS
   return out;
 }
 
-const Ride& RideAt(const LookAhead& ahead, std::uint64_t number) {
+const CarrierBinding& RideAt(const LookAhead& ahead, std::uint64_t number) {
   return ahead.rides[number % ahead.rides.size()];
 }
 
@@ -72,7 +72,7 @@ kinematics::Carrier Clutched(const State& s, std::uint64_t ride, kinematics::Car
   return carrier;
 }
 
-MovingFrame Displaced(const Ride& ride, const kinematics::Carrier& carrier) {
+MovingFrame Displaced(const CarrierBinding& ride, const kinematics::Carrier& carrier) {
   if (!Moves(ride)) return MovingFrame(ride.reference_inverse);
   return kinematics::PoseOn(carrier, ride.cargo.from, kinematics::ToFrame(ride.cargo.lies)) * ride.reference_inverse;
 }
@@ -89,7 +89,7 @@ MovingFrame ToolOn(const LookAhead& ahead, const Stretch& stretch, const Kinemat
 
 }  // namespace
 
-kinematics::Carrier CarrierOf(const Context& c, const Cargo& cargo, double ahead_s) noexcept {
+kinematics::Carrier CarrierOf(const Context& c, const CarriedTarget& cargo, double ahead_s) noexcept {
   kinematics::Carrier carrier = c.carriers.At(cargo.carrier);
   if (cargo.has_origin) {
     carrier.origin = kinematics::ToFrame(cargo.origin);
@@ -100,15 +100,15 @@ kinematics::Carrier CarrierOf(const Context& c, const Cargo& cargo, double ahead
   return ahead_s > 0 ? kinematics::Ahead(carrier, ahead_s) : carrier;
 }
 
-MovingFrame PlaceOf(const Context& c, const Cargo& cargo, double ahead_s) noexcept {
+MovingFrame PlaceOf(const Context& c, const CarriedTarget& cargo, double ahead_s) noexcept {
   return kinematics::PoseOn(CarrierOf(c, cargo, ahead_s), cargo.from, kinematics::ToFrame(cargo.lies));
 }
 
-bool Moves(const Ride& ride) noexcept {
+bool Moves(const CarrierBinding& ride) noexcept {
   return ride.cargo.carrier != 0;
 }
 
-double SpeedOf(const Context& c, const Cargo& cargo) noexcept {
+double SpeedOf(const Context& c, const CarriedTarget& cargo) noexcept {
   if (cargo.carrier == 0) return 0;
   const kinematics::Carrier carrier = CarrierOf(c, cargo);
   return carrier.kind == kinematics::CarrierKind::kFree ? carrier.pose.p.v.Norm() : carrier.travel.velocity;
@@ -134,27 +134,27 @@ bool IsUnsteady(const Context& c, const Stretch& stretch) noexcept {
   });
 }
 
-Frame ReferenceOf(const Ride& ride) noexcept {
+Frame ReferenceOf(const CarrierBinding& ride) noexcept {
   return ride.reference_inverse.Inverse();
 }
 
-KinematicState ApartIn(const Context& c, const Ride& ride, double ahead_s) noexcept {
+KinematicState ApartIn(const Context& c, const CarrierBinding& ride, double ahead_s) noexcept {
   if (!ride.boarding.on) return {};
   const double since_s = static_cast<double>(c.cycle.count + 1 - ride.boarding.begin) * c.cycle.period_s;
   return ride.boarding.apart.At(since_s + ahead_s);
 }
 
-MovingFrame DisplacementOf(const Context& c, const Ride& ride, double ahead_s) noexcept {
+MovingFrame DisplacementOf(const Context& c, const CarrierBinding& ride, double ahead_s) noexcept {
   kinematics::Carrier carrier = CarrierOf(c, ride.cargo, ahead_s);
   carrier.travel.position += ApartIn(c, ride, ahead_s).position;
   return Displaced(ride, carrier);
 }
 
-std::uint64_t RideTo(const Context& c, const Cargo& cargo, double arrival_s) noexcept {
+std::uint64_t RideTo(const Context& c, const CarriedTarget& cargo, double arrival_s) noexcept {
   LookAhead& ahead = c.ahead;
-  const Ride& end = RideAt(ahead, ahead.end_ride);
+  const CarrierBinding& end = RideAt(ahead, ahead.end_ride);
   if (end.cargo == cargo) return ahead.end_ride;
-  Ride& ride = ahead.rides[ahead.rides_end % ahead.rides.size()];
+  CarrierBinding& ride = ahead.rides[ahead.rides_end % ahead.rides.size()];
   const Frame there = cargo.carrier != 0 ? PlaceOf(c, cargo, arrival_s).GetFrame() : Frame::Identity();
   ride.reference_inverse = there.Inverse() * DisplacementOf(c, end, arrival_s).GetFrame();
   ride.cargo = cargo;
@@ -164,10 +164,10 @@ std::uint64_t RideTo(const Context& c, const Cargo& cargo, double arrival_s) noe
   return ahead.rides_end;
 }
 
-Ride RideAtRest(const Context& c, const Cargo& cargo, double travel) noexcept {
+CarrierBinding RideAtRest(const Context& c, const CarriedTarget& cargo, double travel) noexcept {
   kinematics::Carrier carrier = CarrierOf(c, cargo);
   carrier.travel = {travel, 0, 0};
-  Ride ride;
+  CarrierBinding ride;
   ride.cargo = cargo;
   ride.reference_inverse =
       kinematics::PoseOn(carrier, cargo.from, kinematics::ToFrame(cargo.lies)).GetFrame().Inverse();
@@ -183,7 +183,7 @@ bool IsCarried(const LookAhead& ahead, const Stretch& stretch) noexcept {
 
 KinematicState ShareAt(const LookAhead& ahead, const Stretch& stretch, double way) noexcept {
   if (stretch.from_ride == stretch.to_ride) return {1, 0, 0};
-  const Ride& ride = RideAt(ahead, stretch.to_ride);
+  const CarrierBinding& ride = RideAt(ahead, stretch.to_ride);
   const double length = ride.end - ride.begin;
   const double place = stretch.begin + way - stretch.from;
   const double rounding = kOfPlace * std::max(kLeastRounded, place);
@@ -199,7 +199,7 @@ KinematicState ShareAt(const LookAhead& ahead, const Stretch& stretch, double wa
 
 MovingFrame ToolNow(const Context& c, const State& s, const Stretch& stretch, const KinematicState& way) noexcept {
   return ToolOn(c.ahead, stretch, way, [&](std::uint64_t number) {
-    const Ride& ride = RideAt(c.ahead, number);
+    const CarrierBinding& ride = RideAt(c.ahead, number);
     return Displaced(ride, Clutched(s, number, CarrierOf(c, ride.cargo)));
   });
 }
@@ -217,7 +217,7 @@ MovingFrame PredictedTool(const Context& c, const Stretch& stretch, const Kinema
 MovingFrame ToolIn(const Context& c, const Stretch& stretch, const KinematicState& way, double ahead_s) noexcept {
   const double place = stretch.begin + way.position - stretch.from;
   return ToolOn(c.ahead, stretch, way, [&](std::uint64_t number) {
-    const Ride& ride = RideAt(c.ahead, number);
+    const CarrierBinding& ride = RideAt(c.ahead, number);
     const double time_s = std::max(ahead_s, 1e-9);
     kinematics::Carrier carrier = CarrierOf(c, ride.cargo, time_s);
     // From `reach` on the tool is in step: behind a stop the path waits for that.
@@ -231,7 +231,7 @@ MovingFrame ToolIn(const Context& c, const Stretch& stretch, const KinematicStat
 MovingFrame ToolSeen(const Context& c, const Stretch& stretch, const KinematicState& way, SeeCarrier see,
                      const void* owner) noexcept {
   return ToolOn(c.ahead, stretch, way, [&](std::uint64_t number) {
-    const Ride& ride = RideAt(c.ahead, number);
+    const CarrierBinding& ride = RideAt(c.ahead, number);
     return Displaced(ride, see(owner, number, CarrierOf(c, ride.cargo)));
   });
 }

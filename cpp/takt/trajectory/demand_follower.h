@@ -13,18 +13,18 @@
 namespace takt::trajectory {
 
 // What the axis shall agree with.
-enum class ChaseMode : std::uint8_t {
+enum class DemandMode : std::uint8_t {
   kVelocity,  // the demand's velocity: the distance lost on the way is not made up, and stays what it is once in step
   kPosition,  // its position
 };
 
-struct ChaseState {
+struct DemandFollowerState {
   // u. Velocity mode: own position minus the demand's, fixed while in step. Position mode: the caller's own.
   double offset = 0;
   bool in_step = false;  // the last set point was the demand itself
 };
 
-struct Chaser {
+struct DemandFollower {
   Limits own;  // of the axis
   Planner& planner;
   Limits catching_up;  // of the command: how fast to get into step; within the axis' own
@@ -42,12 +42,12 @@ struct Chaser {
 // A demand that keeps all this, and continues `before`, is taken bit for bit: in step. Any other is chased: planned
 // anew in each cycle in the frame of the demand as if it kept its acceleration; where limits leave no room for that,
 // towards its velocity as far as the axis' own goes. SW limits are the caller's affair.
-KinematicState Chase(const Chaser& chaser, ChaseMode mode, const KinematicState& before, const KinematicState& demand,
-                     ChaseState& state) noexcept;
+KinematicState FollowDemand(const DemandFollower& chaser, DemandMode mode, const KinematicState& before,
+                            const KinematicState& demand, DemandFollowerState& state) noexcept;
 
 // What of a demand is more than the axis can; out of step: more than leaves it room to catch up.
 LimitedBy Beyond(const Limits& own, const KinematicState& demand, bool in_step) noexcept;
 
-void describe(Description<ChaseState>&);
+void describe(Description<DemandFollowerState>&);
 
 }  // namespace takt::trajectory

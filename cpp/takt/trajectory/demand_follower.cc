@@ -1,4 +1,4 @@
-#include "takt/trajectory/chase.h"
+#include "takt/trajectory/demand_follower.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,7 +62,7 @@ bool Continues(const KinematicState& before, const KinematicState& x, const Limi
 }
 
 // Towards a velocity with the axis' own ramps: keeps the invariant from any state that has it.
-KinematicState TowardsVelocity(const Chaser& c, const KinematicState& before, double velocity) {
+KinematicState TowardsVelocity(const DemandFollower& c, const KinematicState& before, double velocity) {
   const Limits& own = c.own;
   Profile profile{before};
   c.planner.ToVelocity(before, std::clamp(velocity, -own.velocity, own.velocity), own, profile);
@@ -85,8 +85,8 @@ KinematicState CycleBefore(const KinematicState& demand, double t) {
 
 // One cycle of the chase in the frame of the demand, with the ramps of an axis that moves in this sense. False: the
 // limits leave no room there, or there is no such plan.
-bool InFrame(const Chaser& c, ChaseMode mode, const KinematicState& before, const KinematicState& demand, double sense,
-             KinematicState& next, bool& arrives) {
+bool InFrame(const DemandFollower& c, DemandMode mode, const KinematicState& before, const KinematicState& demand,
+             double sense, KinematicState& next, bool& arrives) {
   const Limits& own = c.own;
   const double t = c.period_s;
   const KinematicState begin = CycleBefore(demand, t);
@@ -97,12 +97,12 @@ bool InFrame(const Chaser& c, ChaseMode mode, const KinematicState& before, cons
   room.up -= used;
   room.down -= used;
   if (!(std::min(room.up, room.down) > kLeastRoom * std::min(own.acceleration, own.deceleration))) return false;
-  if (mode == ChaseMode::kPosition && !(fastest - speed > kLeastRoom * own.velocity)) return false;
+  if (mode == DemandMode::kPosition && !(fastest - speed > kLeastRoom * own.velocity)) return false;
   const KinematicState from = {before.position - begin.position, before.velocity - begin.velocity,
                                before.acceleration - begin.acceleration};
   Profile profile{from};
-  const Status status = mode == ChaseMode::kPosition ? c.planner.ToPosition(from, 0, fastest - speed, room, profile)
-                                                     : c.planner.ToVelocity(from, 0, room, profile);
+  const Status status = mode == DemandMode::kPosition ? c.planner.ToPosition(from, 0, fastest - speed, room, profile)
+                                                      : c.planner.ToVelocity(from, 0, room, profile);
   if (status.failed()) return false;
   const KinematicState relative = profile.At(t);
   next = {demand.position + relative.position, demand.velocity + relative.velocity,
@@ -117,8 +117,8 @@ bool Sound(const KinematicState& x) {
 
 }  // namespace
 
-KinematicState Chase(const Chaser& c, ChaseMode mode, const KinematicState& before, const KinematicState& demand,
-                     ChaseState& state) noexcept {
+KinematicState FollowDemand(const DemandFollower& c, DemandMode mode, const KinematicState& before,
+                            const KinematicState& demand, DemandFollowerState& state) noexcept {
   const Limits& own = c.own;
   const auto keeps = [&](const KinematicState& x) {
     return KeepsVelocity(x, own) && KeepsAcceleration(before, x, own) && KeepsReversal(x, own) &&
@@ -128,8 +128,8 @@ KinematicState Chase(const Chaser& c, ChaseMode mode, const KinematicState& befo
   state.in_step = false;
   if (!Sound(demand)) return TowardsVelocity(c, before, 0);
   KinematicState wanted = demand;
-  if (mode == ChaseMode::kVelocity) wanted.position += state.offset;
-  if ((mode == ChaseMode::kPosition || was_in_step) && keeps(wanted)) {
+  if (mode == DemandMode::kVelocity) wanted.position += state.offset;
+  if ((mode == DemandMode::kPosition || was_in_step) && keeps(wanted)) {
     state.in_step = true;
     return wanted;
   }
@@ -143,7 +143,7 @@ KinematicState Chase(const Chaser& c, ChaseMode mode, const KinematicState& befo
   if (demand.velocity == 0 && before.velocity == 0) sense = demand.position - before.position;
   if (!(sense != 0 && chases(sense)) && !chases(0)) return TowardsVelocity(c, before, demand.velocity);
   if (arrives) {  // the demand itself, in velocity mode at another place
-    if (mode == ChaseMode::kVelocity) state.offset = next.position - demand.position;
+    if (mode == DemandMode::kVelocity) state.offset = next.position - demand.position;
     state.in_step = true;
   }
   return next;
@@ -156,10 +156,10 @@ LimitedBy Beyond(const Limits& own, const KinematicState& demand, bool in_step) 
   return std::abs(demand.acceleration) > ramp ? LimitedBy::kAcceleration : LimitedBy::kNothing;
 }
 
-void describe(Description<ChaseState>& d) {
+void describe(Description<DemandFollowerState>& d) {
   d.about("Following a demand.");
-  d.internal<&ChaseState::offset>(unit::u, "Own position minus the demand's, in velocity mode.");
-  d.internal<&ChaseState::in_step>("The last set point was the demand itself.");
+  d.internal<&DemandFollowerState::offset>(unit::u, "Own position minus the demand's, in velocity mode.");
+  d.internal<&DemandFollowerState::in_step>("The last set point was the demand itself.");
 }
 
 }  // namespace takt::trajectory

@@ -1,4 +1,4 @@
-#include "takt/track/works.h"
+#include "takt/track/pending_edits.h"
 
 #include <algorithm>
 #include <span>
@@ -183,7 +183,7 @@ void TakeAway(Tracks& t, std::uint32_t track) {
 }
 
 void End(const Context& c, Problem problem, std::uint32_t element) {
-  Works& w = c.tracks.works;
+  PendingEdits& w = c.tracks.works;
   const bool good = problem == Problem::kNone;
   c.feedback.Report({w.orders[w.first].ticket, c.cycle.count, good ? FeedbackState::kDone : FeedbackState::kError,
                      false, good ? ErrorId::kNone : ErrorId::kTrackGeometry, good ? 0 : ToValue(problem, element)});
@@ -193,7 +193,7 @@ void End(const Context& c, Problem problem, std::uint32_t element) {
 }
 
 // What was made for this question; what was made for others is retired. Without a way: it is not there.
-Delivery Fetch(Desk& desk, std::uint64_t number) {
+Delivery Fetch(BuildQueues& desk, std::uint64_t number) {
   Delivery delivery;
   while (desk.deliveries.TryPop(delivery)) {
     if (delivery.number == number) return delivery;
@@ -230,13 +230,13 @@ bool IsInForce(const Tracks& t, std::uint32_t track, const Links& links, std::ui
 
 }  // namespace
 
-bool Put(const Order& order, Works& w) noexcept {
+bool Put(const Order& order, PendingEdits& w) noexcept {
   if (w.count == kOrders) return false;
   w.orders[(w.first + w.count++) % kOrders] = order;
   return true;
 }
 
-bool IsInWorks(const Works& w, std::uint32_t track) noexcept {
+bool HasPendingEdit(const PendingEdits& w, std::uint32_t track) noexcept {
   for (std::uint32_t i = 0; i < w.count; ++i) {
     if (w.orders[(w.first + i) % kOrders].track == track) return true;
   }
@@ -245,7 +245,7 @@ bool IsInWorks(const Works& w, std::uint32_t track) noexcept {
 
 void StepWorks(const Context& c) noexcept {
   Tracks& t = c.tracks;
-  Works& w = t.works;
+  PendingEdits& w = t.works;
   while (w.count > 0 && !w.asked) {
     const Order& order = w.orders[w.first];
     const Look look = LookAt(t, order);
@@ -265,7 +265,7 @@ void StepWorks(const Context& c) noexcept {
 
 bool TakeAnswer(const Context& c, std::uint32_t track, const TrackMade& made) noexcept {
   Tracks& t = c.tracks;
-  Works& w = t.works;
+  PendingEdits& w = t.works;
   const Order order = w.orders[w.first];
   if (!w.asked || made.number != w.question || track != order.track) return false;
   const bool empty = made.problem == Problem::kEmpty && MayBeEmpty(order.kind);

@@ -1,4 +1,4 @@
-#include "takt/planar/grounds.h"
+#include "takt/planar/group_registry.h"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@ namespace takt::planar {
 
 namespace {
 
-Reservations& ReservedBy(std::uint32_t group, Grounds& g) noexcept {
+Reservations& ReservedBy(std::uint32_t group, GroupRegistry& g) noexcept {
   return g.grounds[group - 1].reserved;
 }
 
@@ -17,8 +17,8 @@ Verdict Collision(const ObjectInfo& object) noexcept {
 }
 
 // It stands there, or on a track.
-void PutIn(std::uint32_t mover, std::uint32_t group, Grounds& g) noexcept {
-  const MoverNow& now = g.movers[mover];
+void PutIn(std::uint32_t mover, std::uint32_t group, GroupRegistry& g) noexcept {
+  const MoverView& now = g.movers[mover];
   Reservations& r = ReservedBy(group, g);
   Settle(mover, now.mover, now.pose, r, now.system);
   r.movers[mover].body = now.body;
@@ -26,13 +26,13 @@ void PutIn(std::uint32_t mover, std::uint32_t group, Grounds& g) noexcept {
 }
 
 // An environment has its number in the machine.
-ObjectInfo Numbered(const ObjectInfo& object, std::uint32_t group, const Grounds& g) noexcept {
+ObjectInfo Numbered(const ObjectInfo& object, std::uint32_t group, const GroupRegistry& g) noexcept {
   if (object.kind != ObjectKind::kEnvironment) return object;
   return {ObjectKind::kEnvironment, g.EnvironmentOf(group)};
 }
 
 // Of a mover that is settled.
-ObjectInfo AskStanding(std::uint32_t mover, std::uint32_t group, const Grounds& g) noexcept {
+ObjectInfo AskStanding(std::uint32_t mover, std::uint32_t group, const GroupRegistry& g) noexcept {
   const Reservations& r = g.grounds[group - 1].reserved;
   const Reservation& own = r.movers[mover];
   return Numbered(
@@ -41,10 +41,10 @@ ObjectInfo AskStanding(std::uint32_t mover, std::uint32_t group, const Grounds& 
 }
 
 // Who of a group is brought to where this track is, and will not be linked with it.
-ObjectInfo WhoComesTo(std::uint32_t track, std::uint32_t group, const Grounds& g) noexcept {
+ObjectInfo WhoComesTo(std::uint32_t track, std::uint32_t group, const GroupRegistry& g) noexcept {
   if (!g.areas[track]) return {};
   for (std::uint32_t i = 0; i < g.movers.size(); ++i) {
-    const MoverNow& now = g.movers[i];
+    const MoverView& now = g.movers[i];
     if (!now.comes || g.group_of_mover[i] != group || now.goal.system != g.spots[track].system) continue;
     if (now.on_track && g.NetworkOf(now.track) == g.NetworkOf(track)) continue;
     const Area area = Shifted(AreaThere(now), Place{} - g.spots[track].origin);
@@ -54,9 +54,9 @@ ObjectInfo WhoComesTo(std::uint32_t track, std::uint32_t group, const Grounds& g
 }
 
 // The mover that this area would lie on, whether or not it has a group; none: there is room. `but`: not this one.
-ObjectInfo MoverBelow(std::uint32_t but, std::uint32_t system, const Area& area, const Grounds& g) noexcept {
+ObjectInfo MoverBelow(std::uint32_t but, std::uint32_t system, const Area& area, const GroupRegistry& g) noexcept {
   for (std::uint32_t i = 0; i < g.movers.size(); ++i) {
-    const MoverNow& now = g.movers[i];
+    const MoverView& now = g.movers[i];
     const Area its{.places = {now.pose.place},
                    .count = 1,
                    .least_c = now.pose.c,
@@ -76,8 +76,8 @@ Verdict Leaves(std::uint32_t& group) noexcept {
 
 }  // namespace
 
-Grounds::Grounds(std::size_t of_movers, std::size_t of_tracks, std::size_t of_environments,
-                 std::vector<std::string> groups)
+GroupRegistry::GroupRegistry(std::size_t of_movers, std::size_t of_tracks, std::size_t of_environments,
+                             std::vector<std::string> groups)
     : names(std::move(groups)),
       group_of_mover(of_movers),
       group_of_track(of_tracks),
@@ -89,26 +89,26 @@ Grounds::Grounds(std::size_t of_movers, std::size_t of_tracks, std::size_t of_en
       moving(of_tracks),
       surfaces(of_environments),
       guard(of_movers) {
-  for (Ground& ground : grounds) ground.reserved = MakeReservations(of_movers, of_tracks);
+  for (GroupReservations& ground : grounds) ground.reserved = MakeReservations(of_movers, of_tracks);
 }
 
-std::uint32_t Grounds::Find(std::string_view group) const noexcept {
+std::uint32_t GroupRegistry::Find(std::string_view group) const noexcept {
   const auto found = std::ranges::find(names, group);
   return found == names.end() ? 0 : static_cast<std::uint32_t>(found - names.begin() + 1);
 }
 
-std::uint32_t Grounds::EnvironmentOf(std::uint32_t group) const noexcept {
+std::uint32_t GroupRegistry::EnvironmentOf(std::uint32_t group) const noexcept {
   const auto found = std::ranges::find(group_of_environment, group);
   return found == group_of_environment.end() ? 0 : static_cast<std::uint32_t>(found - group_of_environment.begin() + 1);
 }
 
-Surroundings Grounds::Around(std::uint32_t group) const noexcept {
+StaticObstacles GroupRegistry::Around(std::uint32_t group) const noexcept {
   const std::uint32_t environment = EnvironmentOf(group);
   const bool has_border = environment != 0 && !on_parts;
   return {.environment = has_border ? surfaces[environment - 1] : nullptr, .tracks = areas, .spots = spots};
 }
 
-ObjectInfo AskMove(std::uint32_t mover, const Move& move, const Grounds& g) noexcept {
+ObjectInfo AskMove(std::uint32_t mover, const Move& move, const GroupRegistry& g) noexcept {
   const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
   if (group == 0) return {};
   const Reservations& r = g.grounds[group - 1].reserved;
@@ -116,19 +116,19 @@ ObjectInfo AskMove(std::uint32_t mover, const Move& move, const Grounds& g) noex
   return object ? Numbered(object, group, g) : AskTurn(mover, move, r);
 }
 
-Turn* TurnOf(std::uint32_t mover, Grounds& g) noexcept {
+Turn* TurnOf(std::uint32_t mover, GroupRegistry& g) noexcept {
   const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
   return group == 0 ? nullptr : &ReservedBy(group, g).turns[mover];
 }
 
-void TakeMove(std::uint32_t mover, const Move& move, Grounds& g) noexcept {
+void TakeMove(std::uint32_t mover, const Move& move, GroupRegistry& g) noexcept {
   if (const std::uint32_t group = g.Watching(g.group_of_mover[mover])) Take(mover, move, ReservedBy(group, g));
 }
 
-void AdvanceMover(std::uint32_t mover, Grounds& g) noexcept {
+void AdvanceMover(std::uint32_t mover, GroupRegistry& g) noexcept {
   const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
   if (group == 0) return;
-  const MoverNow& now = g.movers[mover];
+  const MoverView& now = g.movers[mover];
   Reservations& r = ReservedBy(group, g);
   Reservation& own = r.movers[mover];
   const std::uint32_t network = now.on_track ? g.NetworkOf(now.track) : kNoTrack;
@@ -142,13 +142,13 @@ void AdvanceMover(std::uint32_t mover, Grounds& g) noexcept {
   if (now.rests && own.moving) End(mover, r);
 }
 
-Area AreaThere(const MoverNow& now) noexcept {
+Area AreaThere(const MoverView& now) noexcept {
   return {.places = {now.goal.origin}, .count = 1, .least_c = now.pose.c, .most_c = now.pose.c, .mover = now.mover};
 }
 
-ObjectInfo WhoComes(std::uint32_t but, std::uint32_t system, const Area& area, const Grounds& g) noexcept {
+ObjectInfo WhoComes(std::uint32_t but, std::uint32_t system, const Area& area, const GroupRegistry& g) noexcept {
   for (std::uint32_t i = 0; i < g.movers.size(); ++i) {
-    const MoverNow& now = g.movers[i];
+    const MoverView& now = g.movers[i];
     if (i != but && now.comes && now.goal.system == system && Near(area, AreaThere(now), kSame)) {
       return ObjectAt(ObjectKind::kMover, i);
     }
@@ -156,7 +156,7 @@ ObjectInfo WhoComes(std::uint32_t but, std::uint32_t system, const Area& area, c
   return {};
 }
 
-Verdict SetDown(std::uint32_t mover, const Pose& pose, std::uint32_t system, Grounds& g) noexcept {
+Verdict SetDown(std::uint32_t mover, const Pose& pose, std::uint32_t system, GroupRegistry& g) noexcept {
   const Area area{
       .places = {pose.place}, .count = 1, .least_c = pose.c, .most_c = pose.c, .mover = g.movers[mover].mover};
   if (const ObjectInfo who = WhoComes(mover, system, area, g)) return Collision(who);
@@ -171,7 +171,7 @@ Verdict SetDown(std::uint32_t mover, const Pose& pose, std::uint32_t system, Gro
   return Collision(object);
 }
 
-Verdict AskTracks(std::uint32_t mover, std::span<const std::uint32_t> tracks, const Grounds& g) noexcept {
+Verdict AskTracks(std::uint32_t mover, std::span<const std::uint32_t> tracks, const GroupRegistry& g) noexcept {
   const std::uint32_t own = g.Watching(g.group_of_mover[mover]);
   for (const std::uint32_t track : tracks) {
     const std::uint32_t group = g.Watching(g.group_of_track[track]);
@@ -185,14 +185,14 @@ Verdict AskTracks(std::uint32_t mover, std::span<const std::uint32_t> tracks, co
   return {};
 }
 
-void TakeTracks(std::span<const std::uint32_t> tracks, Grounds& g) noexcept {
+void TakeTracks(std::span<const std::uint32_t> tracks, GroupRegistry& g) noexcept {
   for (const std::uint32_t track : tracks) {
     g.moving[track] = 1;
     if (const std::uint32_t group = g.Watching(g.group_of_track[track])) TakeTrack(track, ReservedBy(group, g));
   }
 }
 
-Verdict AddMover(std::uint32_t mover, std::uint32_t group, Grounds& g) noexcept {
+Verdict AddMover(std::uint32_t mover, std::uint32_t group, GroupRegistry& g) noexcept {
   if (g.group_of_mover[mover] == group) return {};
   if (g.group_of_mover[mover] != 0) return {ErrorId::kOtherPlanarGroup, {}};
   if (g.Watching(group) != 0) {
@@ -207,7 +207,7 @@ Verdict AddMover(std::uint32_t mover, std::uint32_t group, Grounds& g) noexcept 
   return {};
 }
 
-Verdict AddTrack(std::uint32_t track, std::uint32_t group, Grounds& g) noexcept {
+Verdict AddTrack(std::uint32_t track, std::uint32_t group, GroupRegistry& g) noexcept {
   if (g.group_of_track[track] == group) return {};
   if (g.group_of_track[track] != 0) return {ErrorId::kOtherPlanarGroup, {}};
   // While it stands it covers nothing.
@@ -216,7 +216,7 @@ Verdict AddTrack(std::uint32_t track, std::uint32_t group, Grounds& g) noexcept 
   return {};
 }
 
-Verdict AddEnvironment(std::uint32_t environment, std::uint32_t group, Grounds& g) noexcept {
+Verdict AddEnvironment(std::uint32_t environment, std::uint32_t group, GroupRegistry& g) noexcept {
   std::uint32_t& own = g.group_of_environment[environment];
   if (own == group) return {};
   if (own != 0 || g.EnvironmentOf(group) != 0) return {ErrorId::kOtherPlanarGroup, {}};
@@ -241,21 +241,21 @@ Verdict AddEnvironment(std::uint32_t environment, std::uint32_t group, Grounds& 
   return verdict;
 }
 
-Verdict RemoveMover(std::uint32_t mover, Grounds& g) noexcept {
+Verdict RemoveMover(std::uint32_t mover, GroupRegistry& g) noexcept {
   if (const std::uint32_t group = g.group_of_mover[mover]) Leave(mover, ReservedBy(group, g));
   return Leaves(g.group_of_mover[mover]);
 }
 
-Verdict RemoveTrack(std::uint32_t track, Grounds& g) noexcept {
+Verdict RemoveTrack(std::uint32_t track, GroupRegistry& g) noexcept {
   if (const std::uint32_t group = g.group_of_track[track]) EndTrack(track, ReservedBy(group, g));
   return Leaves(g.group_of_track[track]);
 }
 
-Verdict RemoveEnvironment(std::uint32_t environment, Grounds& g) noexcept {
+Verdict RemoveEnvironment(std::uint32_t environment, GroupRegistry& g) noexcept {
   return Leaves(g.group_of_environment[environment]);
 }
 
-Verdict Watch(std::uint32_t group, Grounds& g) noexcept {
+Verdict Watch(std::uint32_t group, GroupRegistry& g) noexcept {
   const std::uint32_t environment = g.EnvironmentOf(group);
   if (environment != 0 && !g.surfaces[environment - 1] && !g.on_parts) {
     return {ErrorId::kNoBoundary, {ObjectKind::kEnvironment, environment}};
@@ -282,14 +282,14 @@ Verdict Watch(std::uint32_t group, Grounds& g) noexcept {
   return verdict;
 }
 
-void Unwatch(std::uint32_t group, Grounds& g) noexcept {
+void Unwatch(std::uint32_t group, GroupRegistry& g) noexcept {
   g.grounds[group - 1].watches = false;
   Reservations& r = ReservedBy(group, g);
   for (std::uint32_t i = 0; i < r.movers.size(); ++i) Leave(i, r);
   for (std::uint32_t i = 0; i < r.tracks.size(); ++i) EndTrack(i, r);
 }
 
-void AdvanceTracks(Grounds& g) noexcept {
+void AdvanceTracks(GroupRegistry& g) noexcept {
   for (std::uint32_t i = 0; i < g.moving.size(); ++i) {
     const std::uint32_t group = g.Watching(g.group_of_track[i]);
     if (group == 0) continue;
@@ -297,11 +297,11 @@ void AdvanceTracks(Grounds& g) noexcept {
   }
 }
 
-void describe(Description<Ground>& d) {
+void describe(Description<GroupReservations>& d) {
   d.about("What a group of movers has reserved.");
-  d.internal<&Ground::watches>("Only then it has.");
-  d.internal<&Ground::waits>("Moves wait in it instead of being refused.");
-  d.internal<&Ground::reserved>("For whom what.");
+  d.internal<&GroupReservations::watches>("Only then it has.");
+  d.internal<&GroupReservations::waits>("Moves wait in it instead of being refused.");
+  d.internal<&GroupReservations::reserved>("For whom what.");
 }
 
 }  // namespace takt::planar

@@ -33,7 +33,7 @@ def rows_of(objects: Iterable[Object]) -> list[list[float]]:
     ]
 
 
-class Lying:
+class BeltObjectLog:
     """What lay on each belt over time."""
 
     def __init__(self) -> None:

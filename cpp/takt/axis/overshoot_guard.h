@@ -18,19 +18,19 @@ double SenseOfTravel(const KinematicState& from) noexcept;
 bool Overshoots(const trajectory::Profile& profile, double target) noexcept;
 
 // What weaker ramps must not change of a motion in progress.
-struct Promises {
+struct OvershootGuard {
   std::optional<double> furthest;  // u: it gets no further than this in its sense of travel
   bool straight = false;           // it does not turn round
 };
 
 // Whether `profile` breaks one of them.
-bool BreaksPromise(const AxisParams& params, const Promises& promises, const trajectory::Profile& profile) noexcept;
+bool BreaksGuard(const AxisParams& params, const OvershootGuard& guard, const trajectory::Profile& profile) noexcept;
 
 // Whether an axis in `state` stops no further than at `furthest`, and without turning round.
 bool StopsBy(const KinematicState& state, const trajectory::Limits& limits, double furthest) noexcept;
 
 // The request with as much more deceleration and jerk, up to the axis' own, as it takes to keep them.
-Request Strengthened(const AxisParams& params, const KinematicState& from, const Request& request,
-                     const Promises& promises) noexcept;
+Request WithStrongerRamps(const AxisParams& params, const KinematicState& from, const Request& request,
+                          const OvershootGuard& guard) noexcept;
 
 }  // namespace takt::axis

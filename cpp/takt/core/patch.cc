@@ -1,4 +1,4 @@
-#include "takt/core/given.h"
+#include "takt/core/patch.h"
 
 #include <cstring>
 
@@ -6,7 +6,7 @@
 
 namespace takt {
 
-void TakeGiven(const Type& given_type, const void* given, const Type& whole_type, void* whole) noexcept {
+void ApplyPatch(const Type& given_type, const void* given, const Type& whole_type, void* whole) noexcept {
   for (std::size_t i = 0; i < given_type.fields.size(); ++i) {
     const Field& from = given_type.fields[i];
     const Field& to = whole_type.fields[i];

@@ -57,7 +57,7 @@ Attempt Any(std::mt19937& random) {
 }
 
 // PL-20: random commands do what the geometry's own builder does, to the last bit; and no track crosses itself.
-TEST(Works, BuildWhatTheBuilderBuilds) {
+TEST(PendingEdits, BuildWhatTheBuilderBuilds) {
   std::mt19937 random(11);
   int made = 0, crossed = 0, refused = 0, closed = 0;
   for (int run = 0; run < Trials(60); ++run) {
@@ -92,7 +92,7 @@ TEST(Works, BuildWhatTheBuilderBuilds) {
 }
 
 // EN-04: the cycle's part takes no memory.
-TEST(Works, AllocateNothingInTheCycle) {
+TEST(PendingEdits, AllocateNothingInTheCycle) {
   []<typename... T>(const std::variant<T...>*) {
     (TypeOf<T>(), ...);  // the first use allocates
   }(static_cast<const Command*>(nullptr));
@@ -126,7 +126,7 @@ TEST(Works, AllocateNothingInTheCycle) {
         Publish(c);
       });
       ++rig.cycle.count;
-      while (const std::optional<Answer> answer = Make(rig.tracks.desk)) {
+      while (const std::optional<BuiltTrack> answer = Make(rig.tracks.desk)) {
         quietly([&] { Apply(c, answer->track, 0, answer->made); });
       }
     }
@@ -136,7 +136,7 @@ TEST(Works, AllocateNothingInTheCycle) {
 }
 
 // PL-23: links lead from ends to starts, any number at one point.
-TEST(Works, LinkTracks) {
+TEST(PendingEdits, LinkTracks) {
   Rig rig(5);
   ASSERT_EQ(rig.Do(0, Line(0, 0, 300, 0)), Problem::kNone);
   for (std::size_t i = 1; i < 4; ++i) {
@@ -167,7 +167,7 @@ TEST(Works, LinkTracks) {
 }
 
 // As many at one point as a network has links for; said at once, by commands and in the machine file.
-TEST(Works, LinkSoManyAtOnePoint) {
+TEST(PendingEdits, LinkSoManyAtOnePoint) {
   const std::size_t most = planar::kLinks;
   Rig rig(most + 2);
   ASSERT_EQ(rig.Do(0, Line(0, 0, 300, 0)), Problem::kNone);
@@ -188,7 +188,7 @@ TEST(Works, LinkSoManyAtOnePoint) {
 }
 
 // PL-23: what others start from or end at stays as it is, until they are cleared.
-TEST(Works, LockWhatOthersUse) {
+TEST(PendingEdits, LockWhatOthersUse) {
   Rig rig(2);
   rig.Do(0, Line(0, 0, 300, 0));
   rig.Do(1, From(0));
@@ -207,7 +207,7 @@ TEST(Works, LockWhatOthersUse) {
 }
 
 // Many at once: more than can wait are refused, the others are made in their order.
-TEST(Works, TakeSoManyAtOnce) {
+TEST(PendingEdits, TakeSoManyAtOnce) {
   Rig rig(2);
   std::vector<Ticket> given;
   for (std::size_t i = 0; i < kOrders + 3; ++i) {
@@ -222,7 +222,7 @@ TEST(Works, TakeSoManyAtOnce) {
 }
 
 // An answer that nobody waits for, or without what was made, changes nothing.
-TEST(Works, TakeTheAnswerTheyWaitForAlone) {
+TEST(PendingEdits, TakeTheAnswerTheyWaitForAlone) {
   Rig rig(2);
   const auto hash = [&] { return HashOf(rig.tracks.works, HashOf(rig.state(0), HashOf(rig.state(1), 0))); };
   const auto refuse = [&](std::size_t track, const TrackMade& made) {
@@ -246,7 +246,7 @@ TEST(Works, TakeTheAnswerTheyWaitForAlone) {
 }
 
 // What was made and is not wanted is no answer to the next question.
-TEST(Works, ForgetWhatWasMadeForNothing) {
+TEST(PendingEdits, ForgetWhatWasMadeForNothing) {
   Rig rig(1);
   const Ticket first = rig.Give(0, Line(0, 0, 300, 0));
   rig.Step();
@@ -259,7 +259,7 @@ TEST(Works, ForgetWhatWasMadeForNothing) {
 }
 
 // PL-20: only while it is disabled.
-TEST(Works, StandStillWhileEnabled) {
+TEST(PendingEdits, StandStillWhileEnabled) {
   Rig rig(2);
   rig.Do(0, Line(0, 0, 300, 0));
   rig.Do(1, Line(300, 0, 500, 0));

@@ -14,7 +14,7 @@
 namespace takt::group {
 
 // All that is needed to make the path again that the cycle has tried.
-struct Question {
+struct PathCheckRequest {
   std::uint32_t group = 0;   // number of it, from 1
   std::uint64_t number = 0;  // of the question, for the answer
   Request move;
@@ -27,6 +27,6 @@ struct Question {
   kinematics::Pose tool;  // on the flange
 };
 
-using Questions = SpscQueue<Question>;
+using PathCheckRequests = SpscQueue<PathCheckRequest>;
 
 }  // namespace takt::group

@@ -31,12 +31,12 @@ template <typename T>
 const Type& TypeOf();
 
 // `given` and `whole` describe the same members in the same order. Fit for the cycle.
-void TakeGiven(const Type& given_type, const void* given, const Type& whole_type, void* whole) noexcept;
+void ApplyPatch(const Type& given_type, const void* given, const Type& whole_type, void* whole) noexcept;
 
 template <template <template <typename> class> class StructOf>
-void TakeGiven(const StructOf<std::optional>& given, StructOf<Plain>& whole) noexcept {
+void ApplyPatch(const StructOf<std::optional>& given, StructOf<Plain>& whole) noexcept {
   static_assert(std::is_trivially_copyable_v<StructOf<Plain>>, "members are copied as bytes");
-  TakeGiven(TypeOf<StructOf<std::optional>>(), &given, TypeOf<StructOf<Plain>>(), &whole);
+  ApplyPatch(TypeOf<StructOf<std::optional>>(), &given, TypeOf<StructOf<Plain>>(), &whole);
 }
 
 }  // namespace takt

@@ -1,4 +1,4 @@
-#include "takt/track/desk.h"
+#include "takt/track/build_queues.h"
 
 #include <memory>
 
@@ -17,19 +17,19 @@ void Free(SpscQueue<Delivery>& queue) {
 
 }  // namespace
 
-Desk::~Desk() {
+BuildQueues::~BuildQueues() {
   Free(retired);
   Free(deliveries);
 }
 
-std::optional<Answer> Make(Desk& desk) {
+std::optional<BuiltTrack> Make(BuildQueues& desk) {
   Free(desk.retired);
-  Question question;
+  BuildRequest question;
   if (!desk.questions.TryPop(question)) return std::nullopt;
   auto way = std::make_unique<planar::Track>();
   const planar::Layout layout = ToLayout(question.sketch);
   const planar::Making making = MakeWay(layout, *way);
-  Answer answer{question.track, {question.number, making.problem, 0}};
+  BuiltTrack answer{question.track, {question.number, making.problem, 0}};
   if (making.problem != planar::Problem::kNone) {
     if (making.element < layout.elements.size()) answer.made.element = static_cast<std::uint32_t>(making.element + 1);
   } else if (!LiesOn(desk.parts, question.part, *way)) {

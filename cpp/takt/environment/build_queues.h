@@ -1,4 +1,4 @@
-// Where the cycle has boundaries made, as it has tracks made (track/desk.h).
+// Where the cycle has boundaries made, as it has tracks made (track/build_queues.h).
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace takt::environment {
 
-struct Question {
+struct BuildRequest {
   std::uint64_t number = 0;
   std::uint32_t environment = 0;                        // from 0
   const std::vector<planar::Place>* stators = nullptr;  // they stay as they are until the answer is taken
@@ -23,23 +23,23 @@ struct Delivery {
   const planar::Environment* surface = nullptr;
 };
 
-struct Desk {
-  explicit Desk(std::size_t environments)
+struct BuildQueues {
+  explicit BuildQueues(std::size_t environments)
       : questions(environments + 1), deliveries(environments + 1), retired(2 * environments + 2) {}
-  ~Desk();
-  Desk(const Desk&) = delete;
-  Desk& operator=(const Desk&) = delete;
+  ~BuildQueues();
+  BuildQueues(const BuildQueues&) = delete;
+  BuildQueues& operator=(const BuildQueues&) = delete;
 
-  SpscQueue<Question> questions;  // one of each environment at a time
+  SpscQueue<BuildRequest> questions;  // one of each environment at a time
   SpscQueue<Delivery> deliveries;
   SpscQueue<const planar::Environment*> retired;
 };
 
 // Outside the cycle, one thread: answers the next question. Frees what is retired.
-struct Answer {
+struct BuiltBoundary {
   std::uint32_t environment = 0;
   BoundaryMade made;
 };
-std::optional<Answer> Make(Desk& desk);
+std::optional<BuiltBoundary> Make(BuildQueues& desk);
 
 }  // namespace takt::environment

@@ -20,27 +20,27 @@ namespace takt::group {
 using kinematics::MovingFrame;
 
 // Returns the carrier of `cargo` relative to the MCS, extrapolated by `ahead_s` [s] as it moves now.
-kinematics::Carrier CarrierOf(const Context& c, const Cargo& cargo, double ahead_s = 0) noexcept;
+kinematics::Carrier CarrierOf(const Context& c, const CarriedTarget& cargo, double ahead_s = 0) noexcept;
 // Returns the pose of the object in the MCS, extrapolated likewise.
-MovingFrame PlaceOf(const Context& c, const Cargo& cargo, double ahead_s = 0) noexcept;
+MovingFrame PlaceOf(const Context& c, const CarriedTarget& cargo, double ahead_s = 0) noexcept;
 
 // Returns the number of the ride for a move onto `cargo` (carrier 0: at rest in the MCS): end_ride if that is the same,
 // else a new one, prepared in slot rides_end and not in use before the move is joined. `arrival_s`: time until the tool
 // is expected there [s].
-std::uint64_t RideTo(const Context& c, const Cargo& cargo, double arrival_s) noexcept;
+std::uint64_t RideTo(const Context& c, const CarriedTarget& cargo, double arrival_s) noexcept;
 // Returns a ride on which the still world is the MCS with the carrier at this travel [mm or rad].
-Ride RideAtRest(const Context& c, const Cargo& cargo, double travel) noexcept;
+CarrierBinding RideAtRest(const Context& c, const CarriedTarget& cargo, double travel) noexcept;
 // Where its object lies in the still world.
-Frame ReferenceOf(const Ride& ride) noexcept;
+Frame ReferenceOf(const CarrierBinding& ride) noexcept;
 
 // A stretch whose tool is not simply where its segment says.
 bool IsCarried(const LookAhead& ahead, const Stretch& stretch) noexcept;
-bool Moves(const Ride& ride) noexcept;
+bool Moves(const CarrierBinding& ride) noexcept;
 // Returns the present velocity of the carrier: of belts [mm/s] and tables [rad/s] signed, of free carriers the norm
 // [mm/s]; 0 without one.
-double SpeedOf(const Context& c, const Cargo& cargo) noexcept;
+double SpeedOf(const Context& c, const CarriedTarget& cargo) noexcept;
 // From a place of the still world to where it is, for a stretch that is on one ride only.
-MovingFrame DisplacementOf(const Context& c, const Ride& ride, double ahead_s) noexcept;
+MovingFrame DisplacementOf(const Context& c, const CarrierBinding& ride, double ahead_s) noexcept;
 
 // Returns the weight w of the second ride (0 to 1) at the arc length `way` [mm] of the segment, with its first and
 // second derivative by arc length.

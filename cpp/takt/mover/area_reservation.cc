@@ -1,4 +1,4 @@
-#include "takt/mover/ground.h"
+#include "takt/mover/area_reservation.h"
 
 #include <algorithm>
 
@@ -99,9 +99,9 @@ void Take(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, 
 
 // Whom a part brings to where that leads.
 ObjectInfo WhoComes(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, bool on_track) {
-  const auto comes = [](const planar::MoverNow& now) { return now.comes; };
+  const auto comes = [](const planar::MoverView& now) { return now.comes; };
   if (std::ranges::none_of(c.grounds.movers, comes)) return {};
-  const planar::MoverNow& own = c.grounds.movers[c.index];
+  const planar::MoverView& own = c.grounds.movers[c.index];
   Cover cover = CoverOf(c, plane, turn);
   if (on_track) {
     cover.count = 1;
@@ -179,8 +179,8 @@ planar::Pose GoalOf(const Context& c, const State& s) noexcept {
 }
 
 void Stand(const Context& c, const State& s) noexcept {
-  planar::Grounds& g = c.grounds;
-  planar::MoverNow& now = g.movers[c.index];
+  planar::GroupRegistry& g = c.grounds;
+  planar::MoverView& now = g.movers[c.index];
   const auto rests = [&](Coordinate i) { return s.set_point[i].velocity == 0 && s.set_point[i].acceleration == 0; };
   now.mover = {c.params.width, c.params.height};
   now.system = s.system;

@@ -12,7 +12,7 @@
 namespace takt {
 
 template <typename T, std::size_t N>
-struct Few {
+struct InlineVector {
   static constexpr std::size_t kCapacity = N;
 
   std::array<T, N> items{};  // as they are made behind `count`
@@ -25,14 +25,14 @@ struct Few {
     items[count++] = item;
     return true;
   }
-  bool operator==(const Few&) const = default;
+  bool operator==(const InlineVector&) const = default;
 };
 
 namespace internal {
 
 template <typename T, std::size_t N>
-struct TypeMaker<Few<T, N>> {
-  using List = Few<T, N>;
+struct TypeMaker<InlineVector<T, N>> {
+  using List = InlineVector<T, N>;
   static Type Make() {
     Type type;
     type.kind = Kind::kVector;

@@ -1,4 +1,4 @@
-// What a mover needs of the ground for its motions, and how it gets it from its group (planar/grounds.h).
+// What a mover needs of the ground for its motions, and how it gets it from its group (planar/group_registry.h).
 #pragma once
 
 #include "takt/mover/on_parts.h"

@@ -1,4 +1,4 @@
-#include "takt/axis/promise.h"
+#include "takt/axis/overshoot_guard.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,10 +58,9 @@ bool Overshoots(const Profile& profile, double target) noexcept {
   return Passes(profile, target < profile.start().position ? -1 : 1, target);
 }
 
-bool BreaksPromise(const AxisParams& params, const Promises& promises, const Profile& profile) noexcept {
+bool BreaksGuard(const AxisParams& params, const OvershootGuard& guard, const Profile& profile) noexcept {
   const double sense = SenseOfTravel(profile.start());
-  return (promises.furthest && Passes(profile, sense, *promises.furthest)) ||
-         (promises.straight && TurnsRound(params, profile));
+  return (guard.furthest && Passes(profile, sense, *guard.furthest)) || (guard.straight && TurnsRound(params, profile));
 }
 
 bool StopsBy(const KinematicState& state, const trajectory::Limits& limits, double furthest) noexcept {
@@ -70,8 +69,8 @@ bool StopsBy(const KinematicState& state, const trajectory::Limits& limits, doub
   return SenseOfTravel(state) * over <= Slack(furthest, furthest - state.position);
 }
 
-Request Strengthened(const AxisParams& params, const KinematicState& from, const Request& request,
-                     const Promises& promises) noexcept {
+Request WithStrongerRamps(const AxisParams& params, const KinematicState& from, const Request& request,
+                          const OvershootGuard& guard) noexcept {
   const trajectory::Limits own = params.planner_limits();
   const double sense = SenseOfTravel(from);
   const auto with = [&](double share) {
@@ -82,8 +81,8 @@ Request Strengthened(const AxisParams& params, const KinematicState& from, const
   };
   const auto keeps = [&](double share) {
     const trajectory::Limits limits = with(share).limits();
-    if (promises.straight && SwingsBack(from, limits.jerk, -kSwing)) return false;
-    return !promises.furthest || sense * (trajectory::StopPosition(from, limits) - *promises.furthest) <= 0;
+    if (guard.straight && SwingsBack(from, limits.jerk, -kSwing)) return false;
+    return !guard.furthest || sense * (trajectory::StopPosition(from, limits) - *guard.furthest) <= 0;
   };
   double low = 0;
   double high = 1;

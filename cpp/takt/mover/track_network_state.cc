@@ -1,4 +1,4 @@
-#include "takt/mover/streets.h"
+#include "takt/mover/track_network_state.h"
 
 #include <algorithm>
 
@@ -8,12 +8,12 @@ namespace {
 
 const planar::Parts kNoParts;
 
-bool SameShape(const TrackNow& a, const TrackNow& b) {
+bool SameShape(const TrackView& a, const TrackView& b) {
   return a.way == b.way && a.length == b.length && a.reach == b.reach && a.start_node == b.start_node &&
          a.end_node == b.end_node && a.goal == b.goal;
 }
 
-void LinkAll(std::span<const TrackNow> tracks, planar::Network& network) {
+void LinkAll(std::span<const TrackView> tracks, planar::Network& network) {
   for (std::uint32_t i = 0; i < tracks.size(); ++i) {
     planar::Road& road = network.roads[i];
     road.track = tracks[i].way;
@@ -55,7 +55,8 @@ void CutRoute(const planar::Network& network, planar::Rider& rider) {
 
 }  // namespace
 
-Streets::Streets(std::size_t movers, std::vector<std::string> of_tracks, const planar::Parts* of_parts)
+TrackNetworkState::TrackNetworkState(std::size_t movers, std::vector<std::string> of_tracks,
+                                     const planar::Parts* of_parts)
     : parts(of_parts != nullptr ? of_parts : &kNoParts),
       names(std::move(of_tracks)),
       search(names.size()),
@@ -67,18 +68,18 @@ Streets::Streets(std::size_t movers, std::vector<std::string> of_tracks, const p
   network.roads.resize(names.size());
 }
 
-std::uint32_t Streets::Find(std::string_view track) const noexcept {
+std::uint32_t TrackNetworkState::Find(std::string_view track) const noexcept {
   const auto found = std::ranges::find(names, track);
   return found == names.end() ? planar::kNoTrack : static_cast<std::uint32_t>(found - names.begin());
 }
 
-planar::TrackPoint Streets::At(std::uint32_t track, double s) const noexcept {
+planar::TrackPoint TrackNetworkState::At(std::uint32_t track, double s) const noexcept {
   planar::TrackPoint point = planar::At(*network[track].track, s);
   point.place = point.place + tracks[track].spot.origin;
   return point;
 }
 
-void Refresh(std::span<const TrackNow> now, Streets& s) noexcept {
+void Refresh(std::span<const TrackView> now, TrackNetworkState& s) noexcept {
   if (!std::ranges::equal(now, s.tracks, SameShape)) {
     LinkAll(now, s.network);
     for (planar::Rider& rider : s.riders) CutRoute(s.network, rider);

@@ -15,7 +15,7 @@
 
 namespace takt::track {
 
-struct Question {
+struct BuildRequest {
   std::uint64_t number = 0;
   std::uint32_t track = 0;               // from 0
   std::uint32_t part = planar::kNoPart;  // that it lies on
@@ -29,23 +29,23 @@ struct Delivery {
   planar::TrackArea* area = nullptr;  // what movers on it may cover
 };
 
-struct Desk {
-  Desk(std::size_t tracks, const planar::Parts& of_parts) : parts(of_parts), retired(2 * tracks + 8) {}
-  ~Desk();
-  Desk(const Desk&) = delete;
-  Desk& operator=(const Desk&) = delete;
+struct BuildQueues {
+  BuildQueues(std::size_t tracks, const planar::Parts& of_parts) : parts(of_parts), retired(2 * tracks + 8) {}
+  ~BuildQueues();
+  BuildQueues(const BuildQueues&) = delete;
+  BuildQueues& operator=(const BuildQueues&) = delete;
 
-  const planar::Parts& parts;        // of which only the shapes are looked at: they never change
-  SpscQueue<Question> questions{2};  // one at a time
+  const planar::Parts& parts;            // of which only the shapes are looked at: they never change
+  SpscQueue<BuildRequest> questions{2};  // one at a time
   SpscQueue<Delivery> deliveries{8};
   SpscQueue<Delivery> retired;
 };
 
 // Outside the cycle, one thread: answers the next question. Frees what is retired.
-struct Answer {
+struct BuiltTrack {
   std::uint32_t track = 0;
   TrackMade made;
 };
-std::optional<Answer> Make(Desk& desk);
+std::optional<BuiltTrack> Make(BuildQueues& desk);
 
 }  // namespace takt::track

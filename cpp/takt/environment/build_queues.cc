@@ -1,4 +1,4 @@
-#include "takt/environment/desk.h"
+#include "takt/environment/build_queues.h"
 
 #include <memory>
 
@@ -6,24 +6,24 @@ namespace takt::environment {
 
 namespace {
 
-void FreeRetired(Desk& desk) {
+void FreeRetired(BuildQueues& desk) {
   for (const planar::Environment* surface = nullptr; desk.retired.TryPop(surface);) delete surface;
 }
 
 }  // namespace
 
-Desk::~Desk() {
+BuildQueues::~BuildQueues() {
   FreeRetired(*this);
   for (Delivery delivery; deliveries.TryPop(delivery);) delete delivery.surface;
 }
 
-std::optional<Answer> Make(Desk& desk) {
+std::optional<BuiltBoundary> Make(BuildQueues& desk) {
   FreeRetired(desk);
-  Question question;
+  BuildRequest question;
   if (!desk.questions.TryPop(question)) return std::nullopt;
   auto surface = std::make_unique<planar::Environment>();
   const planar::Surfacing surfacing = planar::MakeEnvironment(*question.stators, *surface);
-  Answer answer{question.environment, {question.number, surfacing.problem, 0}};
+  BuiltBoundary answer{question.environment, {question.number, surfacing.problem, 0}};
   if (surfacing.problem != planar::StatorProblem::kNone) {
     if (surfacing.problem != planar::StatorProblem::kEmpty) {
       answer.made.stator = static_cast<std::uint32_t>(surfacing.stator + 1);
