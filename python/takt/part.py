@@ -1,4 +1,5 @@
-"""One part of the surface of a session: stators that movers float on, at one of several positions."""
+"""One part of the surface of a planar motor: a rigid set of stators that is at one of its positions in a coordinate
+system."""
 
 from __future__ import annotations
 
@@ -12,4 +13,6 @@ class Part(Component, PartCommands, PartOutputs):
     KIND = "part"
 
     def __repr__(self) -> str:
-        return f"<Part {self.name}: {self.state.value}, at position {self.position_index}>"
+        index = self.position_index
+        where = f"at position {index}" if index else "between positions"
+        return f"<Part {self.name}: {self.state.value}, {where}>"

@@ -39,6 +39,8 @@ class RemoteCams:
         return 0 if piece is None else int(piece.number)
 
     def table(self, number: int) -> Table:
+        """Returns the cam with this number. Raises TaktError where the engine has none (any more) or refuses read_cam,
+        ConnectionError where a piece was not received."""
         first = self._piece({"number": number}, 0)
         if first is None:
             raise TaktError(f"the engine has no cam of number {number} any more")
@@ -47,7 +49,11 @@ class RemoteCams:
         while count < first.total:
             more = self._piece({"number": number}, count)
             if more is None:
-                raise TaktError(f"the engine has let go of cam number {number} while it was read")
+                raise TaktError(f"the engine has deleted cam number {number} while it was read")
+            if more.count < 1:
+                raise TaktError(
+                    f"cam number {number}: the piece from {count} on is empty, expected {first.total} in all"
+                )
             for key, items in json.loads(more.text).items():
                 if key in ("points", "segments"):
                     cam.setdefault(key, []).extend(items)
@@ -55,7 +61,7 @@ class RemoteCams:
         return Table.from_dict(cam)
 
     def _piece(self, which: dict[str, Any], first: int) -> msgs.cam_piece | None:
-        """None: the engine has no such cam."""
+        """Returns the piece that begins with point or segment `first`; None where the engine has no such cam."""
         for _ in range(TRIES):
             feedback = self._session.command("machine", "read_cam", {**which, "first": first}).wait_final()
             if feedback.error_id == REFUSED:
@@ -67,7 +73,9 @@ class RemoteCams:
             piece = self._found(*wanted)
             if piece is not None:
                 return piece
-        raise ConnectionError(f"the engine sends its cams, but {TRIES} pieces in a row were lost on the way")
+        raise ConnectionError(
+            f"cam {next(iter(which.values()))}: asked {TRIES} times for its piece from {first} on, none came"
+        )
 
     def _found(self, which: dict[str, Any], cycle: int, first: int) -> msgs.cam_piece | None:
         for piece in list(self._pieces.values()):

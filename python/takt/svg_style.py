@@ -1,7 +1,7 @@
-"""Which properties an element of SVG has: of its attributes, of style sheets, of its own style, inherited.
+"""Resolves the properties of an SVG element: presentation attributes, style sheets, the style attribute, inheritance.
 
-Selectors of tags, classes, ids, and of such within such, are read. Rules of others, and those for some media only, are
-errors if they say what is seen, or where.
+Selectors of type, class, id, *, compounds of them, and descendant and child combinators are supported. Other selectors,
+at-rules and nested rules are errors where they set a property that decides what is seen, or where.
 """
 
 from __future__ import annotations
@@ -26,14 +26,18 @@ OWN = (
 # No attributes.
 _STYLE_ONLY = ("rotate", "translate", "scale", "offset-path", "marker")
 _READ = frozenset((*INHERITED, *OWN, *_STYLE_ONLY))
-_SHOWN = ("fill", "stroke", "fill-opacity", "stroke-opacity", "stroke-width")  # of these only what hides matters
+# Unsupported rules for these are errors at once where they hide; where they show, at an element that would be left out.
+_SHOWN = ("fill", "stroke", "fill-opacity", "stroke-opacity", "stroke-width")
 _HARMLESS = ("filter", "overflow", "color", "font-size", "marker", "marker-start", "marker-mid", "marker-end")
 _WITHOUT_EFFECT = ("@font-face", "@charset", "@namespace", "@page", "@counter-style")
 Key = tuple[str, str, tuple[str, ...]]  # tag, id, classes
 _COMPOUND = re.compile(r"(\*|[\w-]+)?((?:[.#][\w-]+)*)")
 _BRACE = re.compile("[{};]")
-_MOST_RULES = 10_000  # of style sheets
-_MOST_LOOKS = 10_000_000  # of rules at elements
+# Of states of a page; none of them holds in a drawing.
+_INTERACTIVE = re.compile(r":(hover|active|focus|focus-within|focus-visible|target|visited)\b")
+_MOST_RULES = 10_000  # in all sheets; beyond: TreeError
+_MOST_NESTED = 20  # rules within rules
+_MOST_LOOKS = 10_000_000  # comparisons of rules with elements; beyond: TreeError
 
 
 _Part = tuple[str, str, str, tuple[str, ...]]  # combinator before, tag, id, classes
@@ -41,12 +45,12 @@ _Part = tuple[str, str, str, tuple[str, ...]]  # combinator before, tag, id, cla
 
 class _Rule(NamedTuple):
     parts: tuple[_Part, ...]  # from the last
-    weight: tuple[int, int, int, int]  # ids, classes, tags, number
-    names: list[tuple[str, str, bool]]
+    weight: tuple[int, int, int, int]  # specificity (ids, classes, types), then the order in the sheets
+    names: list[tuple[str, str, bool]]  # declarations: name, value, whether it is important
 
 
 def is_paint(value: str, opacity: str) -> bool:
-    """Whether a fill or stroke is seen."""
+    """Returns whether a fill or stroke with this opacity is visible."""
     value = value.strip().lower()
     if value in ("none", "transparent") or is_zero(opacity):
         return False
@@ -58,7 +62,7 @@ def is_paint(value: str, opacity: str) -> bool:
 
 
 def is_zero(text: str) -> bool:
-    """A number or length that is 0, or an opacity below."""
+    """Returns whether the text is a number, percentage or length of 0 or below."""
     match = re.fullmatch(rf"\s*({NUMBER})\s*(?:%|[a-zA-Z]*)\s*", text)
     return match is not None and float(match[1]) <= 0
 
@@ -71,21 +75,35 @@ class Styles:
         self._count = self._looks = 0
         self.imported = 0
         self.are_nested = False  # whether rules ask what elements are within
+        self.unread = ""  # the first unsupported rule that would show an element, as sentences name it
         for sheet in sheets:
             text = _without_comments(sheet).replace("<!--", " ").replace("-->", " ")
             for head, body in _blocks(text):
                 if head.startswith("@"):
                     self._at_rule(head, body)
                 else:
-                    for selector in head.split(","):
+                    if "{" in body:
+                        body = self._nested(head, body)
+                    for selector in _parts(head, ","):
                         self._add(selector.strip(), _declarations(body))
 
-    def _at_rule(self, head: str, body: str) -> None:
+    def _at_rule(self, head: str, body: str, depth: int = 1) -> None:
         if head.startswith("@import"):
             self.imported += 1
         elif not head.startswith(_WITHOUT_EFFECT):
-            for _, inner in _blocks(body):
-                _check_unread(head, _declarations(inner))
+            self._check_unread(head, _declarations(self._nested(head, body, depth)))
+
+    def _nested(self, head: str, body: str, depth: int = 1) -> str:
+        """Checks the rules within a rule; returns its own declarations."""
+        if depth > _MOST_NESTED:
+            raise TreeError(f"<style>: rules are nested more than {_MOST_NESTED} deep")
+        own = []
+        for inner, text in _blocks(body + ";"):
+            if text or inner.startswith("@"):
+                self._at_rule(f"{head} {inner}", text, depth + 1)
+            else:
+                own.append(inner)
+        return ";".join(own)
 
     def _add(self, selector: str, names: list[tuple[str, str, bool]]) -> None:
         parts: list[_Part] = []
@@ -102,7 +120,7 @@ class Styles:
             marks = re.findall(r"[.#][\w-]+", match[2]) if match else []
             ids = [mark[1:] for mark in marks if mark[0] == "#"]
             if not match or len(ids) > 1:
-                _check_unread(selector, names)
+                self._check_unread(selector, names)
                 return
             classes = tuple(mark[1:] for mark in marks if mark[0] == ".")
             tag = "" if match[1] in (None, "*") else match[1]
@@ -118,10 +136,22 @@ class Styles:
             rule = _Rule(tuple(parts), (weight[0], weight[1], weight[2], self._count), names)
             self._rules.setdefault(key, []).append(rule)
 
+    def _check_unread(self, selector: str, names: list[tuple[str, str, bool]]) -> None:
+        """Raises TreeError where an unsupported rule hides or moves elements; notes one that shows them."""
+        for name, value, _ in names:
+            shows = name in _SHOWN and not is_zero(value) and is_paint(value, "1")
+            if name in _READ and name not in _HARMLESS and not shows:
+                raise TreeError(f"<style>: '{name}' for '{selector}' is not read; expected it at the elements")
+            if shows and not self.unread and not _INTERACTIVE.search(selector):
+                self.unread = f"'{name}' for '{selector}'"
+
     def of(
         self, one: ElementTree.Element, key: Key, around: Sequence[Key], inherited: dict[str, str]
     ) -> dict[str, str]:
-        """The properties of an element. `around`: those that it is within, from the outermost."""
+        """Returns the specified values of the properties of an element.
+
+        around: keys of its ancestors, the outermost first. inherited: what it inherits of its parent. Raises TreeError
+        for var(), for `inherit` of a property that is not inherited, and beyond _MOST_LOOKS."""
         found = {name: one.attrib[name] for name in (*INHERITED, *OWN) if name in one.attrib}
         tag, identity, classes = key
         keys = ["*", tag, *(f".{name}" for name in classes), *([f"#{identity}"] if identity else [])]
@@ -161,7 +191,7 @@ def key_of(one: ElementTree.Element, name: str) -> Key:
 def _matches(rule: _Rule, key: Key, around: Sequence[Key]) -> bool:
     if not _fits(rule.parts[0], key):
         return False
-    reached = {len(around)}  # where what was looked at last may stand
+    reached = {len(around)}  # ancestors that the part matched last can be
     for part, before in pairwise(rule.parts):
         near = {i - 1 for i in reached} if part[0] == ">" else range(max(reached))
         reached = {i for i in near if i >= 0 and _fits(before, around[i])}
@@ -176,7 +206,7 @@ def _fits(part: _Part, key: Key) -> bool:
 
 
 def _blocks(text: str) -> Iterator[tuple[str, str]]:
-    """What stands before braces, and in them; a rule without braces by itself."""
+    """Yields what is before braces, and what is in them; a statement without braces by itself."""
     at = 0
     while at < len(text):
         found = _BRACE.search(text, at)
@@ -196,7 +226,7 @@ def _blocks(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _declarations(text: str) -> list[tuple[str, str, bool]]:
-    """Name, value, and whether it is important."""
+    """Returns name, value and whether it is important, of each declaration."""
     found = []
     for part in _parts(_without_comments(text)):
         name, colon, value = part.partition(":")
@@ -206,8 +236,8 @@ def _declarations(text: str) -> list[tuple[str, str, bool]]:
     return found
 
 
-def _parts(text: str) -> Iterator[str]:
-    """Between semicolons that are neither quoted nor in brackets."""
+def _parts(text: str, separator: str = ";") -> Iterator[str]:
+    """Yields what is between separators that are neither quoted nor in brackets."""
     begin = depth = 0
     quote = ""
     for i, letter in enumerate(text):
@@ -217,7 +247,7 @@ def _parts(text: str) -> Iterator[str]:
             quote = letter
         elif letter in "()":
             depth = max(depth + (1 if letter == "(" else -1), 0)
-        elif letter == ";" and not depth:
+        elif letter == separator and not depth:
             yield text[begin:i]
             begin = i + 1
     yield text[begin:]
@@ -230,11 +260,3 @@ def _without_comments(text: str) -> str:
         _, end, behind = other.partition("*/")
         kept += [behind] if end else []
     return " ".join(kept)
-
-
-def _check_unread(selector: str, names: list[tuple[str, str, bool]]) -> None:
-    """Raises TreeError where rules of a kind that is not read say what is seen, or where."""
-    for name, value, _ in names:
-        hides = is_zero(value) or not is_paint(value, "1")
-        if name in _READ and name not in _HARMLESS and (name not in _SHOWN or hides):
-            raise TreeError(f"<style>: '{name}' for '{selector}' is not read; expected it at the elements")

@@ -335,6 +335,8 @@ class Rendered:
             self.left_out[f"{element.label} with opacity 0"] += 1
             return
         if not self._is_painted(element):
+            if self._styles.unread:
+                raise TreeError(f"<style>: {self._styles.unread} is not read; expected it at the elements")
             self.left_out[f"<{element.name}> with neither fill nor stroke"] += 1
             return
         shape = self._read(element)

@@ -19,7 +19,8 @@ from takt.drives import objects as od
 from takt.drives.can_link import CanLink, Sdo, frame_bits, parse
 from takt.drives.canopen_bus import CanopenBus, nodes_on
 from takt.drives.cia402 import State
-from takt.drives.sdo import SdoError
+from takt.drives.field_bus import interpolation_period
+from takt.drives.sdo import Objects, SdoError
 from takt.errors import TaktError
 
 
@@ -144,6 +145,93 @@ def test_a_drive_that_never_gets_ready() -> None:
         x = engine.axis("x1")
         engine.run(0.1)
         assert x.power().wait_final().error_id == 3002
+        emulation.command("clear 1")
+        engine.run(0.1)
+        x.reset().wait()
+        x.power().wait()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "fault 1 0",
+        "fault 1 0x10000",
+        "fault 1 0x3210 lastng",
+        "fault 1 0x3210 lasting 2",
+        "cut 1 2",
+        "clear",
+        "jump 1",
+        "power 1 maybe",
+        "show 1",
+        "stall 9",
+        "nonsense",
+    ],
+)
+def test_commands_to_emulated_drives_are_whole(text: str) -> None:
+    """AX-87: a command with a word too many, too few or misspelt changes nothing, and is said to be none."""
+    said: list[str] = []
+    with emulated(machine(new_url(), new_bus(), 1)) as emulation:
+        emulation._say = said.append
+        emulation.command(text)
+        assert eventually(lambda: bool(said), 20)
+        assert said[0].startswith(f"not understood: '{text}'; expected fault NODE CODE")
+        assert emulation.nodes[1].drive.machine.error_code == 0
+
+
+@pytest.mark.parametrize(
+    ("period_s", "expected"),
+    [(0.00025, (25, -5)), (0.001, (1, -3)), (0.0015, (15, -4)), (0.02, (20, -3)), (0.000251, (251, -6))],
+)
+def test_periods_of_interpolation(period_s: float, expected: tuple[int, int]) -> None:
+    """0x60C2: 1 to 255 times a power of ten."""
+    assert interpolation_period(period_s) == expected
+
+
+def test_a_period_of_interpolation_that_drives_cannot_hold() -> None:
+    """AX-87: it is said, and the object is left alone; it was told 77 of 333 us."""
+    url, bus = new_url(), new_bus()
+    text = machine(url, bus, 1).replace("period_s: 0.004", "period_s: 0.000333")
+    with emulated(text) as emulation, run(text, url) as (_, said), takt.Engine(text) as engine:
+        engine.axis("x1").power().wait()
+        assert len([line for line in said if "x1: node 1: 0x60C2 cannot hold the cycle of 333 us" in line]) == 1
+        assert emulation.nodes[1].drive.period_s == 0.000333
+
+
+class OneObject(Objects):
+    """A drive with an object of 16 bits, or one that refuses."""
+
+    called = "it"
+
+    def __init__(self, code: int | None = None) -> None:
+        self.code, self.data = code, b"\x01\x00"
+
+    def upload(self, what: str, index: int, subindex: int) -> bytes:
+        if self.code is not None:
+            raise SdoError(what, self.code)
+        return self.data
+
+    def download(self, what: str, index: int, subindex: int, data: bytes) -> None:
+        self.upload(what, index, subindex)
+        self.data = data
+
+
+def test_objects_that_cannot_be_read_or_written() -> None:
+    """AX-87: what a drive does not have is told apart from what it cannot do just now; no value is cut off."""
+    for code in (0x06020000, 0x06090011, 0x06010002, 0x08000000):
+        assert OneObject(code).find(0x2000) is None
+        assert not OneObject(code).try_to_write(0x2000, 0, 1, 16)
+    for code in (0x05040000, 0x08000022):
+        with pytest.raises(SdoError):
+            OneObject(code).find(0x2000)
+        with pytest.raises(SdoError):
+            OneObject(code).try_to_write(0x2000, 0, 1, 16)
+    one = OneObject()
+    for value in (-0x8000, 0, 0xFFFF):
+        one.write(0x2000, 0, value, 16)
+        assert one.find(0x2000) == value & 0xFFFF
+    for value in (-0x8001, 0x10000):
+        with pytest.raises(SdoError, match=f"0x2000:0 cannot be written with {value}: it has 16 bits"):
+            one.try_to_write(0x2000, 0, value, 16)
 
 
 def test_a_cable_that_breaks_in_motion(tmp_path: Path) -> None:

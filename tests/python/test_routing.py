@@ -13,7 +13,8 @@ import takt
 from cities import line, machine, point, put_on_tracks, random_city, random_places
 from machines import new_url, running
 from takt import Engine
-from takt.routing.streets import Streets
+from takt.routing.loop import Loop, go_round
+from takt.routing.streets import Street, Streets
 from takt.track_layout import TrackLayout
 
 GAP = 200.0
@@ -100,7 +101,7 @@ def test_a_loop_with_one_place_left() -> None:
     # And all of them once more, so that one goes over the place where the loop is closed.
     check(engine, {name: ("loop", places[(i + 2) % count]) for i, name in enumerate(names)})
     swapped = {"m0": ("loop", engine.mover("m1").track_position), "m1": ("loop", engine.mover("m0").track_position)}
-    with pytest.raises(takt.RoutingError, match="nobody overtakes"):
+    with pytest.raises(takt.RoutingError, match="movers cannot overtake"):
         engine.move_on_tracks(swapped, may_move=True)
 
 
@@ -173,6 +174,33 @@ def test_one_that_is_in_the_way() -> None:
     with pytest.raises(takt.RoutingError, match="b on the way to back may not be moved"):
         takt.plan_routes(engine, {"a": ("back", 1500.0)})
     check(engine, {"a": ("back", 1500.0)}, may_move=True)
+
+
+def test_turns_on_a_closed_track() -> None:
+    """PL-26: a mover alone takes the shorter way round, several together the least travel of all; rounding adds no
+    turn."""
+    chance = random.Random(3)
+    streets = Streets((), 100.0)
+
+    def plan(length: float, starts: list[float], targets: list[float]) -> dict[int, float]:
+        names = [f"m{i}" for i in range(len(starts))]
+        street = Street(0, "ring", length, True, (), -1, -1, 0.0, length)
+        return go_round(Loop(street, dict(enumerate(starts)), dict(enumerate(targets)), {}), streets, names)
+
+    assert plan(2830.052, [2796.136], [54.048]) == {0: pytest.approx(2830.052 + 54.048)}
+    for _ in range(2000):
+        length, count = round(chance.uniform(2000, 4000), 3), chance.randint(1, 5)
+        slot, turned = length / count, chance.uniform(0, length)
+        starts, targets = ([k * slot + chance.uniform(0, slot - 101) for k in range(count)] for _ in "ab")
+        targets = [(s + turned) % length for s in targets]
+        ends = plan(length, starts, targets)
+        least = math.inf
+        for turn in range(-3, 4):
+            there = [targets[0] + turn * length]
+            for s in targets[1:]:
+                there.append(there[-1] + (s - there[-1]) % length)
+            least = min(least, sum(abs(a - b) for a, b in zip(there, starts, strict=True)))
+        assert sum(abs(ends[i] - starts[i]) for i in ends) == pytest.approx(least, abs=1e-6)
 
 
 # --- a ring of four switches ---

@@ -285,6 +285,15 @@ def test_workspaces_have_their_shapes_and_names(tmp_path: Path) -> None:
     assert [solid["part"] for solid in apart["robot.obstacles"]["solids"]] == ["post"]
 
 
+def test_a_tool_with_shapes_of_its_own(tmp_path: Path) -> None:
+    """Those of the machine file, and the gripper beside them."""
+    (tmp_path / "tip.stl").write_text(STL)
+    text = one_group(KINDS["six_axis"], WORKSPACE.replace("link: link_2, capsule", "link: tool, capsule"))
+    nodes = {node["name"]: node for node in described(text, tmp_path).scene["nodes"]}
+    kinds = [(solid["kind"], solid["part"]) for solid in nodes["robot.tool"]["solids"]]
+    assert kinds == [("capsule", "tool"), ("box", "finger")]
+
+
 def test_urdf_has_its_meshes(tmp_path: Path) -> None:
     (tmp_path / "arm" / "meshes").mkdir(parents=True)
     (tmp_path / "arm" / "two.urdf").write_text(URDF)

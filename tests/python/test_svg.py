@@ -384,6 +384,14 @@ def test_clips(tmp_path: Path, clip: str, shape: str, taken: bool) -> None:
         ("path:not(.a){stroke:none}", "'stroke' for 'path:not(.a)'"),
         ("rect, path:hover {visibility:hidden}", "'visibility' for 'path:hover'"),
         ("@media print{.a{opacity:0}}", "'opacity' for"),
+        (
+            "@media all{@supports(display:grid){.a{display:none}}}",
+            "'display' for '@media all @supports(display:grid) .a'",
+        ),
+        ("@layer x{@media screen{.a{fill:blue;display:none}}}", "'display' for '@layer x @media screen .a'"),
+        ("svg{fill:red; .a{display:none} g{fill:blue}}", "'display' for 'svg .a'"),
+        ("svg{fill:red; .a{fill:blue} stroke:red}", ""),
+        ("{".join(["@media all"] * 3000), "rules are nested more than 20 deep"),
         (".a{clip-path:url(#c)}", ""),
         ("path{display:none}path{display:inline !important}", ""),
         ("g .a{fill:red}", ""),
@@ -397,6 +405,24 @@ def test_styles_that_are_not_read(tmp_path: Path, rule: str, said: str) -> None:
         assert f"a.svg: <style>: {said}" in wrong(tmp_path, body)
     else:
         assert drawn(read(tmp_path, body))[0] == pytest.approx(7)
+
+
+@pytest.mark.parametrize(
+    ("rule", "said"),
+    [
+        ("path:not(.x){stroke:black}", "'stroke' for 'path:not(.x)' is not read"),
+        ("@media screen{path{stroke:black}}", "'stroke' for '@media screen path' is not read"),
+        ("g:not(rect, path, circle){fill:red}", "'fill' for 'g:not(rect, path, circle)' is not read"),
+        ("path:hover{stroke:black}", "no outlines are drawn in it"),
+        ("rect{fill:red}", "no outlines are drawn in it"),
+    ],
+)
+def test_styles_that_are_not_read_and_show(tmp_path: Path, rule: str, said: str) -> None:
+    """They are an error where an element would be left out for want of a paint."""
+    body = f'<style>{rule}</style><g fill="none" stroke="none">{LINE}</g>'
+    assert said in wrong(tmp_path, body)
+    shown = LINE.replace("/>", ' stroke="red"/>')
+    assert drawn(read(tmp_path, body.replace(LINE, shown)))[0] == pytest.approx(7)
 
 
 BOMB = '<defs><path id="u0" d="M0 0 H1"/>' + "".join(

@@ -82,7 +82,7 @@ def against(
     kept = excess <= margin
     excess[kept] = np.minimum(excess[kept], 0)
     typical = float(np.median(levels))
-    amount = number(typical, unit)
+    amount = number(typical if kept.all() else float(levels[np.argmax(excess)]), unit)
     says = f"limit of {amount} for the {what}" if " " in what else f"{what} limit of {amount}"
     bounds = (
         Bound(f"limit ±{number(typical, unit)}", time_s, levels, _ABOVE),

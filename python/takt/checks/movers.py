@@ -29,6 +29,8 @@ def of_mover(
     limits["acceleration"] = max(limits["acceleration"], limits.get("deceleration") or 0.0)
     limits |= {what: limit for what, limit in given.items() if limit is not None}
     in_plane = {what: limit for what in limits if (limit := bounded(what, limits[what])) is not None}
+    if in_plane.get("jerk") == 0:  # unlimited, as in commands
+        del in_plane["jerk"]
     found = _in_plane(check, mover, in_plane, tolerance, jerk_tolerance)
     found += _across(check, mover, own["lateral_acceleration"], max(tolerance, CURVATURE))
     says = ", ".join(one.says for one in found)

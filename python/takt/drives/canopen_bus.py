@@ -297,11 +297,8 @@ class CanopenBus(FieldBus):
         watch = int(self.described["node"]) << 16 | HEARTBEATS_MISSING * beat_ms
         if not sdo.try_to_write(0x1016, 1, watch, 32):
             self._say(f"{node.named} cannot watch for the end of this process (0x1016:1): it would go on by itself")
-        period_us = round(1e6 * self.period_s)
-        sdo.try_to_write(0x1006, 0, period_us, 32)
-        exponent = next(e for e in (-3, -4, -5, -6) if period_us % 10 ** (6 + e) == 0)
-        if sdo.try_to_write(0x60C2, 2, exponent, 8):
-            sdo.try_to_write(0x60C2, 1, period_us // 10 ** (6 + exponent), 8)
+        sdo.try_to_write(0x1006, 0, round(1e6 * self.period_s), 32)
+        self._tell_interpolation_period(node, sdo)
 
     def _map(self, node: _Node, sdo: Sdo) -> None:
         target = od.TARGET_POSITION if node.mode is Mode.CYCLIC_POSITION else od.TARGET_VELOCITY

@@ -12,19 +12,30 @@ from typing import Any, Final
 from takt.drives import objects as od
 from takt.drives.error_texts import error_text
 
-CLOCK: Final = (0x2000, 0)  # of an emulated drive: what its time goes by
+# Object of emulated drives alone (manufacturer specific), the base of their time. 1: one period with each SYNC or
+# frame, for simulated time; 0: the clock of the host, with supervision of heartbeat and SYNC.
+CLOCK: Final = (0x2000, 0)
 CLOCK_IS_SYNC: Final = 1
 VENDOR: Final = 0x0000_0000
 PRODUCT: Final = 0x5441_4B54  # "TAKT"
 NAME: Final = "Takt emulated drive"
 HELP: Final = (
-    "fault NODE CODE [lasting] | clear NODE | cut NODE|all | join NODE|all | power NODE off|on | stall NODE | "
-    "jump NODE INCREMENTS | show | quit"
+    "fault NODE CODE [lasting] | clear NODE | cut NODE | join NODE | power NODE off|on | stall NODE | "
+    "jump NODE INCREMENTS | show | quit (NODE: a number, or all)"
 )
+# Words behind each verb, at least and at most.
+_WORDS: Final = {
+    "fault": (2, 3), "clear": (1, 1), "cut": (1, 1), "join": (1, 1), "power": (2, 2), "stall": (1, 1), "jump": (2, 2),
+    "show": (0, 0), "quit": (0, 0),
+}  # fmt: skip
 
 
 class Commanded(ABC):
-    """An emulation that texts change, as `takt drives emulate` reads them.
+    """Base of the emulated buses: carries out text commands, as `takt drives emulate` reads them, between bus cycles.
+
+    fault: a fault with this code (0x603F); lasting: it cannot be reset before clear. clear: ends that, and stall. cut,
+    join: the cable in front of a node is out, or back. stall: the power stage gets ready no more. jump: the value of
+    the encoder jumps, the motor does not move.
 
     nodes: by address; each has a `drive`, an EmulatedDrive."""
 
@@ -39,25 +50,26 @@ class Commanded(ABC):
 
     @abstractmethod
     def cut(self, node: Any, out: bool) -> None:
-        """The cable of a node is out, or back."""
+        """Disconnects (out) or reconnects the cable in front of a node."""
 
     @abstractmethod
     def power(self, node: Any, on: bool) -> None:
-        """The supply of a node."""
+        """Switches the supply of a node."""
 
     def more(self, verb: str, rest: Sequence[str]) -> str | None:
-        """Commands that only this bus knows; None: it does not."""
+        """Carries out a command of this bus alone. Returns the reply; None where the verb is none of them. Raises
+        ValueError, IndexError or KeyError where its words are wrong."""
         return None
 
     def stop(self) -> None:
         self._running = False
 
     def command(self, text: str) -> None:
-        """From any thread."""
+        """Queues a command line, from any thread."""
         self._commands.put(text)
 
     def obey(self) -> None:
-        """Carries out what has come."""
+        """Carries out the queued commands, on the thread of `run`."""
         while not self._commands.empty():
             self._obey(self._commands.get())
 
@@ -75,6 +87,9 @@ class Commanded(ABC):
         return list(self.nodes.values()) if word == "all" else [self.nodes[int(word)]]
 
     def _carry_out(self, verb: str, rest: Sequence[str]) -> str:
+        least, most = _WORDS[verb]
+        if not least <= len(rest) <= most:
+            raise ValueError(rest)
         if verb == "quit":
             self.stop()
             return "ends"
@@ -87,21 +102,19 @@ class Commanded(ABC):
         for node in self._which(rest[0]):
             if verb == "fault":
                 code = int(rest[1], 0)
-                if not 0 <= code <= 0xFFFF:
-                    raise ValueError(code)
-                node.drive.fault(code, lasting=rest[2:] == ["lasting"])
+                if not 0 < code <= 0xFFFF or rest[2:] not in ([], ["lasting"]):
+                    raise ValueError(rest)
+                node.drive.fault(code, lasting=len(rest) == 3)
             elif verb == "clear":
-                node.drive.held_fault = 0
+                node.drive.held_fault, node.drive.never_ready = 0, False
             elif verb in ("cut", "join"):
                 self.cut(node, verb == "cut")
             elif verb == "stall":
                 node.drive.never_ready = True
             elif verb == "jump":
                 node.drive.slip(int(rest[1], 0))
-            elif verb == "power":
-                self.power(node, {"off": False, "on": True}[rest[1]])
             else:
-                raise ValueError(verb)
+                self.power(node, {"off": False, "on": True}[rest[1]])
         return f"{verb} {' '.join(rest)}: done"
 
 

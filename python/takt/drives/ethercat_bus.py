@@ -274,10 +274,7 @@ class EthercatBus(FieldBus):
             one.drive.restarted()
 
     def _tell_period(self, one: _Slave) -> None:
-        period_us = round(1e6 * self.period_s)
-        exponent = next(e for e in (-3, -4, -5, -6) if period_us % 10 ** (6 + e) == 0)
-        if one.sdo.try_to_write(0x60C2, 2, exponent, 8):
-            one.sdo.try_to_write(0x60C2, 1, period_us // 10 ** (6 + exponent), 8)
+        self._tell_interpolation_period(one, one.sdo)
         mode = 2 if self.described["dc"] else 1  # synchronous with SYNC0, or with the frames
         for index in (0x1C32, 0x1C33):
             one.sdo.try_to_write(index, 1, mode if index == 0x1C32 or mode == 2 else 0x22, 16)

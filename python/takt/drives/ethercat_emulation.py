@@ -29,6 +29,7 @@ from takt.drives.scaling import scaling_of
 REVISION: Final = 1
 STRANGE: Final = 0x0001  # product of a device that is no axis'
 LINK_LOST: Final = 0x7500
+MOST_DRIFT_PPM: Final = 100_000
 SILENCE_S: Final = 0.1  # without process data, before a drive lives by the clock
 MOST_MADE_UP_S: Final = 0.2
 MAILBOX_BYTES: Final = 256
@@ -435,8 +436,11 @@ class EthercatEmulation(Commanded):
                 raise ValueError(percent)
             self.lost_share = percent / 100
         elif verb == "drift":
+            ppm = float(rest[0])
+            if not abs(ppm) <= MOST_DRIFT_PPM:
+                raise ValueError(ppm)
             for node in self._slaves:  # their clocks run together
-                node.esc.drift(float(rest[0]))
+                node.esc.drift(ppm)
         elif verb == "fix":
             for node in self._which(rest[0]):
                 node.fixed_map = True

@@ -32,6 +32,17 @@ class Member(Protocol):
     def named(self) -> str: ...
 
 
+def interpolation_period(period_s: float) -> tuple[int, int] | None:
+    """Returns value (1 to 255) and exponent (-6 to -3) of 0x60C2, whose period is value * 10^exponent [s]; None where a
+    period has none."""
+    period_us = round(1e6 * period_s)
+    for exponent in (-3, -4, -5, -6):
+        value, rest = divmod(period_us, 10 ** (6 + exponent))
+        if rest == 0 and 0 < value <= 0xFF:
+            return value, exponent
+    return None
+
+
 def lacks(described: Mapping[str, Any], sdo: Objects, modes: Collection[Mode]) -> str:
     """What a drive does not have of what its entry in the machine file asks for; "": nothing."""
     if described.get("homing") and Mode.HOMING not in modes:
@@ -97,6 +108,19 @@ class FieldBus(drive.Bus):
             objects.write(*CLOCK, CLOCK_IS_SYNC if simulated else 0, 8)
         except SdoError as error:
             raise TaktError(f"{self.bus_name}: {one.named}: {error}") from None
+
+    def _tell_interpolation_period(self, one: Member, objects: Objects) -> None:
+        """Writes 0x60C2 (CiA 402) where the drive has it."""
+        period = interpolation_period(self.period_s)
+        if period is not None:
+            value, exponent = period
+            if objects.try_to_write(0x60C2, 2, exponent, 8):
+                objects.try_to_write(0x60C2, 1, value, 8)
+        elif objects.find(0x60C2, 1) is not None:
+            self._say(
+                f"{one.named}: 0x60C2 cannot hold the cycle of {1e6 * self.period_s:.6g} us (1 to 255 times 1, 10, 100 "
+                f"or 1000 us): the drive keeps its interpolation period"
+            )
 
     def _say_once(self, sentence: str) -> None:
         if sentence not in self._said:

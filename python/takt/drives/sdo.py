@@ -5,9 +5,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Final
 
+# Of aborts: the object may exist, but cannot be read or written just now.
+TRANSIENT: Final = frozenset((0x05040000, 0x08000020, 0x08000021, 0x08000022))
+
 
 class SdoError(Exception):
-    """An object could not be read or written. code: of the abort; None: there was no answer."""
+    """An object could not be read or written.
+
+    code: of the abort; None: there was no answer, or no request."""
 
     def __init__(self, what: str, code: int | None = None) -> None:
         super().__init__(what)
@@ -17,17 +22,17 @@ class SdoError(Exception):
 class Objects(ABC):
     """Objects of one drive, as integers.
 
-    called: "node 3", as sentences name the drive."""
+    called: the drive in error sentences, as "node 3" or "slave 2"."""
 
     called: str
 
     @abstractmethod
     def upload(self, what: str, index: int, subindex: int) -> bytes:
-        """Raises SdoError, which begins with `what`."""
+        """Returns the bytes of an object, little endian. Raises SdoError, whose sentence begins with `what`."""
 
     @abstractmethod
     def download(self, what: str, index: int, subindex: int, data: bytes) -> None:
-        """Raises SdoError, which begins with `what`."""
+        """Writes the bytes of an object. Raises SdoError, whose sentence begins with `what`."""
 
     def read_bytes(self, index: int, subindex: int = 0) -> bytes:
         return self.upload(f"0x{index:04X}:{subindex} cannot be read", index, subindex)
@@ -36,31 +41,38 @@ class Objects(ABC):
         return int.from_bytes(self.read_bytes(index, subindex), "little", signed=signed)
 
     def find(self, index: int, subindex: int = 0, *, signed: bool = False) -> int | None:
-        """None: the drive does not have it. Raises SdoError where there is no answer."""
+        """Returns the value of an object; None where the drive refuses to read it, as it does where the object does not
+        exist. Raises SdoError where there is no answer, or the drive cannot read it just now."""
         try:
             return self.read(index, subindex, signed=signed)
         except SdoError as error:
-            if error.code is None:
+            if error.code is None or error.code in TRANSIENT:
                 raise
             return None
 
     def write(self, index: int, subindex: int, value: int, bits: int) -> None:
-        data = (value & ((1 << bits) - 1)).to_bytes(bits // 8, "little")
-        self.download(f"0x{index:04X}:{subindex} cannot be written with {value}", index, subindex, data)
+        """Writes an integer of `bits` bits (a multiple of 8), little endian, two's complement below 0. Raises SdoError,
+        also where it does not fit."""
+        what = f"0x{index:04X}:{subindex} cannot be written with {value}"
+        if not -(1 << (bits - 1)) <= value < 1 << bits:
+            raise SdoError(f"{what}: it has {bits} bits")
+        self.download(what, index, subindex, (value & ((1 << bits) - 1)).to_bytes(bits // 8, "little"))
 
     def try_to_write(self, index: int, subindex: int, value: int, bits: int) -> bool:
-        """False: the drive does not take it."""
+        """Returns false where the drive refuses it. Raises SdoError where there is no answer, or the drive cannot write
+        it just now, or the value does not fit."""
         try:
             self.write(index, subindex, value, bits)
         except SdoError as error:
-            if error.code is None:
+            if error.code is None or error.code in TRANSIENT:
                 raise
             return False
         return True
 
 
 def abort_text(code: int) -> str:
-    """ "SDO abort 0x06020000, the object does not exist"."""
+    """Returns an abort code with its text, as "SDO abort 0x06020000, the object does not exist"; without one where
+    ABORTS has none."""
     text = ABORTS.get(code)
     return f"SDO abort 0x{code:08X}" + (f", {text}" if text else "")
 
@@ -72,7 +84,7 @@ ABORTS: Final = {
     0x06010002: "the object can only be read",
     0x06020000: "the object does not exist",
     0x06040041: "the object cannot be mapped",
-    0x06040042: "the mapping would be longer than a message",
+    0x06040042: "the mapped objects would exceed the length of the message",
     0x06040043: "the parameters do not fit together",
     0x06060000: "the hardware refuses it",
     0x06070010: "the length is wrong",

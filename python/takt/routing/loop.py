@@ -1,8 +1,9 @@
-"""Movers on a closed loop: their order stays what it is; all that there is to find is who goes how many times round."""
+"""Targets of movers on a closed track. Movers do not overtake, so their cyclic order is fixed; what remains is the
+number of turns. Ours: the target of one reference mover is tried at -1, 0 and +1 turns, and the solution with the least
+total travel is taken."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -19,40 +20,50 @@ class Loop:
 
 
 def go_round(loop: Loop, streets: Streets, names: Sequence[str]) -> dict[int, float]:
-    """Where the movers that move go, turns counted in; all of them set out at once."""
+    """Returns the target position [mm] of each mover that moves, counted from its present position on the track: below
+    0 or above the length where it crosses the origin. All start at the same time. Movers without a target are displaced
+    where necessary, `fixed` ones never. Raises RoutingError where the gaps do not fit, or the targets are in another
+    cyclic order. Requires: at least one target."""
     length, gap = loop.street.length, streets.gap
     if len(loop.starts) * gap > length - SAME:
         movers = counted(len(loop.starts), "mover")
-        raise RoutingError(f"loop {loop.street.name} is full: {movers} with a gap of {gap:.6g} mm")
+        raise RoutingError(
+            f"closed track {loop.street.name} ({length:.6g} mm) has no room for {movers} with a gap of {gap:.6g} mm"
+        )
     best: dict[int, float] | None = None
     aims = {**loop.targets, **loop.fixed}
-    one = next(iter(loop.fixed), next(iter(loop.targets)))
-    # From one with an aim on, upwards; and once more the same at the end.
-    order = sorted(loop.starts, key=lambda i: (loop.starts[i] - loop.starts[one]) % length)
-    starts = {i: loop.starts[one] + (loop.starts[i] - loop.starts[one]) % length for i in order}
-    for turn in (0,) if one in loop.fixed else (-1, 0, 1):
-        ends = _ends(loop, order, starts, aims, aims[one] + turn * length, gap)
-        if ends is not None and (best is None or _far(ends, starts) < _far(best, starts)):
+    reference = next(iter(loop.fixed), next(iter(loop.targets)))
+    # Movers in ascending order, unwrapped from the reference mover.
+    order = sorted(loop.starts, key=lambda i: (loop.starts[i] - loop.starts[reference]) % length)
+    starts = {i: loop.starts[reference] + (loop.starts[i] - loop.starts[reference]) % length for i in order}
+    for turn in (0,) if reference in loop.fixed else (-1, 0, 1):
+        ends = _ends(loop, order, starts, aims, aims[reference] + turn * length, gap)
+        if ends is not None and (best is None or _total_travel(ends, starts) < _total_travel(best, starts)):
             best = ends
     if best is None:
         stay = f", and {', '.join(names[i] for i in loop.fixed)} may not be moved" if loop.fixed else ""
         raise RoutingError(
-            f"on loop {loop.street.name} nobody overtakes: the targets are in another order than the movers{stay}"
+            f"closed track {loop.street.name}: movers cannot overtake, and the targets are in another order than the "
+            f"movers{stay}"
         )
     moving = {i: s for i, s in best.items() if i in loop.targets or abs(s - starts[i]) > SAME}
-    # As the engine counts: from where each of them is within the loop.
+    # Back from unwrapped positions to those on the track.
     return {i: s - (starts[i] - loop.starts[i]) for i, s in moving.items() if i not in loop.fixed}
 
 
-def _far(ends: Mapping[int, float], starts: Mapping[int, float]) -> float:
+def _total_travel(ends: Mapping[int, float], starts: Mapping[int, float]) -> float:
     return sum(abs(ends[i] - starts[i]) for i in ends)
 
 
 def _ends(
     loop: Loop, order: Sequence[int], starts: Mapping[int, float], aims: Mapping[int, float], first: float, gap: float
 ) -> dict[int, float] | None:
+    """Returns the end position [mm, unwrapped] of each mover if the reference mover `order[0]` ends at `first`; None
+    where a gap or a fixed mover does not allow it. Forwards: the least position of each mover; backwards: the position
+    nearest to its start that keeps the gap to the next one."""
     length = loop.street.length
     fixed = {i: first + (aims[i] - first) % length for i in order if i in aims}
+    fixed[order[0]] = first  # exactly: rounding must not add a turn
     if any(abs(fixed[i] - starts[i]) > SAME for i in loop.fixed):
         return None
     least: dict[int, float] = {}
@@ -64,8 +75,8 @@ def _ends(
     high = first + length - gap
     for i in reversed(order):
         s = fixed[i] if i in fixed else min(max(starts[i], least[i]), high)
-        if s > high + SAME or s < least[i] - SAME or (i in fixed and s != fixed[i]):
+        if s > high + SAME or s < least[i] - SAME:
             return None
         ends[i] = s
         high = s - gap
-    return ends if not math.isinf(high) else None
+    return ends

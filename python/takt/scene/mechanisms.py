@@ -38,7 +38,7 @@ def solids_of_links(
         given = [a or b for a, b in zip(seen, simple, strict=True)]
     made = _made(kind, kinematics.get(kind) or {}, mechanism, spans, ranges)
     shown = [given[i] or made[i] for i in range(len(made))]
-    shown[-1] = [*_tool(group["tool"], _thickness(spans)), *_gripper(group, folder)]
+    shown[-1] = [*(given[-1] or _tool(group["tool"], _thickness(kind, spans))), *_gripper(group, folder)]
     return shown
 
 
@@ -78,8 +78,11 @@ def _tool(tool: Mapping[str, float], thick: float) -> list[Solid]:
     return [point, cylinder(0.35 * thick, (0, 0, 0), at, "tool", part="tool")] if math.hypot(*at) > 1 else [point]
 
 
-def _thickness(spans: Array) -> float:
-    reach = float(np.sum(np.unique(np.round(np.linalg.norm(spans, axis=1), 3))))
+def _thickness(kind: str, spans: Array) -> float:
+    """Returns the radius [mm] that arms are drawn with: a share of the length of all links together, of a Delta of one
+    of its equal arms."""
+    lengths = np.linalg.norm(spans, axis=1)
+    reach = float(np.sum(np.unique(np.round(lengths, 3)) if kind == "delta" else lengths))
     return float(np.clip(THICK * reach, 6.0, 70.0))
 
 
@@ -132,7 +135,7 @@ def _motors(p: Mapping[str, Any], thick: float) -> list[Solid]:
 
 def _chain(mechanism: Kinematics, spans: Array) -> Solids:
     """A capsule along each link that leads somewhere, a ball at its axis; a column under the first one."""
-    thick = _thickness(spans)
+    thick = _thickness("", spans)
     solids: Solids = []
     joints = len(mechanism.links) - 2
     for i, (link, span) in enumerate(zip(mechanism.links, spans, strict=True)):
@@ -152,7 +155,7 @@ def _chain(mechanism: Kinematics, spans: Array) -> Solids:
 
 def _scara(p: Mapping[str, Any], mechanism: Kinematics, spans: Array, ranges: Array) -> Solids:
     """Arms as high as the machine file says; a spindle that reaches them wherever it is."""
-    thick, height = _thickness(spans), p["height"]
+    thick, height = _thickness("scara", spans), p["height"]
     lift = np.array([0.0, 0.0, height])
     ends = np.zeros((2, mechanism.axes))
     ends[:, 2] = np.where(np.isfinite(ranges[2]), ranges[2], 0.0)

@@ -131,12 +131,14 @@ class Twin(Plant):
         at = qpos
         warned = self._warned()
         self._warn(silent)
-        for i in range(self.steps):
-            servos.ask(i, qpos, qvel, self._ahead, self._torques)
-            if i == last:
-                at = qpos[self._places]
-            step(model, data)
-        self._warn(warned)
+        try:
+            for i in range(self.steps):
+                servos.ask(i, qpos, qvel, self._ahead, self._torques)
+                if i == last:
+                    at = qpos[self._places]
+                step(model, data)
+        finally:
+            self._warn(warned)
         # NaN is not below either.
         if not qvel.dot(qvel) < FASTEST * FASTEST or self._warnings.tobytes() != self._no_warnings:
             self._explode(cycle)
