@@ -1,25 +1,25 @@
-// The cycle's part of a question whether a path is free (path_check_request.h).
+// Path check requests as the cycle sends them (path_check_request.h).
 #pragma once
 
 #include "takt/group/group.h"
 
 namespace takt::group {
 
-// Somebody knows what stands around the mechanism.
+// Returns true if paths can be checked for collisions: the group has a workspace and a tool, and requests are taken.
 bool HasWorkspace(const Context& c, const State& s) noexcept;
 
-// The path that is planned begins on what moves.
+// Returns true if the path being planned begins on a moving carrier.
 bool BeginsOnCarrier(const Context& c) noexcept;
-// And can be asked about: arcs and paths of the machine file that begin there cannot.
+// Returns true if the path being planned can be checked; arcs and paths of the machine file on a carrier cannot.
 bool CanAsk(const Context& c, const State& s) noexcept;
 
-// Goes into Stage::kCheck with the move that is planned, from where `ahead` ends.
+// Enters Stage::kCheck with the move being planned, from the end of `ahead`.
 void Ask(const Context& c, State& s) noexcept;
 
-// In that stage: sends the question off if it is not yet. True: the answer is there.
+// In that stage: sends the request unless it is sent. Returns true if the answer has arrived.
 bool IsAnswered(const Context& c, State& s) noexcept;
 
-// False: this is not the answer that is waited for.
+// Stores an answer. Returns false if it is not the one awaited.
 bool Take(const PathChecked& answer, State& s) noexcept;
 
 }  // namespace takt::group

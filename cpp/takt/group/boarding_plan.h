@@ -10,14 +10,14 @@
 namespace takt::group {
 
 struct BoardingPlan {
-  KinematicState carrier;     // travel in the cycle before
+  KinematicState carrier;     // travel in the previous cycle
   trajectory::Limits limits;  // of the clutch
   double lead = 0;            // initial travel of the clutch relative to the carrier [mm or rad]
   Boarding boarding;
 };
 
 // Plans boarding from rest for LookAhead::next onto the carrier of `to`. Returns false if no candidate is within the
-// limits, or if the transition between rides is estimated to be faster.
+// limits, or if the transition between carrier bindings is estimated to be faster.
 bool PlanBoarding(const Context& c, const State& s, const CarrierBinding& to, BoardingPlan& plan) noexcept;
 
 }  // namespace takt::group

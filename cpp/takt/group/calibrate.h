@@ -1,6 +1,6 @@
-// Frames from measured places (GR-46), as python/takt/calibrate.py has them outside the engine.
+// Frames from measured points (GR-46); python/takt/calibrate.py is the counterpart outside the engine.
 //
-// With places seen in the frame: the nearest one by the sum of squares (Kabsch, A solution for the best rotation to
+// With points also given in the frame: the best fit by least squares (Kabsch, A solution for the best rotation to
 // relate two sets of vectors, Acta Crystallographica A32, 1976).
 #pragma once
 
@@ -13,9 +13,9 @@ namespace takt::group {
 
 struct Calibrated {
   kinematics::Pose pose;  // in the MCS
-  double largest = 0;     // mm, of the residuals
+  double largest = 0;     // mm, largest residual
 };
-// Nothing: the places coincide, or lie on one line.
+// Returns nothing if points coincide or lie on one line.
 std::optional<Calibrated> FrameOf(const Calibrate& command) noexcept;
 
 }  // namespace takt::group

@@ -1,5 +1,5 @@
-// What can carry something, as a group sees it: belts, tables, tools of other groups, poses from elsewhere. Who they
-// are the engine knows.
+// Carriers as a group sees them: belts, tables, tools of other groups, poses from elsewhere. The engine knows what they
+// are.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 namespace takt::group {
 
 struct Carriers {
-  // Its number, from 1; 0: there is none of that name.
+  // Returns the number of the carrier of this name, from 1; 0 if there is none.
   std::uint32_t (*find)(void* owner, std::string_view name) noexcept = nullptr;
-  // As it is in this cycle: at the instant for which the members get their set points. Seen from the world.
+  // Returns its state in this cycle, at the instant for which the members get their set points; in the world.
   kinematics::Carrier (*at)(void* owner, std::uint32_t carrier) noexcept = nullptr;
-  // Where its travel is when its axis shows this position; of an axis with a modulus: the last time it did. Carriers
-  // without an axis: where the travel is now.
+  // Returns its travel [mm or rad] at which its axis shows this position; with a modulus: the last time that it did.
+  // Carriers without an axis: the present travel.
   double (*travel_at)(void* owner, std::uint32_t carrier, double position) noexcept = nullptr;
   void* owner = nullptr;
-  bool modules = false;  // pick and place modules are there, which want to know how long their orders take
+  bool modules = false;  // pick and place modules exist, which need the durations of their orders in advance
 
   std::uint32_t Find(std::string_view name) const noexcept { return find ? find(owner, name) : 0; }
   kinematics::Carrier At(std::uint32_t carrier) const noexcept {

@@ -1,4 +1,4 @@
-// What an axes group understands (PLCopen Part 4).
+// Commands of an axes group (PLCopen Part 4).
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ using axis::BufferMode;
 
 enum class CoordinateSystem : std::uint8_t { kAcs, kMcs, kWcs, kPcs };
 
-// How one move goes over into the next (with a blending buffer mode).
+// Transition from one move to the next (with a blending buffer mode).
 enum class TransitionMode : std::uint8_t {
   kNone,
   kStartVelocity,
@@ -35,8 +35,9 @@ enum class TransitionMode : std::uint8_t {
 
 enum class Reference : std::uint8_t { kAbsolute, kRelative };
 
-// Where to, or how far: x to c of the tool in Cartesian coordinate systems, a1 to a8 of axes in ACS; of auxiliary axes
-// in all. What is not given stays. Unset velocities, accelerations and jerks are the group's.
+// Target, or displacement of relative moves: x to c of the tool in Cartesian coordinate systems, a1 to a8 of the axes
+// in ACS; of auxiliary axes in every system. Unset coordinates keep their values. Unset velocities, accelerations and
+// jerks: those of the group.
 
 template <Reference kReference>
 struct MoveLinear {  // MC_MoveLinearAbsolute, MC_MoveLinearRelative
@@ -55,7 +56,7 @@ using MoveLinearRelative = MoveLinear<Reference::kRelative>;
 template <Reference kReference>
 struct MoveCircular {  // MC_MoveCircularAbsolute, MC_MoveCircularRelative
   path::CircMode circ_mode = path::CircMode::kBorder;
-  double aux_x = 0, aux_y = 0, aux_z = 0;  // mm, what they are says the mode
+  double aux_x = 0, aux_y = 0, aux_z = 0;  // mm; meaning by circ_mode (path/make.h)
   path::PathChoice path_choice = path::PathChoice::kCounterclockwise;
   double normal_x = 0, normal_y = 0, normal_z = 0;
   std::uint32_t turns = 0;
@@ -77,13 +78,13 @@ struct MoveDirect {  // MC_MoveDirectAbsolute, MC_MoveDirectRelative
   std::optional<double> a1{}, a2{}, a3{}, a4{}, a5{}, a6{}, a7{}, a8{};
   CoordinateSystem coordinate_system = CoordinateSystem::kAcs;
   std::uint32_t pcs = 1;
-  // Of a pose; keep: whatever is nearest.
+  // Configuration, for moves to a pose; kKeep: the one that the axes reach first (GR-44).
   kinematics::Shoulder shoulder = kinematics::Shoulder::kKeep;
   kinematics::Elbow elbow = kinematics::Elbow::kKeep;
   kinematics::Wrist wrist = kinematics::Wrist::kKeep;
-  double velocity_factor = 1;      // of the axes' own limits
-  double acceleration_factor = 1;  // the same
-  double jerk_factor = 1;          // the same
+  double velocity_factor = 1;      // 1e-3 to 1, of the axes' own limits
+  double acceleration_factor = 1;  // likewise
+  double jerk_factor = 1;          // likewise
   BufferMode buffer_mode = BufferMode::kAborting;
   TransitionMode transition_mode = TransitionMode::kNone;
   double transition_parameter = 0;
@@ -91,11 +92,11 @@ struct MoveDirect {  // MC_MoveDirectAbsolute, MC_MoveDirectRelative
 using MoveDirectAbsolute = MoveDirect<Reference::kAbsolute>;
 using MoveDirectRelative = MoveDirect<Reference::kRelative>;
 
-// Half an ellipse, upright over where the move begins and ends; a straight piece where their heights differ.
+// Half an ellipse, upright in the world over start and end; with a vertical line where their heights differ.
 struct MoveArch {
   std::optional<double> x{}, y{}, z{}, a{}, b{}, c{};
   std::optional<double> a1{}, a2{}, a3{}, a4{}, a5{}, a6{}, a7{}, a8{};
-  double height = 0;  // mm, of its crest above the higher of both
+  double height = 0;  // mm, of the crest above the higher of start and end
   CoordinateSystem coordinate_system = CoordinateSystem::kMcs;
   std::uint32_t pcs = 1;
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
@@ -116,7 +117,7 @@ struct MovePath {  // MC_MovePath, with the path that MC_PathSelect names
 
 struct MovePathSynchronized {  // MC_MovePathSynchronized
   Name path;
-  Name master;       // an axis
+  Name master;       // name of an axis that is not a member
   double ratio = 1;  // mm of the path per u of the master
   CoordinateSystem coordinate_system = CoordinateSystem::kMcs;
   std::uint32_t pcs = 1;
@@ -126,17 +127,17 @@ struct MovePathSynchronized {  // MC_MovePathSynchronized
 };
 
 struct SyncAxis {                // MC_SyncAxisToGroup
-  Name axis;                     // no member
+  Name axis;                     // name of an axis that is not a member
   double ratio_numerator = 1;    // u of the axis ...
   double ratio_denominator = 1;  // ... per mm of the path
 };
 
-// What a jog is seen from: the axes, the machine, the world, a product, or the tool itself.
+// Coordinate system of a jog: the axes, the machine, the world, a product, or the tool itself.
 enum class JogSystem : std::uint8_t { kAcs, kMcs, kWcs, kPcs, kTool };
 
-// Level-sensitive: moves at these speeds until it is released; give it again to change them, all 0 to let
-// go. x to c of the tool along and about the axes of the coordinate system, a1 to a8 of axes in ACS; of auxiliary axes
-// in all.
+// Level-sensitive: moves at these velocities until it is released. A further jog changes them, all 0 releases. x to c
+// of the tool along and about the axes of the coordinate system, a1 to a8 of the axes in ACS; of auxiliary axes in
+// every system.
 struct Jog {
   double x = 0, y = 0, z = 0;                                             // mm/s
   double a = 0, b = 0, c = 0;                                             // deg/s
@@ -146,14 +147,14 @@ struct Jog {
   std::optional<double> acceleration{}, deceleration{}, jerk{};
 };
 
-// Set points that come from outside, one StreamPoint after another (AX-114).
+// Follows set points from outside, given as StreamPoints (AX-114).
 struct Stream {
   std::int32_t key = 0;
-  double delay = 0.02;             // s
-  double timeout = 0.1;            // s
-  double velocity_factor = 1;      // of the axes' own limits, to get onto the set points
-  double acceleration_factor = 1;  // the same
-  double jerk_factor = 1;          // the same
+  double delay = 0.02;             // s, from the arrival of the first set point until it is due
+  double timeout = 0.1;            // s, longest time without a set point
+  double velocity_factor = 1;      // 1e-3 to 1, of the axes' own limits, to catch up with the set points
+  double acceleration_factor = 1;  // likewise
+  double jerk_factor = 1;          // likewise
 };
 struct StreamPoint {
   std::optional<double> x{}, y{}, z{}, a{}, b{}, c{};
@@ -162,7 +163,7 @@ struct StreamPoint {
   std::optional<double> v1{}, v2{}, v3{}, v4{}, v5{}, v6{}, v7{}, v8{};  // u/s
   CoordinateSystem coordinate_system = CoordinateSystem::kMcs;
   std::uint32_t pcs = 1;
-  std::optional<double> time{};  // s, by the sender's clock; unset: when it comes
+  std::optional<double> time{};  // s, by the sender's clock; unset: time of arrival
   std::int32_t key = 0;
 };
 
@@ -173,14 +174,14 @@ struct Stop {  // MC_GroupStop
 struct Halt {  // MC_GroupHalt
   std::optional<double> deceleration{}, jerk{};
 };
-struct Interrupt {  // MC_GroupInterrupt: comes to rest on the path, which Continue goes on with
+struct Interrupt {  // MC_GroupInterrupt: comes to rest on the path, which Continue resumes
   std::optional<double> deceleration{}, jerk{};
 };
 struct Continue {};  // MC_GroupContinue
 
 struct AddAxis {  // MC_AddAxisToGroup
   Name axis;
-  std::uint32_t ident = 1;  // its place, from 1
+  std::uint32_t ident = 1;  // its index in the group, from 1
 };
 struct RemoveAxis {  // MC_RemoveAxisFromGroup
   std::uint32_t ident = 1;
@@ -192,8 +193,8 @@ struct Reset {};           // MC_GroupReset
 struct Power {             // MC_Power of every member
   bool enable = true;
 };
-struct Home {};       // MC_GroupHome: every member as its `homing` says
-struct SetPosition {  // MC_GroupSetPosition: other numbers for where the group is
+struct Home {};       // MC_GroupHome: every member by its own `homing`
+struct SetPosition {  // MC_GroupSetPosition: assigns new coordinates to the present position
   std::optional<double> x{}, y{}, z{}, a{}, b{}, c{};
   std::optional<double> a1{}, a2{}, a3{}, a4{}, a5{}, a6{}, a7{}, a8{};
   CoordinateSystem coordinate_system = CoordinateSystem::kAcs;
@@ -201,13 +202,13 @@ struct SetPosition {  // MC_GroupSetPosition: other numbers for where the group 
 };
 struct SetOverride {  // MC_GroupSetOverride
   double velocity_factor = 1;
-  double acceleration_factor = 1;  // of what is commanded from now on
-  double jerk_factor = 1;          // the same
+  double acceleration_factor = 1;  // for commands given from now on
+  double jerk_factor = 1;          // likewise
 
   bool operator==(const SetOverride&) const = default;
 };
 struct SetKinTransform {  // MC_SetKinTransform
-  bool enable = true;     // false: axes only, without a tool
+  bool enable = true;     // false: axes only, no tool
 };
 struct SetCartesianTransform {  // MC_SetCartesianTransform: a PCS in the MCS
   std::uint32_t pcs = 1;
@@ -222,13 +223,13 @@ struct SetCoordinateTransform {  // MC_SetCoordinateTransform: a PCS in any othe
   std::uint32_t reference_pcs = 1;
 };
 
-// The tool is another one (GR-46): where its centre point is on the flange.
+// Changes the tool (GR-46): the pose of the tool centre point on the flange.
 struct SetTool {
   double x = 0, y = 0, z = 0;  // mm
   double a = 0, b = 0, c = 0;  // deg
 };
 
-// A PCS from three or four measured places of the tool (GR-46).
+// Computes a PCS from three or four measured positions of the tool (GR-46).
 struct Calibrate {
   std::uint32_t pcs = 1;
   // mm, in the MCS.
@@ -236,74 +237,75 @@ struct Calibrate {
   double x2 = 0, y2 = 0, z2 = 0;
   double x3 = 0, y3 = 0, z3 = 0;
   std::optional<double> x4{}, y4{}, z4{};
-  // mm, the same places as they are in the PCS; unset: the first is its origin, the second on X, the third towards Y.
+  // mm, the same points in the PCS. Unset: X points from point 1 to point 2, point 3 lies towards +Y; the origin is
+  // point 1, or point 4 if given.
   std::optional<double> seen_x1{}, seen_y1{}, seen_z1{}, seen_x2{}, seen_y2{}, seen_z2{};
   std::optional<double> seen_x3{}, seen_y3{}, seen_z3{}, seen_x4{}, seen_y4{}, seen_z4{};
-  std::optional<double> largest_residual{};  // mm
+  std::optional<double> largest_residual{};  // mm, above which the command fails; unset: no limit
 };
 
-// When a command that is no motion itself takes effect.
+// When a command that is not itself a motion takes effect.
 enum class ExecutionMode : std::uint8_t {
-  kImmediately,  // at once, whatever runs
-  kDelayed,      // when the motion in progress is over
-  kQueued,       // when all motions given before are over
+  kImmediately,  // at once, whatever is in execution
+  kDelayed,      // at the end of the move in execution
+  kQueued,       // at the end of all moves given before
 };
 
-// A PCS that goes along with something (MC_SetDynCoordTransform): a belt, a table, the tool of another group, or a pose
-// from elsewhere. pose = origin * travel since `recorded_position` * (x, y, z, a, b, c).
+// Binds a PCS to a carrier (MC_SetDynCoordTransform): a belt, a table, the tool of another group, or a pose from
+// elsewhere. pose = origin * travel since `recorded_position` * (x, y, z, a, b, c).
 struct SetDynCoordTransform {
   std::uint32_t pcs = 1;
-  Name carrier;  // name of the belt, the table, the group or the pose
+  Name carrier;  // name of the belt, table, group or pose
   double x = 0, y = 0, z = 0;
   double a = 0, b = 0, c = 0;
-  std::optional<double> recorded_position{};  // of the belt's axis, u; unset: where it is now
+  std::optional<double> recorded_position{};  // u, position of the belt's axis; unset: the present one
 };
 
-// The tool goes along with a belt, by itself and beneath moves in that PCS (MC_TrackConveyorBelt).
+// Synchronizes the tool with an object on a belt; moves in its PCS are superimposed (MC_TrackConveyorBelt).
 struct TrackConveyorBelt {
   Name belt;
-  std::uint32_t pcs = 1;  // becomes that of the object
-  // Another origin than that of the belt, in the MCS; unset: the belt's own.
+  std::uint32_t pcs = 1;  // becomes the coordinate system of the object
+  // Origin of the belt in the MCS, in place of its own; all unset: its own, else unset values are 0.
   std::optional<double> origin_x{}, origin_y{}, origin_z{}, origin_a{}, origin_b{}, origin_c{};
   double x = 0, y = 0, z = 0, a = 0, b = 0, c = 0;  // InitialObjectPosition, on the belt
-  std::optional<double> recorded_position{};        // of the belt's axis, u; unset: where it is now
-  // Of the belt, from the recorded position (and x further on).
+  std::optional<double> recorded_position{};        // u, position of the belt's axis; unset: the present one
+  // Range of tracking: travel of the belt since the recorded position, at the start also x.
   double start_distance = 0;             // mm
-  std::optional<double> end_distance{};  // mm; unset: none
+  std::optional<double> end_distance{};  // mm; unset: unlimited
   // TrackOptions; unset or 0: as fast as the limits allow.
   std::optional<double> sync_in_conveyor_distance{}, sync_in_tcp_distance{};    // mm
   std::optional<double> sync_out_conveyor_distance{}, sync_out_tcp_distance{};  // mm
   ExecutionMode execution_mode = ExecutionMode::kImmediately;
 };
 
-// The same on a table that turns (MC_TrackRotaryTable).
+// The same on a rotary table (MC_TrackRotaryTable).
 struct TrackRotaryTable {
   Name table;
   std::uint32_t pcs = 1;
   double x = 0, y = 0, z = 0, a = 0, b = 0, c = 0;
-  std::optional<double> recorded_position{};                // of the table's axis, u
-  double start_angle = 0;                                   // deg, in the sense in which the table turns
-  std::optional<double> end_angle{};                        // deg
-  std::optional<double> sync_in_angle{}, sync_out_angle{};  // deg of the table
+  std::optional<double> recorded_position{};                // u, position of the table's axis; unset: the present one
+  double start_angle = 0;                                   // deg, in the direction in which the table turns
+  std::optional<double> end_angle{};                        // deg; unset: unlimited
+  std::optional<double> sync_in_angle{}, sync_out_angle{};  // deg of the table; unset or 0: by the limits
   ExecutionMode execution_mode = ExecutionMode::kImmediately;
 };
 
-// What became of a question whether a path is free (path_check_request.h). The engine alone gives it to itself.
+// Answer to a PathCheckRequest (path_check_request.h). Given by the engine only.
 struct PathChecked {
-  std::uint64_t number = 0;  // of the question
+  std::uint64_t number = 0;  // of the request
   workspace::Trouble trouble = workspace::Trouble::kNone;
-  kinematics::Reason reason = kinematics::Reason::kNone;  // no position of the links: why
-  // What meets what: numbers from 1 in workspace::PartNames; 0: none.
+  kinematics::Reason reason = kinematics::Reason::kNone;  // why the axes cannot take a pose, if `trouble` is kNoPose
+  // The two parts that collide: numbers from 1 in workspace::PartNames; 0: none.
   std::uint32_t first = 0;
   std::uint32_t second = 0;
-  std::uint32_t element = 0;  // of a path of the machine file, from 1; 0: of no such path
-  double place = 0;           // from the beginning of the move, mm or what it counts
+  std::uint32_t element = 0;  // of a path of the machine file, from 1; 0: not such a path
+  double place = 0;           // distance from the start of the move, in the unit of its length
   bool on_blend = false;      // on the blend into the move, or into that element
 
   bool operator==(const PathChecked&) const = default;
 };
 
-// The plan that a group has asked for is there (trajectory/path_timing.h). The engine alone gives it to itself.
+// The plan ordered by a group is computed (trajectory/path_timing.h). Given by the engine only.
 struct PathPlanned {
   std::uint64_t number = 0;  // of the order
 };
@@ -315,9 +317,9 @@ using Command = std::variant<MoveLinearAbsolute, MoveLinearRelative, MoveCircula
                              SetCoordinateTransform, SetTool, Calibrate, SetDynCoordTransform, TrackConveyorBelt,
                              TrackRotaryTable, MoveArch, Jog, Stream, StreamPoint, PathChecked, PathPlanned>;
 
-// What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
+// Returns what is wrong with a command, as a sentence for users; empty: nothing. Not for the cycle.
 std::string Diagnose(const Command& command);
-// The error of a command with which something is wrong: the same that the cycle finds in its numbers.
+// Returns the error of a command that Diagnose rejects; the same that the cycle reports for it.
 ErrorId ErrorOf(const Command& command) noexcept;
 
 void describe(Enumeration<CoordinateSystem>&);

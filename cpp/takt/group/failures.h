@@ -1,4 +1,4 @@
-// Why no position of the axes leads to a place, for the sentence of a refused move (GR-44).
+// Why the axes cannot reach a pose, for the sentence of a refused move (GR-44).
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace takt::group {
 
-// In each configuration of a mechanism that was tried: why, and which axis would leave its range. Fits into
+// For each configuration of a mechanism that was tried: the reason, and the axis that would leave its range. Fits into
 // FeedbackEvent::detail, five bits for each configuration besides the number of the group.
 class Failures {
  public:
@@ -22,14 +22,14 @@ class Failures {
   // `axis`: index among the group's members.
   void AddLimit(const kinematics::Configuration& in, std::size_t axis, bool upper) noexcept;
 
-  // 0: there is none. `group`: its number, from 1.
+  // Returns the code of FeedbackEvent::detail; 0 if there is no failure. `group`: its number, from 1.
   std::uint64_t Detail(std::uint32_t group) const noexcept;
   std::uint32_t group() const noexcept { return group_; }
-  // In words, without a full stop; empty if all are singular. `axes`: names of the group's members.
+  // Returns the sentence, without a full stop; empty if all are singular. `axes`: names of the group's members.
   std::string Sentence(std::span<const std::string> axes) const;
 
  private:
-  std::array<std::uint8_t, 8> codes_{};  // by shoulder, elbow, and wrist
+  std::array<std::uint8_t, 8> codes_{};  // by shoulder, elbow and wrist
   std::uint32_t group_ = 0;
 };
 

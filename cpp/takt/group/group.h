@@ -22,7 +22,7 @@
 
 namespace takt::group {
 
-// The axes of the machine, to be told what to do.
+// The axes of the machine, to be commanded.
 struct Axes {
   std::span<axis::State> states{};
   std::span<const axis::AxisParams> params{};
@@ -32,24 +32,24 @@ struct Axes {
   axis::Context Of(std::size_t axis) const noexcept { return context(owner, axis); }
 };
 
-// Where the mechanism stands and what is on its flange, as frames: worked out when a machine is made, and when its tool
-// is changed (SetTool).
+// The mounting of the mechanism and of its tool, as frames: computed when a machine is made, and when its tool is
+// changed (SetTool).
 struct Mounting {
   kinematics::Frame base;          // of the MCS in the world ...
-  kinematics::Frame base_inverse;  // ... and the other way round
+  kinematics::Frame base_inverse;  // ... and its inverse
   kinematics::Frame tool;          // of the TCP on the flange
   kinematics::Frame tool_inverse;
 };
 Mounting MakeMounting(const GroupParams& params);
 void MountTool(const kinematics::Frame& tool, Mounting& mounting) noexcept;
 
-// What every stage gets besides the group itself.
+// What every stage gets besides the state of the group.
 struct Context {
   const GroupParams& params;
   Mounting& mounting;
   const kinematics::Kinematics* kinematics = nullptr;  // null: none
   std::span<const PathTable> paths{};
-  // For each axis of the machine the group that it is a member of, from 1; 0: none.
+  // For each axis of the machine the number of its group, from 1; 0: none.
   std::span<std::uint32_t> group_of{};
   std::uint32_t number = 0;  // of this group, from 1
   Axes axes;
@@ -57,31 +57,29 @@ struct Context {
   FeedbackSink& feedback;
   LookAhead& ahead;
   Carriers carriers{};
-  PathCheckRequests* questions =
-      nullptr;  // where paths are asked about before they start; null: nobody knows what is free
+  PathCheckRequests* questions = nullptr;  // receives path check requests; null: paths are not checked
   Zones zones{};
-  bool plans_elsewhere = false;  // plans are made outside the cycle, which the command PathPlanned then tells
+  bool plans_elsewhere = false;  // plans are computed outside the cycle and announced by PathPlanned
 };
 
-// As it stands when power comes on. `axes`: index of each member.
+// Returns the state at power-on. `axes`: index of each member.
 State MakeState(std::span<const std::uint32_t> axes) noexcept;
 
-// command: carries a command out, queues it or refuses it; reports either way. `lease_s` > 0: of a held stop or a
-// jog.
+// Stage command: executes, queues or refuses a command, and reports it. `lease_s` > 0: of a held stop or a jog.
 void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, State& s) noexcept;
-// Lets go of a held stop or a jog with this ticket, and extends its lease. False: there is none.
+// Releases a held stop or a jog with this ticket; extends its lease. Both return false if there is none.
 bool Release(const Context& c, Ticket ticket, State& s) noexcept;
 bool Renew(const Context& c, Ticket ticket, State& s) noexcept;
 
-// What the group is about ends before its axes are switched off: it goes to ErrorStop where it moved (AX-100).
+// Ends what the group does before its axes are switched off: ErrorStop if it was active (AX-100).
 void EmergencyStop(const Context& c, State& s) noexcept;
 
-// move: before the members, behind the axis that a path follows.
+// Stage move: before the members, after the axis that a path follows.
 void Step(const Context& c, State& s) noexcept;
 
 void Publish(const Context& c, const State& s, Outputs& out) noexcept;
 
-// Its members may not be moved by themselves (error 1000).
+// Returns true if its members may not be moved individually (error 1000).
 bool Owns(const State& s) noexcept;
 
 }  // namespace takt::group

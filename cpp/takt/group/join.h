@@ -1,4 +1,4 @@
-// Joining a stretch to the path that is planned already: with a blend, as it is, or behind a stop.
+// Joins a stretch to the planned path: with a blend, directly, or after a stop.
 #pragma once
 
 #include "takt/group/plan.h"
@@ -7,21 +7,22 @@ namespace takt::group {
 
 inline constexpr double kNoEnd = 1e12;  // mm
 
-// Appends `ahead.next`, and a blend before it where there is one. How many inverses of the kinematics that took.
+// Appends `ahead.next`, and a blend before it if there is one. Returns the number of inverse kinematics used, about.
 int Join(const Context& c, State& s) noexcept;
 
-// The blend that a move, or an element of a path, asks for at the corner before it.
+// The blend that a move, or an element of a path, demands at the corner before it.
 struct CornerBlend {
   Stretch stretch;
-  double first = 0;           // so far before the corner it begins ...
-  double second = 0;          // ... and so far behind it ends
-  double reach = 0;           // what these may be at most ...
-  double deviation = kNoEnd;  // ... and how far from the lines it
-  bool to_middle = false;     // of one of the lines
+  double first = 0;           // mm, from the corner back to its start ...
+  double second = 0;          // ... and from the corner on to its end
+  double reach = 0;           // mm, largest value of both ...
+  double deviation = kNoEnd;  // ... and of the distance from the lines to the blend
+  bool to_middle = false;     // it reaches the middle of one of the lines
 };
-// False: there is none. Depends on nothing but the arguments, the limits in `ahead.window` and where the corner is, in
-// `ahead.end_joints`: what was checked is what is gone, but for chords of a curve, whose blends are made again from
-// middle to middle. Where paths are checked, only chords no longer than the margin are: there it makes less than that.
+// Returns false if there is no blend. Depends on nothing but the arguments, the limits in `ahead.window` and the axes
+// at the corner, in `ahead.end_joints`: the blend that was checked is the one that is executed, except for chords of a
+// curve, whose blends are made again from middle to middle. Where paths are checked this is done only for chords no
+// longer than the margin: there it makes less than that.
 bool FindBlend(const Context& c, const State& s, const Request& move, std::uint32_t element, const Stretch& before,
                const Stretch& after, int& work, CornerBlend& out) noexcept;
 

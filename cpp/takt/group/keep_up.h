@@ -1,10 +1,10 @@
-// How fast a path may go on where it is not as it was planned: the motion comes later than was expected (an override,
-// an interrupt, a master), or what carries it changes its speed. From one ride to the next the way of the tool is then
-// another one and may ask the axes for more than the nodes of the window, and the rehearsal, know of.
+// Bounds the path speed where a carried path differs from its plan: the motion is later than expected (override,
+// interrupt, master), or a carrier changes its velocity. Between two carrier bindings the tool then moves along another
+// path, which may demand more of the axes than the nodes of the window, and the rehearsal, account for.
 //
-// From then on, until the tool is where it goes over to, places ahead are looked at one after the other as the motion
-// is expected to find them, and each says how fast it may be gone past. The motion is slowed down before them. Nothing
-// is ever faster than planned.
+// From then on, until the tool has changed over, points ahead are checked one after the other as the motion is expected
+// to find them; each gives a bound of the path speed, and the motion is slowed down before it. It is never faster than
+// planned.
 #pragma once
 
 #include <array>
@@ -16,25 +16,25 @@ namespace takt::group {
 struct Context;
 struct State;
 
-inline constexpr std::size_t kWatched = 16;  // places
+inline constexpr std::size_t kWatched = 16;  // points ahead
 
-// What is known of the places ahead; follows from the state and is no part of it, as the plan.
+// The points ahead; follows from the state and, like the plan, is not part of it.
 struct KeepUp {
   struct Place {
-    double velocity = 0;      // mm/s, of the motion along the path
-    double acceleration = 0;  // mm/s², what the axes can do besides
-    double change = 0;        // mm/s², of the acceleration in the time in which it builds up
+    double velocity = 0;      // mm/s, bound of the path speed
+    double acceleration = 0;  // mm/s², path acceleration that the axes have left
+    double change = 0;        // mm/s², change of acceleration within the build-up time
   };
   bool on = false;
   double share = 1;                                        // of the axes' limits that may be used
-  double begin = 0;                                        // mm along the path, of the first place ...
-  double apart = 0;                                        // ... and between one and the next
-  double brake = std::numeric_limits<double>::infinity();  // mm/s², as strongly as the axes can
-  std::uint32_t next = 0;                                  // to be looked at
+  double begin = 0;                                        // mm, arc length of the first point ...
+  double apart = 0;                                        // ... and distance from one point to the next
+  double brake = std::numeric_limits<double>::infinity();  // mm/s², deceleration that the axes have left
+  std::uint32_t next = 0;                                  // point to be checked
   std::array<Place, kWatched> places{};
 };
 
-// The speed wanted along the path, `wish` at most.
+// Returns the demanded path speed [mm/s]: at most `wish`, except as far as accelerations have to be taken back.
 double SlowDown(const Context& c, const State& s, double wish) noexcept;
 
 }  // namespace takt::group

@@ -1,4 +1,4 @@
-// From a command that moves a group to what is kept of it.
+// Makes the request that is kept of a motion command.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 
 namespace takt::group {
 
-// Nothing: the command does not move along a path. An error: it cannot.
+// Returns nothing if the command is not a motion along a path. With `error`: the motion is refused.
 struct MadeRequest {
   Request move;
   ErrorId error = ErrorId::kNone;

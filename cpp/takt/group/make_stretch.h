@@ -1,44 +1,46 @@
-// The geometry of one move, from where the plan ends.
+// Geometry of one move, from the end of the plan.
 #pragma once
 
 #include "takt/group/plan.h"
 
 namespace takt::group {
 
-// Faster and stronger than anything: what has no limit along the way has those of the axes.
+// A limit that is never reached: motions without limits along the path have those of the axes.
 inline constexpr double kUnlimited = 1e12;
 
-// Fills `ahead.next` from where `ahead` ends. An error: there is no such path (State::problem and reason say why).
+// Fills `ahead.next` from the end of `ahead`. Returns an error if there is no such path (State::problem and reason:
+// why).
 ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element, LookAhead& ahead, State& s) noexcept;
 
-// The same segment, seen from where a frame is seen from.
+// Returns the segment transformed by a frame.
 path::Segment Moved(const Frame& frame, const path::Segment& segment) noexcept;
 
-// How many stretches a move is made of; of an arch, once the first is made.
+// Returns the number of stretches of a move; of an arch only once the first is made.
 std::size_t ElementsOf(const Context& c, const Request& move) noexcept;
 
-// The axes for a tool on a stretch that moves `along` its segment.
+// Computes the axes for a tool on a stretch in a motion `along` its segment.
 kinematics::Reason AxesFor(const Context& c, const State& s, const Stretch& stretch, const path::MovingFrame& tool,
                            const KinematicState& along, const kinematics::Joints& near,
                            kinematics::JointMotion& motion) noexcept;
 
-// Why the axes cannot go on from `near` to a place of a stretch; as FeedbackEvent::detail.
+// Returns why the axes cannot continue from `near` to `way` on a stretch; as FeedbackEvent::detail.
 std::uint64_t FailuresOn(const Context& c, const State& s, const Stretch& stretch, double way,
                          kinematics::Reason reason, const kinematics::Joints& near) noexcept;
 
-// Velocities and accelerations of all coordinates of LimitsOf: the axes, then the tool along and about X, Y and Z of
-// the world.
+// Returns velocities and accelerations of all coordinates of LimitsOf: the axes, then the tool along and about X, Y and
+// Z of the world.
 trajectory::PathSlopes CoordinatesOf(const Context& c, const kinematics::JointMotion& motion,
                                      const path::MovingFrame& tool) noexcept;
 
-// What a motion along the path asks of all coordinates of LimitsOf where it is carried, if that goes on as it does now.
-// `positions` of the place before, NaN: none. False: it is not carried there, or the axes cannot be so.
+// Computes what a motion along a carried path demands of all coordinates of LimitsOf `ahead_s` from now, with carriers
+// that move on as now. `positions`: in, of the previous point (NaN: none). Returns false if the path is not carried
+// there, or if the axes cannot follow.
 bool Foresee(const Context& c, const State& s, const KinematicState& along, double ahead_s,
              trajectory::PathCoordinateValues& positions, trajectory::PathCoordinateValues& velocities,
              trajectory::PathCoordinateValues& accelerations) noexcept;
 
-// Use of a coordinate by carriers: velocity, acceleration by the curvature along their travel, and mixed acceleration
-// per path speed.
+// What carriers take of a coordinate: velocity, acceleration by the curvature along their travel, and mixed
+// acceleration per path speed.
 struct CarrierPart {
   double velocity = 0;
   double bend = 0;
@@ -49,7 +51,7 @@ struct CarrierPart {
 trajectory::Left LeftBeside(const trajectory::CoordinateLimits::One& of, const CarrierPart& part, double speed,
                             const Boarding* boarding = nullptr, std::size_t k = 0) noexcept;
 
-// Slopes of all coordinates of LimitsOf and what is left of their limits, and the axes.
+// Computes the axes, the slopes of all coordinates of LimitsOf, and the shares of their limits that carriers leave.
 kinematics::Reason SlopesOn(const Context& c, const State& s, const Stretch& stretch, double way,
                             const kinematics::Joints& near, trajectory::PathPoint& point,
                             kinematics::JointMotion& motion) noexcept;

@@ -1,4 +1,4 @@
-// A group and its members: who belongs to it, what they do, what becomes of it in their faults.
+// A group and its members: membership, commands to them, and their faults.
 #pragma once
 
 #include "takt/group/group.h"
@@ -7,20 +7,20 @@ namespace takt::group {
 
 void Enter(GroupState to, State& s) noexcept;
 
-// What is being done besides moves is over: its command is told, if it was not before.
+// Ends what the group does besides moves, and reports its command unless that has been done.
 void EndTask(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
 
 axis::State& MemberOf(const Context& c, const State& s, std::size_t place) noexcept;
 axis::Context ContextOf(const Context& c, const State& s, std::size_t place) noexcept;
 
-// Gives a member a command; why it was refused, if it was.
+// Gives a member a command. Returns the error if it was refused.
 ErrorId Tell(const Context& c, const State& s, std::size_t place, const axis::Command& command) noexcept;
-// What the member would answer; nothing changes.
+// Returns the error that the member would report; changes nothing.
 ErrorId Try(const Context& c, const State& s, std::size_t place, const axis::Command& command) noexcept;
-// The same for all; the first refusal, the others are told all the same.
+// Tell for all members; all get the command. Returns the first error.
 ErrorId TellAll(const Context& c, const State& s, const axis::Command& command) noexcept;
 
-// Switches all members off, and what follows them as members of gantries (AX-101). The first refusal, as above.
+// Switches off all members and the gantry axes that follow them (AX-101). Returns the first error of a member.
 ErrorId SwitchOffAll(const Context& c, const State& s) noexcept;
 
 template <typename Test>
@@ -31,15 +31,15 @@ bool AllMembers(const Context& c, const State& s, const Test& test) noexcept {
   return true;
 }
 
-// All members are where they are told to be, so far as anybody can see: what is asked of them is within their limits.
+// Returns true if all members are at their demands: in sync, or within max(1e-3 u, TrackingParams::tolerance).
 bool AreInStep(const Context& c, const State& s) noexcept;
 
 ErrorId Add(const Context& c, const AddAxis& command, State& s) noexcept;
 ErrorId Remove(const Context& c, const RemoveAxis& command, State& s) noexcept;
 ErrorId Ungroup(const Context& c, State& s) noexcept;
 
-// A member is in ErrorStop, or no longer goes by the group while it should: the error, whose feedback names the axis;
-// kNone: all is well.
+// Returns the error if a member is in ErrorStop, or no longer guided although the group guides its members, and sets
+// LookAhead::blame to its axis; kNone if there is no fault.
 ErrorId FaultOfMembers(const Context& c, const State& s) noexcept;
 
 }  // namespace takt::group

@@ -19,35 +19,35 @@ namespace takt::group {
 struct Outputs {
   GroupState state = GroupState::kDisabled;
   ErrorId error = ErrorId::kNone;
-  // The tool centre point in the machine coordinate system as commanded; NaN without kinematics.
+  // Commanded pose of the tool centre point in the machine coordinate system; NaN without kinematics.
   double x = 0;  // mm
   double y = 0;  // mm
   double z = 0;  // mm
   double a = 0;  // deg
   double b = 0;  // deg
   double c = 0;  // deg
-  // The same as measured.
+  // Actual pose, likewise.
   double actual_x = 0;
   double actual_y = 0;
   double actual_z = 0;
   double actual_a = 0;
   double actual_b = 0;
   double actual_c = 0;
-  double velocity = 0;         // mm/s, of the commanded place: the length of its vector
-  double acceleration = 0;     // mm/s², the same
+  double velocity = 0;         // mm/s, commanded speed of the tool centre point
+  double acceleration = 0;     // mm/s², magnitude of its commanded acceleration
   double actual_velocity = 0;  // mm/s
   // Along the path, since the group began to move from rest.
   double path_position = 0;      // mm
   double path_velocity = 0;      // mm/s
   double path_acceleration = 0;  // mm/s²
-  double path_left = 0;          // mm, of what is known
-  double time_left = 0;          // s until it stands at the end of what was commanded; NaN: not known
-  double path_error = 0;         // mm, between the place commanded for this cycle and the measured one
+  double path_left = 0;          // mm, remaining path as far as it is planned
+  double time_left = 0;          // s, until the motion rests at the end of all commanded moves; NaN: not known
+  double path_error = 0;         // mm, from the position commanded for this cycle to the actual one; 0: a member is off
   double override_factor = 1;
-  std::uint64_t command = 0;   // ticket of the move in control; 0: none
+  std::uint64_t command = 0;   // ticket of the move in execution; 0: none
   std::uint32_t buffered = 0;  // moves that wait
-  std::uint32_t axes = 0;      // members
-  // Number of the axis in each place, from 1; 0: none.
+  std::uint32_t axes = 0;      // number of members
+  // Number of the axis at each index of the group, from 1; 0: none.
   std::uint32_t member1 = 0;
   std::uint32_t member2 = 0;
   std::uint32_t member3 = 0;
@@ -56,37 +56,38 @@ struct Outputs {
   std::uint32_t member6 = 0;
   std::uint32_t member7 = 0;
   std::uint32_t member8 = 0;
-  // Product coordinate systems as they are now, seen from that of the machine.
+  // Present poses of the product coordinate systems in the machine coordinate system.
   kinematics::Pose pcs1{}, pcs2{}, pcs3{}, pcs4{}, pcs5{}, pcs6{}, pcs7{}, pcs8{};
   kinematics::Pose pcs9{}, pcs10{}, pcs11{}, pcs12{}, pcs13{}, pcs14{}, pcs15{}, pcs16{};
-  // Going along with an object on something that moves; NaN without one.
+  // Synchronization with an object on a carrier; NaN without one.
   TrackState track_state = TrackState::kNone;
   bool in_sync = false;
-  double track_lag = 0;  // mm (tables: rad) of the carrier's travel, from the object to the tool
+  double track_lag = 0;  // mm (tables: rad), travel of the carrier minus that of the tool
   double object_x = 0;   // mm, of the tool as commanded, in the coordinate system of the object
   double object_y = 0;
   double object_z = 0;
   double object_a = 0;  // deg
   double object_b = 0;
   double object_c = 0;
-  bool kinematics_on = false;  // there are kinematics, and they are switched on
-  bool in_position = false;    // stands, and has nothing to do
-  bool interrupted = false;    // rests on the path until it is continued
-  bool synchronized = false;   // a path that follows a master is in step with it
+  bool kinematics_on = false;  // there are kinematics with all their members, and they are switched on
+  bool in_position = false;    // in Standby with no move waiting
+  bool interrupted = false;    // at rest, or coming to rest, on the path until continued
+  bool synchronized = false;   // a path that follows a master is in sync with it
   // Why the last move was refused or ended.
-  kinematics::Reason reason = kinematics::Reason::kNone;   // no position of the axes
-  path::Problem problem = path::Problem::kNone;            // no such path
-  double blocked_at = 0;                                   // mm from the beginning of that move
-  std::uint32_t blocked_element = 0;                       // there, of a path of the machine file, from 1; 0: no path
-  workspace::Trouble trouble = workspace::Trouble::kNone;  // it is not free
-  // What meets what: numbers from 1 in workspace::PartNames; 0: none.
+  kinematics::Reason reason = kinematics::Reason::kNone;  // why the axes cannot take a pose
+  path::Problem problem = path::Problem::kNone;           // why there is no such path
+  // mm, from the start of that move; in a path from the start of `blocked_element` (with `trouble`: of the path).
+  double blocked_at = 0;
+  std::uint32_t blocked_element = 0;  // element of a path of the machine file, from 1; 0: no such path
+  workspace::Trouble trouble = workspace::Trouble::kNone;  // why the path is not free
+  // The two parts that collide: numbers from 1 in workspace::PartNames; 0: none.
   std::uint32_t first_part = 0;
   std::uint32_t second_part = 0;
   bool on_blend = false;         // on the blend into that move or element
-  bool checking = false;         // the next path is being checked
-  std::uint32_t zones = 0;       // that the group has, a mask
+  bool checking = false;         // a path check is pending
+  std::uint32_t zones = 0;       // held by the group, a mask
   std::uint32_t waits_for = 0;   // number of the group that it waits for at a zone, from 1; 0: it does not wait
-  std::uint32_t waits_zone = 0;  // at this one, from 1
+  std::uint32_t waits_zone = 0;  // number of the zone, from 1; 0: none
   kinematics::Pose tool{};       // of the tool centre point on the flange
 };
 

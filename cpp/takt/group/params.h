@@ -1,4 +1,4 @@
-// What a machine file says about one axes group, and about paths for groups.
+// Parameters of one axes group, and of paths for groups, in a machine file.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +13,13 @@
 
 namespace takt::group {
 
-// Default limits along the path, for moves that give none of their own; all > 0.
+// Default limits along the path, for moves that give none; all > 0.
 struct PathLimits {
   double velocity = 0;                   // mm/s
   double acceleration = 0;               // mm/s²
   std::optional<double> deceleration{};  // mm/s²; unset: as acceleration
   double jerk = 0;                       // mm/s³
-  bool planned_ahead = true;             // with a stop that is always known (trajectory/path_timing.h)
+  bool planned_ahead = true;             // timing laws that are known up to rest (trajectory/path_timing.h)
 };
 
 // Limits of the TCP along and about each of X, Y and Z of the world frame; unset: only those of the axes apply.
@@ -32,32 +32,32 @@ struct ToolLimits {
   std::optional<double> angular_jerk{};          // deg/s³
 };
 
-// The most that jogs may ask for; faster ones are held to it.
+// Upper limits of jogs; faster ones are limited to them.
 struct JogLimits {
   // Speed of the TCP and angular speed of the tool, also for jogs of axes; unset: the limits of moves.
   std::optional<double> velocity{};          // mm/s
   std::optional<double> angular_velocity{};  // deg/s
-  double axis_factor = 1;                    // 1e-3 to 1, of the velocity limits of axes that are jogged
+  double axis_factor = 1;                    // 1e-3 to 1, of the velocity limits of jogged axes
 };
 
-// Once in sync with a moving object. kStay: keeps in sync, with the limits of the axes only; kLimited: keeps the limits
-// of the group, and may lose it.
+// Behaviour once in sync with a moving object. kStay: stays in sync, within the limits of the axes only; kLimited:
+// keeps the limits of the group, and may lose sync.
 enum class AfterSync : std::uint8_t { kStay, kLimited };
 
-// How the group follows objects on belts.
+// Tracking of objects on belts and tables.
 struct TrackingParams {
   AfterSync after_sync = AfterSync::kStay;
   // Largest lag that counts as in sync: along the belt [mm] or table [rad], and of each axis [u] (at least 1e-3 u).
   double tolerance = 0;
-  double tolerance_time_s = 0;    // for which the lag has to be within that
-  bool override_in_sync = false;  // the override scales getting into sync, too
-  double zones_ahead_s = 0.5;     // 0 to 10: so long before the tool is carried into a zone, it is taken
-  bool board = false;             // from rest onto a belt at constant speed by time, beside the path (boarding.h)
+  double tolerance_time_s = 0;    // time for which the lag must stay within the tolerance
+  bool override_in_sync = false;  // the override also scales the velocity of getting into sync
+  double zones_ahead_s = 0.5;     // 0 to 10: time before the tool is carried into a zone at which the zone is taken
+  bool board = false;             // gets onto a belt at constant speed from rest by time, beside the path (boarding.h)
 };
 
 struct GroupParams {
   std::string name;
-  std::vector<std::string> axes;  // names: those of the kinematics first, in its order, then auxiliary ones
+  std::vector<std::string> axes;  // names: those of the kinematics first, in its order, then auxiliary axes
   std::optional<kinematics::KinematicsParams> kinematics{};
   PathLimits path;
   ToolLimits tool_limits;
@@ -68,7 +68,7 @@ struct GroupParams {
   std::optional<workspace::WorkspaceParams> workspace{};  // unset: paths are not checked
 };
 
-// A place on a path of the machine file.
+// A pose on a path of the machine file.
 struct PathPose {
   double x = 0, y = 0, z = 0;           // mm
   std::optional<double> a{}, b{}, c{};  // deg; unset: as before
@@ -76,22 +76,22 @@ struct PathPose {
 
 enum class ElementShape : std::uint8_t { kLine, kArc, kSpline };
 
-// From where the element before it ends.
+// Starts at the end of the previous element.
 struct PathElement {
   ElementShape shape = ElementShape::kLine;
-  std::optional<PathPose> to{};                     // where it ends; splines: see points
-  std::optional<double> via_x{}, via_y{}, via_z{};  // arc: a point that it goes through
-  std::vector<PathPose> points;                     // spline: its points; of a path's first element also its start
+  std::optional<PathPose> to{};                     // end of the element; unset for splines
+  std::optional<double> via_x{}, via_y{}, via_z{};  // arc: a point on it
+  std::vector<PathPose> points;                     // spline: its end last; as a path's first element its start first
   std::optional<double> velocity{};                 // mm/s, on this element; unset: that of the command
 };
 
 struct PathParams {
   std::string name;
-  std::string file;                   // CSV of elements instead, seen from the machine file
-  std::vector<PathElement> elements;  // the first one begins where the group is, but for a spline's
+  std::string file;                   // CSV of elements in their place, relative to the machine file
+  std::vector<PathElement> elements;  // the first one starts at the present pose, unless it is a spline
 };
 
-inline constexpr std::size_t kZones = 8;  // of a machine
+inline constexpr std::size_t kZones = 8;  // per machine
 
 struct ZoneCorner {
   double x = 0;  // mm, in the world
@@ -99,13 +99,13 @@ struct ZoneCorner {
   double z = 0;
 };
 
-// A box that several groups share: the tool of one of them is inside at a time (zones.h).
+// A box that several groups share: the tool of only one of them is inside at a time (zones.h).
 struct ZoneParams {
   std::string name;
   std::vector<std::string> groups;  // names; empty: all
   ZoneCorner lower;
   ZoneCorner upper;
-  double margin = 5;  // mm around it that count as inside
+  double margin = 5;  // mm around the box that count as inside
 };
 
 void describe(Description<ZoneCorner>&);

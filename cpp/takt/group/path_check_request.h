@@ -1,6 +1,6 @@
-// What a group asks before a path starts: is it free? The cycle puts the question into a queue; whoever knows the cell
-// answers outside the cycle with the command PathChecked, in its own time. Until then the group goes on with what it
-// has, waits where that ends, and can be stopped: an answer that comes too late is not looked at.
+// Request to check whether a path is free before it starts. The cycle puts it into a queue; the engine answers outside
+// the cycle with the command PathChecked, in its own time. Until then the group continues with what is planned, waits
+// where that ends, and can be stopped: an answer that comes too late is ignored.
 #pragma once
 
 #include <array>
@@ -13,18 +13,18 @@
 
 namespace takt::group {
 
-// All that is needed to make the path again that the cycle has tried.
+// Everything needed to make the path again that the cycle has verified.
 struct PathCheckRequest {
-  std::uint32_t group = 0;   // number of it, from 1
-  std::uint64_t number = 0;  // of the question, for the answer
+  std::uint32_t group = 0;   // number, from 1
+  std::uint64_t number = 0;  // of the request, for the answer
   Request move;
-  kinematics::Joints from{};  // where it begins
+  kinematics::Joints from{};  // start of the path
   bool follows = false;       // it may be joined with a blend ...
   Stretch before;             // ... to this
   std::array<bool, kMaxAxes> members{};
   std::array<kinematics::JointRange, kMaxAxes> ranges{};
   trajectory::CoordinateLimits limits;
-  kinematics::Pose tool;  // on the flange
+  kinematics::Pose tool;  // pose of the tool centre point on the flange
 };
 
 using PathCheckRequests = SpscQueue<PathCheckRequest>;

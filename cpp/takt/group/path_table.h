@@ -1,4 +1,4 @@
-// A path of the machine file, made when it is loaded.
+// A path of the machine file, made when the file is loaded.
 #pragma once
 
 #include <optional>
@@ -12,17 +12,17 @@
 
 namespace takt::group {
 
-// One element, or what is between two points of a spline. Places are those of the coordinate system that the command
-// names. Where the first one begins says the group: lines and arcs of it are made when they are gone.
+// One element, or the piece between two points of a spline. Poses are in the coordinate system that the command names.
+// The start of the path is the present pose of the group: lines and arcs are made when they are executed.
 struct PathPiece {
   ElementShape shape = ElementShape::kLine;
-  kinematics::Pose to{};  // where it ends
-  // Its orientation is given. If not, it stays as it is where the path begins: then a, b, c of `to` and the orientation
-  // of the segment mean nothing.
+  kinematics::Pose to{};  // end of the piece
+  // Its orientation is given. If not, the orientation at the start of the path is kept: a, b, c of `to` and the
+  // orientation of the segment are unused.
   bool turned = false;
   path::Triple via{};       // arc
-  path::Segment segment{};  // spline: ready made
-  double velocity = 0;      // mm/s; 0: that of the command
+  path::Segment segment{};  // spline: complete
+  double velocity = 0;      // mm/s, limit; 0: that of the command
 };
 
 struct PathTable {
@@ -32,25 +32,24 @@ struct PathTable {
 
 struct PathTableResult {
   std::optional<PathTable> table;
-  std::string path;     // without: which key of the parameters is wrong, "elements[3].via_x"
-  std::string problem;  // and why
+  std::string path;     // if there is no table: key of the wrong parameter, such as "elements[3].via_x"
+  std::string problem;  // and the reason
 };
 
-// Of elements: those of a file must have been read. Allocates.
+// Makes a path from elements; those of a file must have been read. Allocates.
 PathTableResult MakePathTable(const PathParams& params);
 
 struct PathCsv {
   std::vector<PathElement> elements;
-  std::vector<std::vector<int>> lines;  // 1-based, of each element; of splines: of each point
-  std::vector<Problem> problems;        // 20 at most
+  std::vector<std::vector<int>> lines;  // 1-based line of each element; of splines: of each point
+  std::vector<Problem> problems;        // at most 20
 };
 
-// A table (core/csv.h) with columns x, y, z and perhaps shape (line unless it says something else), a, b, c, via_x,
-// via_y, via_z, velocity. Lines of shape spline that follow one another are the points of one spline, whose velocity
-// stands in the first of them.
+// Reads a table (core/csv.h) with columns x, y, z and optionally shape (default: line), a, b, c, via_x, via_y, via_z,
+// velocity. Consecutive lines of shape spline are the points of one spline, whose velocity is in its first line.
 PathCsv ReadPathCsv(std::string_view text, std::string_view file_name);
 
-// Where a finding about "elements[3].points[1].a" stands in the file.
+// Returns the position in the file of a finding about a key such as "elements[3].points[1].a".
 Place PlaceInCsv(const PathCsv& csv, std::string_view path);
 
 }  // namespace takt::group

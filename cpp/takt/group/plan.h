@@ -1,4 +1,4 @@
-// From the moves in the queue to stretches of path and the nodes of the window: some work in each cycle.
+// Plans the moves in the queue: stretches of path, then nodes of the window; some work in each cycle.
 #pragma once
 
 #include "takt/group/group.h"
@@ -6,33 +6,33 @@
 
 namespace takt::group {
 
-// What a group's coordinates may do: its axes, then the tool along and about X, Y, Z.
+// Returns the limits of a group's coordinates: its axes, then the tool along and about X, Y, Z.
 trajectory::CoordinateLimits LimitsOf(const Context& c, const State& s) noexcept;
 
-// Goes on with planning. Moves that cannot be gone are refused.
+// Continues planning within the budget of a cycle. Refuses moves that cannot be executed.
 void Plan(const Context& c, State& s) noexcept;
 
-// Goes some way along the path ahead of the motion, and takes back what would be too much for the axes.
+// Rehearses the motion ahead and lowers the window where axes would exceed their limits; with PathTiming orders a plan.
 void Rehearse(const Context& c, const State& s) noexcept;
 
-// The element of a path that is planned, from 1; 0: no path.
+// Returns the element of the path being planned, from 1; 0 if it is no path.
 std::uint32_t ElementOf(const State& s) noexcept;
 
 // Forgets everything that was planned.
 void ForgetPlan(const Context& c, State& s) noexcept;
 
-// The axes on a stretch, `way` from the beginning of its segment, with their derivatives by the way.
+// Computes the axes on a stretch at `way` of its segment, with their derivatives by arc length.
 kinematics::Reason AxesOn(const Context& c, const State& s, const Stretch& stretch, double way,
                           const kinematics::Joints& near, kinematics::JointMotion& motion) noexcept;
 
-// All moves in the queue are, as far as they can be gone.
+// Returns true if all moves in the queue are planned, as far as they can be executed.
 bool IsPlanned(const Context& c, const State& s) noexcept;
 
-// s until the motion stands at the end of what was commanded, to the cycle; NaN: it does not move, something slows it
-// down, or it is not known yet.
+// Returns the time until the motion rests at the end of all commanded moves [s], exact to the cycle; NaN if it does not
+// move, is slowed down, or the time is not yet known.
 double TimeLeft(const Context& c, const State& s) noexcept;
 
-// Something can be gone: what the motion can begin with is through.
+// Returns true if a motion can begin: the window is swept and has a node ahead.
 bool MayBegin(const Context& c) noexcept;
 
 }  // namespace takt::group

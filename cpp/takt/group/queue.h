@@ -1,4 +1,4 @@
-// The moves that wait, and those being gone.
+// The moves that wait, and the one in execution.
 #pragma once
 
 #include "takt/group/group.h"
@@ -15,15 +15,15 @@ inline const Request& MoveAt(const State& s, std::uint64_t number) noexcept {
 void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error = ErrorId::kNone,
             double value = 0) noexcept;
 
-// False: there is no room.
+// Returns false if the queue is full.
 bool Push(const Request& move, State& s) noexcept;
-// The oldest one is over.
+// Removes the oldest move and reports it.
 void Pop(const Context& c, FeedbackState feedback, ErrorId error, State& s, std::uint32_t element = 0) noexcept;
-// A move ends with an error before it began, and those behind it are aborted. `element` of a path, from 1; 0: no path.
+// Ends a move with an error before it has begun, and aborts those after it. `element` of a path, from 1; 0: no path.
 void RefuseFrom(const Context& c, std::uint64_t move, ErrorId error, std::uint32_t element, State& s) noexcept;
-// Those behind a move are aborted.
+// Aborts the moves after `move`.
 void AbortBehind(const Context& c, std::uint64_t move, State& s) noexcept;
-// All are, the first with an error if there is one.
+// Aborts all moves; the first one with `error` if that is not kNone.
 void AbortMoves(const Context& c, ErrorId error, State& s) noexcept;
 
 }  // namespace takt::group

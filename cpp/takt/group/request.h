@@ -17,18 +17,18 @@ namespace takt::group {
 
 enum class MoveKind : std::uint8_t { kNone, kLinear, kCircular, kDirect, kPath, kArch, kJog };
 
-// Something that lies on a carrier: its place then, and the carrier's travel since.
+// Target on a carrier: its pose when recorded, and the travel of the carrier then.
 struct CarriedTarget {
-  std::uint32_t carrier = 0;  // its number; 0: none, it stands in the MCS
-  double from = 0;            // travel at which it lay there
-  kinematics::Pose lies;      // seen from the carrier's origin
-  bool has_origin = false;    // another one than that of the carrier itself:
+  std::uint32_t carrier = 0;  // number; 0: none, at rest in the MCS
+  double from = 0;            // mm or rad, travel of the carrier at which it was recorded
+  kinematics::Pose lies;      // pose relative to the origin of the carrier
+  bool has_origin = false;    // in place of the carrier's own:
   kinematics::Pose origin;    // in the MCS
 
   bool operator==(const CarriedTarget&) const = default;
 };
 
-// Six numbers of the tool, then those of the axes; NaN: not given.
+// Six coordinates of the tool, then those of the axes; NaN: not given.
 inline constexpr std::size_t kToolNumbers = 6;
 using Numbers = std::array<double, kToolNumbers + kMaxAxes>;
 inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -38,15 +38,15 @@ struct Request {
   MoveKind kind = MoveKind::kNone;
   bool relative = false;
   CoordinateSystem system = CoordinateSystem::kMcs;
-  std::uint32_t pcs = 0;   // from 0
-  kinematics::Pose frame;  // where that coordinate system was in the MCS when the command was given
-  CarriedTarget cargo;     // or what it is that of, if that moves
+  std::uint32_t pcs = 0;   // index
+  kinematics::Pose frame;  // pose of that coordinate system in the MCS when the command was given
+  CarriedTarget cargo;     // the target of that coordinate system in its place, if it moves
   Numbers to{};
   path::Circle circle;
-  std::uint32_t path = 0;    // index of the machine's
-  std::uint32_t master = 0;  // axis + 1 that gives the way along the path; 0: time does
+  std::uint32_t path = 0;    // index among the paths of the machine
+  std::uint32_t master = 0;  // index + 1 of the axis that the path follows; 0: it runs by time
   double height = 0;         // mm, of an arch
-  double ratio = 1;          // mm per u of it
+  double ratio = 1;          // mm of the path per u of the master
   trajectory::AlongPath limits;
   kinematics::Configuration configuration{};  // direct moves to a pose; kKeep: any
   double velocity_factor = 1;                 // direct moves: of the axes' limits; jogs: of the speeds in `to`
@@ -55,9 +55,9 @@ struct Request {
   BufferMode buffer_mode = BufferMode::kAborting;
   TransitionMode transition_mode = TransitionMode::kNone;
   double transition_parameter = 0;
-  JogSystem jog_system = JogSystem::kMcs;  // a jog's; its numbers are speeds
-  double most_s = kNoLimit;                // a jog goes on for so long at most at these speeds, ...
-  ErrorId border = ErrorId::kNone;         // ... because this is in the way
+  JogSystem jog_system = JogSystem::kMcs;  // jogs; their numbers are velocities
+  double most_s = kNoLimit;                // s, longest duration of a jog at these velocities ...
+  ErrorId border = ErrorId::kNone;         // ... because of this obstacle
 
   bool blends() const noexcept { return buffer_mode >= BufferMode::kBlendingLow; }
 };

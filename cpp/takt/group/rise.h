@@ -1,8 +1,9 @@
-// A tool that is braked on a carrier rises meanwhile, away from its path (PP-61): bends leave little to brake with, and
-// the path leads down.
+// Offset of a tool that is braked on a carrier away from its path (PP-61): bends leave little deceleration, and the
+// path leads down.
 //
-// The tool is offset from its path along Z of what it is carried by. The offset grows until the tool will rest as high
-// as it is to be; it never shrinks. It ends where the tool sits down on the carrier (Sit), as high as it is then.
+// The tool is offset from its path along Z of the object that carries it. The offset grows until the tool will come to
+// rest at the demanded height; it never shrinks. It ends, at its present height, when the tool comes to rest on the
+// carrier (Sit).
 #pragma once
 
 #include "takt/group/group.h"
@@ -11,12 +12,12 @@
 
 namespace takt::group {
 
-// Begins with a motion that is braked in step (State::ends, not lets_go). `height`: of the tool in the end, in the
-// coordinate system of the object that carries it, mm.
+// Starts a rise with a motion that is braked while the tool stays on its carrier (State::ends, not lets_go). `height`:
+// of the tool at the end, in the coordinate system of the object that carries it [mm].
 void BeginRise(const trajectory::Limits& limits, double height, State& s) noexcept;
-// The tool on its path becomes that which has risen, a cycle later.
+// Advances the offset by a cycle and adds it to the tool on its path.
 void StepRise(const Context& c, const Stretch& stretch, kinematics::MovingFrame& tool, State& s) noexcept;
-// The offset is at rest, or there is none.
+// Returns true if the offset is at rest or unused.
 bool RiseStands(const State& s) noexcept;
 
 }  // namespace takt::group

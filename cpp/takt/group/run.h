@@ -1,49 +1,51 @@
-// Moving along what is planned.
+// Executes the motion along the planned path.
 #pragma once
 
 #include "takt/group/group.h"
 
 namespace takt::group {
 
-// Puts the group in control of its members. An error: a member cannot be.
+// Puts the group in control of its members. Returns an error, with none controlled, if a member cannot be.
 ErrorId TakeMembers(const Context& c, State& s) noexcept;
 void LetGoOfMembers(const Context& c, State& s) noexcept;
 
-// Returns whether PathTiming can time a move: it is not carried and follows no master.
+// Returns true if PathTiming can time a move: it is not carried and follows no master.
 bool IsTimed(const Context& c, const Request& move, const Stretch& stretch) noexcept;
-// At rest, before a motion: starts PathTiming if the group plans ahead and all before the next stop is such.
+// At rest, before a motion: starts PathTiming if the group plans ahead and can time all moves before the next stop.
 void BeginTiming(const Context& c, State& s) noexcept;
 
-// The next set points of the members; ends moves that are over. False: the axes cannot be there, nothing was set.
+// Computes the next set points of the members and ends moves that are complete. Returns false, with no set points
+// given, if the axes cannot follow.
 bool Advance(const Context& c, State& s) noexcept;
 
-// At rest at the end of what is known of the path.
+// Returns true if the path is at rest at the end of all that is planned.
 bool StandsAtEnd(const Context& c, const State& s) noexcept;
 
-// At rest, with everything ended: nothing to do but what waits in the queue.
+// Returns true if the motion is at rest along the path, with the rise, and if carriers are released with their
+// clutches.
 bool Rests(const State& s) noexcept;
 
-// Comes to rest on the path, which is then forgotten. mm/s²; 0: as the path says.
+// Brakes to rest on the path, which is then discarded. `lets_go`: releases the carriers, too.
 void EndMotion(const Context& c, const Brake& brake, bool lets_go, State& s) noexcept;
 
-// The same wherever it has got to with that: what is only planned is forgotten at once.
+// The same in any stage of planning and motion: what is only planned is discarded at once.
 void GiveUpPath(const Context& c, const Brake& brake, bool lets_go, State& s) noexcept;
 
-// Along the path, where it comes to rest at the furthest if it is braked from now on.
+// Returns the arc length of the path at which braking from now on ends at the latest [mm].
 double RestAt(const Context& c, const State& s) noexcept;
 
-// The stretch that the tool is on; null: none.
+// Returns the stretch in execution; null if there is none.
 const Stretch* Here(const Context& c, const State& s) noexcept;
-// Something that moves carries the tool, or takes part in it.
+// Returns true if a moving carrier carries the tool, fully or in part.
 bool IsOnRide(const Context& c, const State& s) noexcept;
-// It goes over from one ride to another.
+// Returns true if the tool is changing over between two carrier bindings.
 bool IsBetweenRides(const Context& c, const State& s) noexcept;
-// Sits down, where it stands, on a carrier whose travel is `travel` [mm or rad] as far as the tool is concerned.
-// Returns the clutch between them, which is not coupled.
+// Binds the tool at its present pose to a carrier, with `travel` [mm or rad] as the carrier's travel. Returns the
+// clutch between them, which is not coupled.
 Clutch& SitDown(const Context& c, const CarriedTarget& cargo, double travel, State& s) noexcept;
-// Forgets the path and stays where it is on the ride.
+// Discards the path and keeps the tool where it is on its carrier binding.
 void Sit(const Context& c, State& s) noexcept;
-// The same on another ride, at a place of its still world.
+// The same on another binding, at a point in its planning frame.
 void SitOn(const Context& c, const CarrierBinding& ride, const path::Point& place, State& s) noexcept;
 
 }  // namespace takt::group

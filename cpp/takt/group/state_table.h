@@ -9,10 +9,10 @@
 
 namespace takt::group {
 
-// In: how a group gets there. Out: how it leaves.
+// In: how a group enters the state. Out: how it leaves it.
 enum class GroupState : std::uint8_t {
   kDisabled,   // in: start, disable, ungroup, remove of the last axis. out: enable
-  kStandby,    // in: enable, a motion over, reset. out: any motion, disable. Members stand still
+  kStandby,    // in: enable, a motion done, reset. out: any motion, disable. Members are at rest
   kMoving,     // in: a motion of the group. out: done, stop, fault. Members are in SynchronizedMotion
   kHoming,     // in: home. out: done, stop, fault
   kStopping,   // in: stop. out: at rest and released, fault

@@ -1,6 +1,6 @@
-// The axes along a path that is asked about (path_check_request.h), made once more outside the cycle: all elements of
-// the move in full, and the blends at their corners, so that whatever becomes of a corner has been looked at (but for
-// short chords: join.h). Allocates.
+// Axes along a path to be checked (path_check_request.h), computed again outside the cycle: all elements of the move in
+// full, and the blends at their corners, so that every way in which a corner may be passed is checked (except short
+// chords: join.h). Allocates.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace takt::group {
 
-// What of a group never changes while the machine runs, but for the tool, which each question has.
+// Data of a group that do not change while the machine runs, except the tool, which each request has.
 struct Fixed {
   const GroupParams& params;
   Mounting mounting;
@@ -29,13 +29,13 @@ class Survey {
 
   struct Part {
     std::uint32_t element = 0;  // of a path, from 1; 0: no path
-    bool on_blend = false;      // into the move, or into that element; else behind it
+    bool on_blend = false;      // into the move, or into that element; else after it
     path::Measure measure = path::Measure::kWay;
-    // s counts from the beginning of the move. The first one is the last of the part before it that is no blend.
+    // s counts from the start of the move. The first sample is the last one of the previous part that is no blend.
     std::span<const workspace::Sample> samples;
   };
-  // One part after the other, until `use` returns false: each blend before what it leads to. The reason, if there is a
-  // place without a position of the axes: the last sample is the one before it.
+  // Calls `use` with one part after the other, until it returns false: each blend before what it leads to. Returns the
+  // reason if the axes cannot reach a point: the last sample is the one before it.
   kinematics::Reason Run(const PathCheckRequest& question, const std::function<bool(const Part&)>& use);
 
  private:

@@ -5,18 +5,18 @@
 
 namespace takt::group {
 
-// The path that begins now, or goes on behind a stop, follows the master of its move, or nobody. `number` is the
-// move's.
+// For the path that begins now, or continues after a stop: follows the master of its move, if there is one. `number`:
+// of the move.
 void BeginFollowing(const Context& c, const Request& move, std::uint64_t number, State& s) noexcept;
-// Whether the motion, where it has got to, is one that follows a master.
+// Returns true if the motion, at its present position, follows a master.
 bool Follows(const Context& c, const State& s) noexcept;
-// The speed along the path with which the tool is where the master wants it, mm/s. Once a cycle.
+// Returns the path speed that brings the tool to the position that the master demands [mm/s]. Once per cycle.
 double WishOfMaster(const Context& c, State& s) noexcept;
-// Whether it is there; what comes behind that move does not follow.
+// Updates whether the path is in sync; ends following after that move.
 void WatchMaster(const Context& c, State& s) noexcept;
 
 ErrorId Sync(const Context& c, Ticket ticket, const SyncAxis& command, State& s) noexcept;
-// Set points of the axes that follow the path.
+// Computes the set points of the axes that follow the path.
 void LeadSynced(const Context& c, State& s) noexcept;
 void LetGoOfSynced(const Context& c, FeedbackState feedback, State& s) noexcept;
 

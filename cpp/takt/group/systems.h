@@ -1,8 +1,8 @@
-// Coordinate systems of a group: where each is in that of the machine, and numbers of people in them.
+// Coordinate systems of a group: their poses in the MCS, and conversions between tool and axes.
 //
-// ACS: the axes themselves. MCS: that of the kinematics. WCS: the world, in which the machine file places the MCS. PCS
-// 1 to 16: products, placed in the MCS at run time. The tool centre point (TCP) lies on the flange as the machine file
-// says, or SetTool.
+// ACS: the axes themselves. MCS: the machine coordinate system of the kinematics. WCS: the world, in which the machine
+// file places the MCS. PCS 1 to 16: products, placed in the MCS at run time. The tool centre point (TCP) on the flange
+// is given by the machine file or by SetTool.
 #pragma once
 
 #include "takt/group/failures.h"
@@ -13,47 +13,48 @@ namespace takt::group {
 
 inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 
-// Where the tool centre point is on the flange: as SetTool said, or the machine file.
+// Returns the pose of the tool centre point on the flange: that of SetTool, else that of the machine file.
 inline const kinematics::Pose& ToolOnFlange(const Context& c, const State& s) noexcept {
   return s.tool_changed ? s.tool : c.params.tool;
 }
 
-// Number of members, and of those that the kinematics moves.
+// Return the number of members, and of those that the kinematics moves.
 std::size_t CountOf(const State& s) noexcept;
 std::size_t InKinematics(const Context& c, const State& s) noexcept;
-// Whether there is a tool to speak of.
+// Returns true if there are kinematics with all their members, and they are switched on.
 bool HasTool(const Context& c, const State& s) noexcept;
 
-// Seen from the MCS; of ACS: the MCS itself.
-// That of a moving PCS: where it is in this cycle.
+// Returns the pose of a coordinate system in the MCS; of ACS: identity; of a moving PCS: in this cycle.
 Frame SystemFrame(const Context& c, const State& s, CoordinateSystem system, std::uint32_t pcs) noexcept;
 
-// The TCP in the MCS. A reason, and nothing in `tcp`, where the axes cannot be so.
+// Computes the TCP in the MCS. Returns a reason, with `tcp` unchanged, if there is none for these axes.
 kinematics::Reason ToolAt(const Context& c, const kinematics::Joints& joints, Frame& tcp) noexcept;
-// The axes for a TCP in the MCS, the others as in `near`.
+// Computes the axes for a TCP in the MCS, the auxiliary ones as in `near`. Returns a reason, with `joints` unchanged,
+// if they cannot reach it.
 kinematics::Reason JointsAt(const Context& c, const Frame& tcp, const kinematics::Joints& near,
                             kinematics::Joints& joints) noexcept;
-// The nearest position of the axes for a TCP in the MCS, of those within all ranges, in all configurations and turns
-// that `wanted` leaves (GR-44): that which the slowest axis reaches first from `near` at its velocity limit.
-// `failures`: of those that do not do.
+// Computes the nearest position of the axes for a TCP in the MCS, among those within all ranges, in all configurations
+// and turns that `wanted` permits (GR-44): the one that the slowest axis reaches first from `near` at its velocity
+// limit. `failures`: of the other configurations.
 kinematics::Reason NearestJointsAt(const Context& c, const State& s, const Frame& tcp,
                                    const kinematics::Configuration& wanted, const kinematics::Joints& near,
                                    kinematics::Joints& joints, Failures& failures) noexcept;
-// Why the axes cannot go on from `near` to a TCP in the MCS that is next to it, where `reason` says that they cannot.
+// Returns why the axes cannot continue from `near` to a neighbouring TCP in the MCS, where `reason` says that they
+// cannot.
 Failures FailuresAt(const Context& c, const State& s, const Frame& tcp, kinematics::Reason reason,
                     const kinematics::Joints& near) noexcept;
-// The first member that is out of its range.
+// Returns the first member that is out of its range.
 Failures FailuresOf(const Context& c, const State& s, const kinematics::Joints& joints) noexcept;
-// Whether the members in the first `count` places are within their SW limits and those of the kinematics.
+// Returns true if the first `count` members are within their SW limits and the ranges of the kinematics.
 bool WithinRanges(const Context& c, const State& s, const kinematics::Joints& joints,
                   std::size_t count = kMaxAxes) noexcept;
 
-// Where a plan ends.
+// End of a plan.
 struct End {
   kinematics::Joints joints{};
-  Frame tool;  // in the MCS; without a tool of no meaning
+  Frame tool;  // in the MCS; unused without a tool
 };
-// Where the members stand as they are told.
+// Return the present commanded position.
 End Present(const Context& c, const State& s) noexcept;
 kinematics::Joints PresentJoints(const Context& c, const State& s) noexcept;
 

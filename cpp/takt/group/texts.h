@@ -1,11 +1,11 @@
-// Ranges that many descriptions of groups share.
+// Ranges shared by many descriptions of groups.
 #pragma once
 
 #include "takt/core/describe.h"
 
 namespace takt::group {
 
-// Wide enough for anything that is built, narrow enough for squares and quotients of them to be numbers.
+// Wider than any machine, narrow enough for their squares and quotients to be finite.
 inline constexpr Range kPlaces = between(-1e9, 1e9);           // mm
 inline constexpr Range kAngles = between(-1e6, 1e6);           // deg
 inline constexpr Range kLengths = between(0, 1e9);             // mm

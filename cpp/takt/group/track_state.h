@@ -1,4 +1,4 @@
-// How the tool goes along with an object (the manual's parameter TrackState, CV-11).
+// Synchronization of the tool with an object (the manual's parameter TrackState, CV-11).
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 namespace takt::group {
 
 enum class TrackState : std::uint8_t {
-  kNone = 0,             // it does not
-  kWaiting = 1,          // the object is not yet where tracking begins
-  kSynchronizing = 2,    // the tool gets into step
-  kInSync = 3,           // it goes along
-  kDesynchronizing = 4,  // it gets out of step
+  kNone = 0,             // not synchronized with an object
+  kWaiting = 1,          // the object has not reached the start of tracking
+  kSynchronizing = 2,    // the tool is getting into sync
+  kInSync = 3,           // in sync with the object
+  kDesynchronizing = 4,  // the tool is getting out of sync
 };
 
 void describe(Enumeration<TrackState>&);
