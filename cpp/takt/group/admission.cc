@@ -1,4 +1,4 @@
-// Commands as they arrive: moves queued, settings changed, or refused.
+// Commands on arrival: queues moves, changes settings, or refuses.
 #include "takt/core/describe.h"
 #include "takt/core/in_range.h"
 #include "takt/group/ask.h"
@@ -35,16 +35,16 @@ struct Applier {
   }
   bool Is(GroupState state) const { return s.state == state; }
   bool stands() const { return Is(GroupState::kDisabled) || Is(GroupState::kStandby); }
-  // Members and kinematics: a command that waits for an object to track relies on them.
+  // Members and kinematics may be changed: no command that waits for an object to track relies on them.
   bool MayBeChanged() const { return stands() && s.track.ticket == 0; }
 
-  // Its feedback names the member.
+  // The feedback of the error names the member.
   ErrorId Blamed(ErrorId error, std::size_t place) const {
     c.ahead.blame = {error, s.members[place]};
     return error;
   }
 
-  // Power off ranks above all that moves or stops a group: it goes on to its end.
+  // Power off takes precedence over all that moves or stops a group: it is completed.
   bool SwitchingOff() const { return s.task == Task::kPower && !s.power_on; }
 
   ErrorId MayMove() const {
@@ -66,7 +66,7 @@ struct Applier {
 
   void AbortTask() const { EndTask(c, FeedbackState::kAborted, ErrorId::kNone, s); }
 
-  // Everything that is planned or waits gives way.
+  // Aborts everything that is planned or waits.
   void AbortAll(const Brake& brake = {}, bool lets_go = true) const {
     AbortTask();
     EndStream(c, FeedbackState::kAborted, ErrorId::kNone, s);
@@ -74,7 +74,7 @@ struct Applier {
     GiveUpPath(c, brake, lets_go, s);
   }
 
-  // Whether it is not known where a product coordinate system is.
+  // Returns true if a product coordinate system is bound to a carrier of unknown pose.
   bool IsLost(std::uint32_t pcs) const {
     const std::uint32_t carrier = s.cargoes[pcs].carrier;
     return carrier != 0 && c.carriers.At(carrier).kind == kinematics::CarrierKind::kNone;
@@ -87,7 +87,7 @@ struct Applier {
     const bool waits = made.move.buffer_mode != BufferMode::kAborting;
     if (waits && (s.task == Task::kHalt || Jogs(s) || Streams(s))) return Refuse(ErrorId::kState);
     const std::uint32_t carrier = made.move.system == CoordinateSystem::kPcs ? s.cargoes[made.move.pcs].carrier : 0;
-    // Halfway onto a carrier the tool turns back for a move that leads somewhere else.
+    // While boarding a carrier, the tool turns back for a move that leads elsewhere.
     if (!waits) AbortAll({}, TurnsBack(c, s, carrier));
     if (!c.ahead.known && !s.begun) c.ahead.window.SetLimits(LimitsOf(c, s));
     Request move = made.move;
@@ -135,7 +135,7 @@ struct Applier {
     EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
     AbortAll({m.deceleration.value_or(0), m.jerk.value_or(0)});
     if (Is(GroupState::kHoming)) TellAll(c, s, axis::Stop{});
-    // A drive may home before it is ready: its member is not on the path and stops by itself.
+    // A drive may home before it is ready: its member is not on the path and stops individually.
     for (std::size_t k = 0; k < kMaxAxes; ++k) {
       const bool gets_ready = s.members[k] != 0 && MemberOf(c, s, k).enable && !MemberOf(c, s, k).loop_closed;
       if (gets_ready) Tell(c, s, k, axis::Stop{});
@@ -146,7 +146,7 @@ struct Applier {
     s.ticket = room ? ticket : 0;
     s.stop_reported = false;
     Report(c, ticket, FeedbackState::kActive);
-    if (!room) Refuse(ErrorId::kBufferFull);  // it brakes all the same
+    if (!room) Refuse(ErrorId::kBufferFull);  // it brakes nevertheless
     Enter(GroupState::kStopping, s);
   }
   void operator()(const Halt& m) const {
@@ -200,7 +200,7 @@ struct Applier {
   void operator()(const Enable&) const {
     if (CountOf(s) == 0) return Refuse(ErrorId::kGroupEmpty);
     if (!stands()) return Refuse(ErrorId::kState);
-    // What they did by themselves is over.
+    // Individual motions of the members must be over.
     const bool still = AllMembers(c, s, [](const axis::State& member) {
       return member.plc == axis::PlcState::kDisabled || member.plc == axis::PlcState::kStandstill;
     });
@@ -208,7 +208,7 @@ struct Applier {
     if (Is(GroupState::kDisabled)) Enter(GroupState::kStandby, s);
     Finish(ErrorId::kNone);
   }
-  // The members come to rest each by itself: they are no group any more.
+  // Dissolves the group: the members come to rest individually.
   void LeaveAll() const {
     EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
     AbortAll();
@@ -246,7 +246,7 @@ struct Applier {
     if (m.enable && Is(GroupState::kHoming)) return Refuse(ErrorId::kState);
     if (CountOf(s) == 0) return Refuse(ErrorId::kGroupEmpty);
     if (m.enable && s.guides) return Finish(ErrorId::kNone);
-    if (!m.enable && (s.begun || s.queue.count > 0 || Streams(s))) {  // along the path first
+    if (!m.enable && (s.begun || s.queue.count > 0 || Streams(s))) {  // brakes along the path first
       EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
       AbortAll();
       s.task = Task::kPower;
@@ -269,7 +269,7 @@ struct Applier {
     if (s.holds.Holder() != nullptr) return Refuse(ErrorId::kAxisStopping);
     const ErrorId error = TellAll(c, s, axis::Home{});
     if (error != ErrorId::kNone) {
-      // Those that have begun stop; until then it is homing.
+      // Members that have begun stop; until then the group is homing.
       for (std::size_t k = 0; k < kMaxAxes; ++k) {
         if (s.members[k] == 0 || MemberOf(c, s, k).plc != axis::PlcState::kHoming) continue;
         Tell(c, s, k, axis::Stop{});
@@ -360,7 +360,7 @@ struct Applier {
     s.tool_changed = true;
     s.tool = {m.x, m.y, m.z, m.a, m.b, m.c};
     MountTool(kinematics::ToFrame(s.tool), c.mounting);
-    ForgetPlan(c, s);  // it ends where the tool before it was
+    ForgetPlan(c, s);  // it ends at the pose of the previous tool
     Finish(ErrorId::kNone);
   }
   void operator()(const Calibrate& m) const {

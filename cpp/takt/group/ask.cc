@@ -11,8 +11,8 @@ namespace takt::group {
 
 namespace {
 
-// A path that begins on what moves, as it is expected to lie in the MCS: from where the carrier will have taken the
-// tool when it begins to where the target will be when it arrives.
+// A path that begins on a moving carrier, in its expected pose in the MCS: from the expected pose of the tool when it
+// starts to that of the target when it arrives.
 void FromCarrier(const Context& c, const State& s, PathCheckRequest& question) {
   const LookAhead& ahead = c.ahead;
   const Stretch& next = ahead.next;
@@ -44,7 +44,7 @@ PathCheckRequest QuestionOf(const Context& c, const State& s) {
   if (question.follows) question.before = ahead[ahead.end() - 1];
   if (BeginsOnCarrier(c)) {
     FromCarrier(c, s, question);
-  } else if (question.move.cargo.carrier != 0) {  // where it will be
+  } else if (question.move.cargo.carrier != 0) {  // expected pose of the target
     question.move.cargo = {};
     question.move.frame = kinematics::ToPose(ReferenceOf(ahead.rides[ahead.next.to_ride % kRides]));
   }
@@ -83,7 +83,7 @@ void Ask(const Context& c, State& s) noexcept {
 }
 
 bool IsAnswered(const Context& c, State& s) noexcept {
-  // Whether it could be sent changes nothing in the state: a replay has nobody to ask.
+  // Whether it was sent does not enter the state: in a replay nothing takes requests.
   if (!c.ahead.asked) c.ahead.asked = c.questions->TryPush(QuestionOf(c, s));
   return s.answer.number == s.planning.question;
 }

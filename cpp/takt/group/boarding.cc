@@ -14,8 +14,8 @@ namespace takt::group {
 
 namespace {
 
-constexpr double kLastPart = 0.05;  // of the boarding time
-constexpr double kFirstPart = 0.5;  // of it: turning back is sooner than getting into step first
+constexpr double kLastPart = 0.05;  // of the boarding time: shorter remainders are not divided
+constexpr double kFirstPart = 0.5;  // of the boarding time: in it, turning back is faster than getting into sync first
 
 const CarrierBinding& RideOf(const Context& c, std::uint64_t number) {
   return c.ahead.rides[number % kRides];
@@ -43,7 +43,7 @@ bool MayBoard(const Context& c, const State& s) noexcept {
   const bool one_way =
       move.kind == MoveKind::kLinear || move.kind == MoveKind::kDirect || move.kind == MoveKind::kCircular;
   if (!one_way || move.system == CoordinateSystem::kAcs || move.blends() || move.master != 0) return false;
-  // A module wants to know how long all moves of its order take. Its own have no ticket.
+  // A module needs the durations of all moves of its order in advance. Its own moves have no ticket.
   if (move.ticket == 0 || (c.carriers.modules && s.planning.move > s.done)) return false;
   if (s.track.ticket != 0 || s.velocity_factor < 1 || c.params.tracking.after_sync != AfterSync::kStay) return false;
   if (Moves(RideOf(c, c.ahead.end_ride)) || HasWorkspace(c, s) || !c.zones.of.empty()) return false;
@@ -76,7 +76,7 @@ bool Board(const Context& c, State& s) noexcept {
 }
 
 Boarding* BoardingOn(LookAhead& ahead, const Stretch& stretch) noexcept {
-  // One at most: boarding begins at rest.
+  // At most one: boarding begins at rest.
   for (const std::uint64_t ride : {stretch.from_ride, stretch.to_ride}) {
     if (ahead.rides[ride % kRides].boarding.on) return &ahead.rides[ride % kRides].boarding;
   }
@@ -92,7 +92,7 @@ void BeginReserve(const Context& c, Boarding& boarding) noexcept {
 
 void CutReserve(const Context& c, const trajectory::PathNode& last, Boarding& boarding) noexcept {
   if (last.at.s >= boarding.reach) return;
-  // What is known of the raw motion there: not before now, not faster than the node allows.
+  // Bounds of the raw motion there: not earlier than now, not faster than the node allows.
   boarding.earliest_s = static_cast<double>(c.cycle.count - boarding.begin) * c.cycle.period_s;
   boarding.square = last.own;
 }

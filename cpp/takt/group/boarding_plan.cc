@@ -21,18 +21,18 @@ constexpr std::array kShares = {0.15, 0.3, 0.5, 0.7, 0.9};
 constexpr std::array kLeads = {0.0, 0.5, 1.0, 1.5, 2.5};
 constexpr double kVelocityShare = 0.9;      // of each coordinate's velocity limit, for the clutch
 constexpr double kBendsShare = 0.4;         // of acceleration and jerk limits, for the curvature along the travel
-constexpr double kLeastOverspeed = 1.3;     // velocity that the clutch is left in any case, relative to the carrier's
+constexpr double kLeastOverspeed = 1.3;     // least velocity limit of the clutch, relative to the carrier's velocity
 constexpr int kTries = 3;                   // candidates that are measured
-constexpr double kShareMargin = 1.1;        // on the share that a failed measurement suggests
+constexpr double kShareMargin = 1.1;        // on the share computed from a failed measurement
 constexpr double kMostSampled = 0.96;       // of a limit, as sampled
 constexpr double kSampleMargin = 1.05;      // between samples
 constexpr int kSamplesPerPiece = 4;         // of the profile, both ends among them
 constexpr int kSamplesPerPieceOfChain = 2;  // with inverse kinematics of a serial chain
 constexpr int kSpeedRounds = 4;             // fixed-point iterations of the path speed at the end of boarding
 constexpr double kDifference = 1e-3;        // s of the carrier's travel, for difference quotients
-// Time of the transition between rides relative to a path at rest, per path length that the carrier travels meanwhile:
-// up to one length, and from there to kTransitionLengths. Margin on the estimated time with boarding. Fitted to 213
-// moves of gantries on belts and tables.
+// Time of the transition between carrier bindings relative to a path at rest, per path length that the carrier travels
+// meanwhile: up to one length, and from there to kTransitionLengths. Margin on the estimated time with boarding. Fitted
+// to 213 moves of gantries on belts and tables.
 constexpr double kTransitionNear = 0.3;
 constexpr double kTransitionFar = 0.5;
 constexpr double kTransitionLengths = 4;
@@ -42,7 +42,7 @@ constexpr double kEstimateMargin = 1.04;
 struct Start {
   CarrierBinding to;
   CarriedTarget cargo;
-  KinematicState carrier;  // travel in the cycle before
+  KinematicState carrier;  // travel in the previous cycle
   End tool;
   // First to third derivatives of the coordinates with respect to the travel.
   trajectory::PathCoordinateValues by_carrier{};
@@ -320,7 +320,7 @@ double MeasureWithPath(const Context& c, const State& s, const Start& start, con
 }
 
 // Returns 1 where the limits of the axes bind, 0 where those of the path are lower than half of them: then the
-// transition between rides takes no longer than the path.
+// transition between carrier bindings takes no longer than the path.
 double BindingOf(const Context& c, const Candidate& candidate) {
   const trajectory::AlongPath& path = c.ahead.next.limits;
   const trajectory::AlongPath& axes = candidate.axes;
@@ -328,7 +328,7 @@ double BindingOf(const Context& c, const Candidate& candidate) {
   return std::clamp(2 * ratio - 1, 0.0, 1.0);
 }
 
-// Estimates the time of the move with a transition between rides instead [s].
+// Estimates the time of the move with a transition between carrier bindings instead [s].
 double EstimateTransitionTime(const Context& c, const Start& start, const Candidate& candidate) {
   const Stretch& next = c.ahead.next;
   const double time_s = next.eta_end - next.eta_begin;
@@ -341,7 +341,7 @@ bool IsFaster(const Context& c, const Start& start, const Candidate& candidate) 
   return kEstimateMargin * candidate.time_s <= EstimateTransitionTime(c, start, candidate);
 }
 
-// Returns whether the axes reach the target where its carrier is after `time_s`.
+// Returns true if the axes reach the target at the pose of its carrier after `time_s`.
 bool ReachesTarget(const Context& c, const State& s, const Start& start, double time_s) {
   const Stretch& next = c.ahead.next;
   const Frame target = DisplacementOf(c, start.to, time_s).GetFrame() * path::PointAt(next.segment, next.to).frame;

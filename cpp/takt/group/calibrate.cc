@@ -11,7 +11,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-constexpr double kLeastSpread = 0.1;  // mm: places no further apart, or no further from one line, define no frame
+constexpr double kLeastSpread = 0.1;  // mm: points closer together, or closer to one line, define no frame
 
 struct Places {
   std::array<Vector, 4> of;
@@ -22,7 +22,7 @@ struct Places {
     for (std::size_t i = 0; i < count; ++i) sum += of[i];
     return sum / static_cast<double>(count);
   }
-  // They lie on one line: the second largest of their spreads along three axes is nothing.
+  // Returns true if the points lie on one line: the second largest principal spread is below kLeastSpread.
   bool OnALine() const {
     const Vector middle = Middle();
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();

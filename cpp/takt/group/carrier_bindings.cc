@@ -10,14 +10,14 @@ namespace takt::group {
 
 namespace {
 
-// Of places along a path, which count on as long as the tool does not come to rest: so near to its ends a transition
-// has no effect yet, or all of it.
+// Relative rounding error of arc lengths, which accumulate while the tool does not come to rest: within it from the
+// ends of a transition the weight is 0 or 1.
 constexpr double kOfPlace = 1e-14;
-constexpr double kLeastRounded = 1e5;  // mm
-constexpr double kUnsteady_s = 3;      // after a change of speed a carrier counts as unsteady
+constexpr double kLeastRounded = 1e5;  // mm, least arc length for which rounding is assumed
+constexpr double kUnsteady_s = 3;      // after a change of velocity a carrier counts as unsteady
 constexpr double kSteady = 1e-3;       // mm/s² or rad/s²: less is rounding
 
-// A motion over the way, as one over time.
+// Converts a motion over arc length to one over time.
 MovingFrame InTime(const MovingFrame& over_way, const KinematicState& way) {
   const double v = way.velocity, square = v * v, a = way.acceleration;
   MovingFrame out;
@@ -30,7 +30,7 @@ MovingFrame Still(const MovingFrame& frame) {
   return MovingFrame(frame.GetFrame());
 }
 
-// Part of the way from one moving frame to another.
+// Interpolates between two moving frames with the weight `share`.
 MovingFrame Mix(const MovingFrame& from, const MovingFrame& to, const KinematicState& share) {
   const double w = share.position, dw = share.velocity, ddw = share.acceleration;
   const KDL::VectorAcc apart = to.p - from.p;
@@ -38,7 +38,7 @@ MovingFrame Mix(const MovingFrame& from, const MovingFrame& to, const KinematicS
   out.p.p = from.p.p + w * apart.p;
   out.p.v = from.p.v + w * apart.v + dw * apart.p;
   out.p.dv = from.p.dv + w * apart.dv + 2 * dw * apart.v + ddw * apart.p;
-  // The turn from the one to the other, and how it changes, seen from the first one.
+  // The rotation from the first frame to the second, and its derivatives, in the first frame.
   const KDL::Rotation back = from.M.R.Inverse();
   const KDL::Vector turn = back * kinematics::TurnBetween(from.M.R, to.M.R);
   if (turn.Norm() < 1e-12 && (to.M.w - from.M.w).Norm() < 1e-12 && (to.M.dw - from.M.dw).Norm() < 1e-12) {
@@ -47,7 +47,7 @@ MovingFrame Mix(const MovingFrame& from, const MovingFrame& to, const KinematicS
   }
   const KDL::Vector w0 = back * from.M.w;
   const KDL::Vector spin = back * (to.M.w - from.M.w);
-  const KDL::Vector change = back * (to.M.dw - from.M.dw) - w0 * spin;  // of the spin, seen from the first one
+  const KDL::Vector change = back * (to.M.dw - from.M.dw) - w0 * spin;  // of the spin, in the first frame
   const path::Derivatives<path::Vector> log =
       path::TurnOf(path::ToVector(turn), path::ToVector(spin), path::ToVector(change));
   const path::Turned part = path::TurnBy(
@@ -64,7 +64,7 @@ const CarrierBinding& RideAt(const LookAhead& ahead, std::uint64_t number) {
   return ahead.rides[number % ahead.rides.size()];
 }
 
-// Where a carrier's travel is as far as the tool is concerned.
+// The carrier with the travel that its clutch gives the tool.
 kinematics::Carrier Clutched(const State& s, std::uint64_t ride, kinematics::Carrier carrier) {
   for (const Clutch& clutch : s.clutches) {
     if (clutch.used && !clutch.coupled && clutch.ride == ride) carrier.travel = clutch.travel;
@@ -190,7 +190,7 @@ KinematicState ShareAt(const LookAhead& ahead, const Stretch& stretch, double wa
   if (place > ride.end - rounding) return {1, 0, 0};
   if (place < ride.begin + rounding) return {0, 0, 0};
   const double x = std::clamp((place - ride.begin) / length, 0.0, 1.0);
-  // From the nearer end: near 1, too, it only grows.
+  // Computed from the nearer end: so it is monotonic near 1, too.
   const double y = std::min(x, 1 - x);
   const double share = y * y * y * (10 + y * (6 * y - 15));
   return {x < 0.5 ? share : 1 - share, 30 * x * x * (1 - x) * (1 - x) / length,
@@ -220,7 +220,7 @@ MovingFrame ToolIn(const Context& c, const Stretch& stretch, const KinematicStat
     const CarrierBinding& ride = RideAt(c.ahead, number);
     const double time_s = std::max(ahead_s, 1e-9);
     kinematics::Carrier carrier = CarrierOf(c, ride.cargo, time_s);
-    // From `reach` on the tool is in step: behind a stop the path waits for that.
+    // From `reach` on the tool is in sync: after a stop the path waits for that.
     const KinematicState apart = place < ride.boarding.reach ? ApartIn(c, ride, time_s) : KinematicState{};
     carrier.travel = {carrier.travel.position + apart.position, carrier.travel.velocity + apart.velocity,
                       carrier.travel.acceleration + apart.acceleration};

@@ -14,19 +14,20 @@ namespace takt::group {
 
 namespace {
 
-// Of the axes' limits; the rest is for what changes on the way.
+// Shares of the axes' limits: for clutches, the rest is a reserve for changes; and for path and carriers braked at
+// once.
 constexpr double kOfLimits = 0.9;
 constexpr double kBothShare = 0.5;
-// Of that, for carriers: bends of the path take their part, too, and a path that speeds up takes its acceleration back
-// at once.
+// Share of the latter for carriers: bends of the path need their part, too, and a path that accelerates takes back its
+// acceleration at once.
 constexpr double kCarrierShare = 0.25;
-constexpr double kLeastAcceleration = 0.1;  // of an axis, left beside what its bends need
+constexpr double kLeastAcceleration = 0.1;  // of an axis, left beside its bends
 constexpr int kLooks = 4;
-constexpr double kJump = 2;             // of the way that the axes could go along with in a cycle
-constexpr double kLeastClosing = 0.05;  // of the velocity, towards a carrier that is as fast itself
-constexpr double kCarriersOwn = 0.5;    // of the acceleration, at most
+constexpr double kJump = 2;             // a larger step of the carrier, in cycles of travel of the clutch, is a jump
+constexpr double kLeastClosing = 0.05;  // of the velocity limit, towards a carrier that moves as fast itself
+constexpr double kCarriersOwn = 0.5;    // of the acceleration limit, at most for the acceleration of the carrier
 constexpr double kLeastOverride = 0.01;
-constexpr double kBendShare = 0.4;      // of it, while a tool at rest catches up
+constexpr double kBendShare = 0.4;      // of the acceleration, for bends, while a tool at rest catches up
 constexpr double kChangeShare = 0.5;    // of the clutch's jerk; the carrier's own is added to it
 constexpr double kSlightChange = 0.03;  // of the clutch's acceleration and jerk: within the margins of boarding
 
@@ -50,7 +51,7 @@ bool HasTravel(const kinematics::Carrier& carrier) {
   return carrier.kind == kinematics::CarrierKind::kStraight || carrier.kind == kinematics::CarrierKind::kTurning;
 }
 
-// The tool at a place of a stretch, carried by one ride whose travel is this.
+// Returns the tool at `way` of a stretch, carried by one binding with this travel.
 MovingFrame ToolAtTravel(const Context& c, const Stretch& stretch, double way, const CarrierBinding& ride,
                          const KinematicState& travel) {
   kinematics::Carrier carrier = CarrierOf(c, ride.cargo);
@@ -59,7 +60,8 @@ MovingFrame ToolAtTravel(const Context& c, const Stretch& stretch, double way, c
          (ride.reference_inverse * path::At(stretch.segment, way).GetFrame());
 }
 
-// Where the law that gets the tool into step, or out of it, wants it. False: the law is through.
+// Computes the travel demanded by the law that gets the tool into sync or out of it. Returns false if the law has
+// ended.
 bool FollowLaw(const KinematicState& carrier, bool out, Clutch& clutch, KinematicState& demand) {
   if (clutch.law_length == 0) return false;
   const double x = std::clamp((carrier.position - clutch.law_begin) / clutch.law_length, 0.0, 1.0);
@@ -98,8 +100,8 @@ KinematicState Sum(const KinematicState& a, const KinematicState& b) {
   return {a.position + b.position, a.velocity + b.velocity, a.acceleration + b.acceleration};
 }
 
-// The way into step, seen from the carrier: what that does by itself, and how coarsely it is measured, is no matter
-// then.
+// Plans how the tool gets into sync, in the frame of the carrier: its own motion, and the resolution of its
+// measurement, then have no effect.
 Status ComeCloser(trajectory::Planner& planner, const KinematicState& carrier, const trajectory::Limits& limits,
                   const KinematicState& apart, trajectory::Profile& out) {
   const double toward = apart.position > 0 ? -1 : 1;
@@ -110,7 +112,7 @@ Status ComeCloser(trajectory::Planner& planner, const KinematicState& carrier, c
   return planner.ToPosition(apart, 0, velocity, bounds, out);
 }
 
-// The same a cycle later; nothing when it is there.
+// Returns `apart` a cycle later; zero when in sync.
 KinematicState Closer(const Context& c, const State& s, const Clutch& clutch, const KinematicState& carrier,
                       const trajectory::Limits& limits) {
   trajectory::Planner& planner = PlannerOf(c, s);
@@ -131,10 +133,10 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
   const double period = c.cycle.period_s;
   const TrackingParams& params = c.params.tracking;
   KinematicState demand = carrier;
-  // The path leaves boarding its part of the limits: the clutch keeps it until it is in step or at rest, or it could
-  // not take its acceleration back in time.
+  // The path leaves boarding its part of the limits: the clutch keeps it until it is in sync or at rest; else it could
+  // not take back its acceleration in time.
   if (clutch.boards) clutch.reserved = true;
-  // Boarding was planned for a constant velocity of the carrier: now the path waits.
+  // Boarding was planned for a constant velocity of the carrier; from now on the path waits.
   const double change = carrier.acceleration - (clutch.travel.acceleration - clutch.apart.acceleration);
   const bool slight = std::abs(carrier.acceleration) <= kSlightChange * clutch.acceleration &&
                       std::abs(change) <= kSlightChange * clutch.jerk * period;
@@ -142,7 +144,7 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
     EndBoarding(c, clutch);
     clutch.jerk *= kChangeShare;
   }
-  // A move that waits does not wait for a carrier that stands.
+  // A move that waits does not wait for a carrier at rest.
   if (carrier.velocity == 0 && s.queue.count > 0 && !s.lets_go) clutch.law_length = 0;
   const bool law = FollowLaw(carrier, s.lets_go, clutch, demand);
   const trajectory::Limits limits_now = LimitsNow(clutch, s);
@@ -157,7 +159,7 @@ void Drive(const Context& c, State& s, const KinematicState& carrier, Clutch& cl
     EndBoarding(c, clutch);
     return;
   }
-  // A belt whose encoder was lost may turn up elsewhere: that is no motion to go along with.
+  // A belt whose encoder was lost may reappear elsewhere: the tool does not follow such a jump.
   const KinematicState before = Before(carrier, period);
   const double known = clutch.travel.position - (clutch.catches_up ? clutch.apart.position : 0);
   const double step = before.position - known;
@@ -193,8 +195,8 @@ void StepOne(const Context& c, const Stretch& stretch, double way, std::uint64_t
   if (!HasTravel(carrier)) return;
   Clutch* clutch = Find(s, number);
   if (clutch) {
-    // At rest somewhere else: what the axes can do on the way from there. It stays so until the tool is in step,
-    // because CanLetGo counts on it.
+    // At rest apart from the carrier: limits for the motion to it. They stay until the tool is in sync, because
+    // CanLetGo relies on them.
     const bool stands = clutch->travel.velocity == 0 && clutch->travel.acceleration == 0;
     if (!s.lets_go && !clutch->coupled && !clutch->boards && stands) {
       const double way_to_go = carrier.travel.position - clutch->travel.position;
@@ -249,7 +251,7 @@ bool WaitsForClutch(const State& s) noexcept {
 
 Status ComeAboard(trajectory::Planner& planner, double velocity, const trajectory::Limits& limits,
                   const KinematicState& apart, trajectory::Profile& out) noexcept {
-  // Alike on both sides, so that the rest of the way is planned alike in each cycle.
+  // Symmetric, so that the rest of the motion is planned alike in each cycle.
   const double closing = std::max(limits.velocity - std::abs(velocity), kLeastClosing * limits.velocity);
   const trajectory::Bounds bounds = {limits.acceleration, limits.acceleration, limits.jerk};
   return planner.ToPosition(apart, 0, closing, bounds, out);
@@ -287,11 +289,11 @@ bool CanLetGo(const Context& c, State& s) noexcept {
   const Stretch& stretch = *ahead.At(place);
   if (!IsCarried(ahead, stretch)) return true;
   const double way = std::clamp(stretch.from + place - stretch.begin, stretch.from, stretch.to);
-  // And the carriers with it, from the next cycle on.
+  // The carriers are braked with it, from the next cycle on.
   const MovingFrame tool = ToolBraked(c, s, stretch, way);
   kinematics::JointMotion motion;
   kinematics::Reason reason = AxesFor(c, s, stretch, tool, {way, 0, 0}, s.joints, motion);
-  // As fast as the carriers are now the axes must be able to go there.
+  // The axes must be able to move there as fast as the carriers move now.
   const trajectory::CoordinateLimits& own = c.ahead.window.limits();
   for (std::size_t k = 0; k < std::min(own.count, kMaxAxes); ++k) {
     if (reason != kinematics::Reason::kNone || s.members[k] == 0) continue;
@@ -311,7 +313,7 @@ trajectory::Limits LimitsAlong(const Context& c, const State& s, const Stretch& 
   const bool stands = speed == 0;
   trajectory::Limits limits = {path.velocity, path.acceleration, path.deceleration.value_or(path.acceleration),
                                path.jerk};
-  double length = 0;  // mm of the tool per unit of the travel
+  double length = 0;  // mm of tool motion per unit of travel
   kinematics::Joints near = s.joints;
   double velocity = trajectory::CoordinateLimits::kNone, acceleration = velocity, jerk = velocity;
   for (int i = 0; i < kLooks; ++i) {
@@ -337,7 +339,7 @@ trajectory::Limits LimitsAlong(const Context& c, const State& s, const Stretch& 
     }
   }
   const double scale = length > 0 ? 1 / length : 1;
-  // Boarding is planned with what the axes can: it comes nearer to a carrier that is faster than the path may be.
+  // Boarding is planned with the limits of the axes: it approaches a carrier that is faster than the path may be.
   const double most = stands && c.params.tracking.board ? velocity : std::min(velocity, scale * limits.velocity);
   return {most, std::min(acceleration, scale * limits.acceleration),
           std::min(acceleration, scale * limits.deceleration), std::min(jerk, scale * limits.jerk)};

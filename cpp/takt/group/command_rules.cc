@@ -1,4 +1,4 @@
-// What the fields of a command must be together, beyond their ranges.
+// Rules on combinations of a command's fields, beyond their ranges.
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -13,7 +13,7 @@ namespace takt::group {
 
 namespace {
 
-// The first of the tool's numbers that is given; empty: none.
+// Returns the name of the first tool coordinate that is given; empty if none.
 template <typename T>
 std::string_view GivenOfTool(const T& c) {
   constexpr std::array<std::string_view, 6> kNames{"x", "y", "z", "a", "b", "c"};
@@ -160,7 +160,7 @@ std::string WhyNotThis(const MoveArch& c) {
   return FirstOf(WhyNotAPlace(c), WhyNotTransition(c));
 }
 
-// From where to where an object is tracked: mm or deg of what carries it.
+// Range of tracking of an object: mm or deg of its carrier.
 struct Tracked {
   std::string_view begin_name, end_name, sync_in_name, unit;
   double begin = 0;

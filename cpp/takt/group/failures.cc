@@ -11,7 +11,7 @@ namespace {
 using kinematics::Reason;
 
 constexpr unsigned kBits = 5;
-constexpr unsigned kGroupAt = 40;  // bits of all codes
+constexpr unsigned kGroupAt = 40;  // the codes use the bits below
 constexpr std::uint8_t kOutOfReach = 1, kOrientation = 2, kSingular = 3, kLimits = 4;
 
 constexpr std::array kNames = {"shoulder", "elbow", "wrist"};
@@ -38,7 +38,7 @@ std::string Why(std::uint8_t code, std::span<const std::string> axes) {
   return name + " would leave its range at the " + ((code - kLimits) % 2 == 1 ? "upper" : "lower") + " end";
 }
 
-// Of `used`, those with the same values as `one` for the names in a mask.
+// Returns those of `used` that agree with `one` in the names of a mask.
 std::vector<std::size_t> Alike(const std::vector<std::size_t>& used, std::size_t one, unsigned names) {
   std::vector<std::size_t> out;
   for (const std::size_t other : used) {
@@ -61,7 +61,7 @@ std::string InWords(std::size_t configuration, unsigned names) {
   return text;
 }
 
-// Which of those used, by as few names as can be.
+// Returns the names of a subset of those used, as few as possible.
 std::string Which(const std::vector<std::size_t>& these, const std::vector<std::size_t>& used) {
   for (const unsigned names : {1U, 2U, 4U, 3U, 5U, 6U}) {
     if (Alike(used, these.front(), names) == these) return InWords(these.front(), names);
@@ -105,7 +105,7 @@ std::string Failures::Sentence(std::span<const std::string> axes) const {
   for (std::size_t i = 0; i < codes_.size(); ++i) {
     if (codes_[i] != 0) used.push_back(i);
   }
-  // That has a sentence of its own.
+  // Singular positions have a sentence of their own.
   if (std::ranges::all_of(used, [&](std::size_t i) { return codes_[i] == kSingular; })) return {};
   std::string text = "no position of the axes leads there: ";
   std::vector<std::uint8_t> told;

@@ -36,7 +36,7 @@ void Fail(const Context& c, ErrorId error, State& s) {
   Enter(GroupState::kErrorStop, s);
 }
 
-// Nothing is left to go: the members stand still and are let go of.
+// No motion is left: the members are at rest and are released.
 void ComeToRest(const Context& c, State& s) {
   s.ends = s.begun = s.lets_go = false;
   s.clutches = {};
@@ -56,14 +56,14 @@ void ComeToRest(const Context& c, State& s) {
     s.ticket = 0;
     EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
   }
-  // What waits goes on from here.
+  // Waiting moves continue from here.
   if (s.queue.count > 0 && s.state != GroupState::kErrorStop) return;
   LetGoOfMembers(c, s);
   if (s.task == Task::kPower && !s.power_on) SwitchOffAll(c, s);
   if (s.state != GroupState::kErrorStop) Enter(GroupState::kStandby, s);
 }
 
-// The path was not to be gone to its end.
+// The path could not be executed to its end.
 void EndCutShort(const Context& c, State& s) {
   const bool singular = s.reason == kinematics::Reason::kSingular;
   const ErrorId error = singular ? ErrorId::kSingular : ErrorId::kUnreachable;
@@ -83,17 +83,17 @@ bool NothingToGo(const Context& c, const State& s) {
   return c.ahead.count == 0 && s.planning.stage == Stage::kIdle && s.planning.move >= s.done + s.queue.count;
 }
 
-// The move that would be planned next waits for the command that tracks its object.
+// Returns true if the next move to be planned waits for its object to be tracked.
 bool LeadsToTracking(const State& s) {
   return s.planning.move < s.done + s.queue.count && WaitsForTracking(s, MoveAt(s, s.planning.move));
 }
 
-// The move that is planned next is one for which the tool may board.
+// Returns true if the tool may board for the next move to be planned.
 bool LeadsToBoarding(const Context& c, const State& s) {
   return s.planning.move < s.done + s.queue.count && MayBoard(c, s);
 }
 
-// Each brakes by itself, off the path.
+// Each member brakes individually, off the path.
 void BrakeEachAlone(const Context& c, State& s) {
   LetGoOfMembers(c, s);
   s.begun = false;
@@ -102,15 +102,15 @@ void BrakeEachAlone(const Context& c, State& s) {
 
 void MoveOn(const Context& c, State& s) {
   if (!Advance(c, s)) {
-    // It was good when the path was tried: a limit switch is on now, or something is wrong with the machine's own
-    // numbers.
+    // It was reachable when the path was verified: a limit switch has become active, or the machine's data are
+    // inconsistent.
     BrakeEachAlone(c, s);
     return Fail(c, s.refused.any() ? RefusalOf(c, s) : ErrorId::kUnreachable, s);
   }
   if (!Rests(s)) return;
   const bool rides = !s.lets_go && IsOnRide(c, s);
   if (s.ends && rides) {
-    // On the way from ride to ride nothing could be gone on with.
+    // Between two carrier bindings no path could be continued.
     if (IsBetweenRides(c, s))
       s.lets_go = true;
     else
@@ -118,14 +118,14 @@ void MoveOn(const Context& c, State& s) {
     return;
   }
   if (s.ends && RidesFreely(c, s)) return BrakeEachAlone(c, s);
-  // The members get to the last set point after this.
+  // The members reach the last set point after this.
   if (rides ? !AreInStep(c, s) : !AllMembers(c, s, axis::AtRest)) return;
   if (s.ends) return ComeToRest(c, s);
   if (s.interrupted) {
     if (s.task == Task::kInterrupt) EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
     return;
   }
-  // Before a zone or an object it waits for, or a carrier to be boarded, all that leads there is done.
+  // Before a zone, an object or a carrier to be boarded that the next move waits for, all moves up to there are done.
   const bool for_object = LeadsToTracking(s) && StandsAtEnd(c, s);
   const bool waits = s.waits_for != 0 || LeadsToBoarding(c, s);
   while ((for_object || (waits && StandsAtEnd(c, s))) && s.done < s.planning.move) {
@@ -141,10 +141,10 @@ void MoveOn(const Context& c, State& s) {
   }
   while (s.queue.count > 0) Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
   s.active = 0;
-  if (!rides) ComeToRest(c, s);  // else it goes along until it is told something else
+  if (!rides) ComeToRest(c, s);  // else it stays on its carrier until the next command
 }
 
-// The first of what is planned can begin.
+// The first part of the plan can begin.
 void BeginMotion(const Context& c, State& s) {
   const ErrorId error = TakeMembers(c, s);
   if (error != ErrorId::kNone) {
@@ -185,7 +185,7 @@ void WatchPower(const Context& c, State& s) {
   const ErrorId fault = FaultOfMembers(c, s);
   if (s.power_on && fault != ErrorId::kNone) return EndTask(c, FeedbackState::kError, fault, s);
   if (!s.power_on) return;
-  // A command has switched a member off meanwhile, by itself or with the machine.
+  // Meanwhile a command has switched a member off, alone or with the machine.
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
     const axis::State& member = MemberOf(c, s, k);
@@ -208,7 +208,7 @@ void WatchReset(const Context& c, State& s) {
   Report(c, s.reset_ticket, FeedbackState::kDone);
 }
 
-// Once the members are let go of they can be reset.
+// Members can be reset once they are released.
 void AskForReset(const Context& c, State& s) {
   if (s.guides || s.reset_asked) return;
   s.reset_asked = true;
@@ -244,7 +244,7 @@ void WatchLease(const Context& c, State& s) {
   EndJog(c, 0, s);
 }
 
-// u that a member goes on for while path and carriers come to rest.
+// Returns the distance that a member moves while path and carriers come to rest [u].
 double WayAlongPath(const Context& c, const axis::State& member, const State& s) {
   const double speed = std::abs(member.setpoint.velocity), along = s.pace.now.velocity;
   double way = along > 0 ? speed / along * (RestAt(c, s) - s.pace.now.position) : 0;
@@ -255,12 +255,12 @@ double WayAlongPath(const Context& c, const axis::State& member, const State& s)
   return way;
 }
 
-// Whether a member goes further onto a limit switch, or in a direction that is not enabled, along the path than by the
-// ramp that the machine file gives it for that (AX-112). Each fault is weighed once, in the cycle after it, when the
-// path is braked.
+// Returns true if a member moves further onto a limit switch, or in a direction that is not enabled, along the path
+// than by the ramp that the machine file gives it for that (AX-112). Each fault is compared once, in the cycle after
+// it, when the path is braked.
 bool GoesFurtherThanAlone(const Context& c, State& s) {
   constexpr double kSame = 1.05;  // paths are braked with a little less than the limits
-  constexpr double kCycles = 2;   // in which faults are noticed and weighed
+  constexpr double kCycles = 2;   // until faults are noticed and compared
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     const std::uint32_t bit = 1u << k;
     if (s.members[k] == 0 || (s.weighed & bit) != 0) continue;
@@ -272,7 +272,7 @@ bool GoesFurtherThanAlone(const Context& c, State& s) {
     const bool at_switch = v > 0 ? member.limit_positive : member.limit_negative;
     const bool barred = at_switch || axis::FollowerThatBars(own, member, v > 0 ? 1 : -1) != axis::kNoAxis ||
                         axis::Bars(own, member, v > 0 ? 1 : -1);
-    // Without a ramp of its own nothing says how much way there is: the path counts for more (GR-03).
+    // Without a ramp of its own its distance is not bounded: the path takes precedence (GR-03).
     const axis::StopRamp& own_ramp = at_switch ? own.params.limit_stop : own.params.fault_stop;
     if (!barred || !(own_ramp.deceleration || own_ramp.jerk)) continue;
     const trajectory::Limits ramp = axis::StopLimits(own.params, member.error);
@@ -288,13 +288,13 @@ void WatchMembers(const Context& c, State& s) {
   if (brakes && GoesFurtherThanAlone(c, s)) BrakeEachAlone(c, s);
   const ErrorId fault = FaultOfMembers(c, s);
   if (fault != ErrorId::kNone) return Fail(c, fault, s);
-  // What waits, for a zone or an object, does not set off by itself when a member is switched on again.
+  // Moves that wait for a zone or an object do not start by themselves when a member is switched on again.
   const bool waits = s.queue.count > 0 || s.track.ticket != 0;
   if (s.guides || !waits) return;
   if (AllMembers(c, s, [](const axis::State& member) { return member.loop_closed; })) return;
   EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
   AbortMoves(c, ErrorId::kNone, s);
-  if (s.ends) return;  // comes to rest
+  if (s.ends) return;  // it is coming to rest
   ForgetPlan(c, s);
   s.interrupted = s.lets_go = false;
   if (s.state == GroupState::kMoving) Enter(GroupState::kStandby, s);
@@ -340,7 +340,7 @@ void Step(const Context& c, State& s) noexcept {
     if (!s.ends && !s.interrupted) Rehearse(c, s);
     MoveOn(c, s);
   } else if (s.ends ? AllMembers(c, s, HasStopped) : s.state == GroupState::kMoving && NothingToGo(c, s)) {
-    // Moves to where the group stands are done.
+    // Moves to the present position are done.
     while (!s.ends && s.queue.count > 0) Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
     ComeToRest(c, s);
   } else if (!s.interrupted && c.ahead.count == 0 && LeadsToTracking(s)) {

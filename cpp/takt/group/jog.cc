@@ -15,14 +15,14 @@ namespace takt::group {
 
 namespace {
 
-constexpr double kFarthest = 16'384;  // mm or u, of one way; from its end a jog goes on
-constexpr double kMostTurn = 3'600;   // deg, the same
-constexpr double kShort = 1e-3;       // mm, deg or u before the border
-constexpr double kLeastWay = 1e-2;    // the same: a shorter way is none
-constexpr double kOfTurn = 0.1;       // of a turn that was asked for
+constexpr double kFarthest = 16'384;  // mm or u, longest path; a jog continues from its end
+constexpr double kMostTurn = 3'600;   // deg, likewise
+constexpr double kShort = 1e-3;       // mm, deg or u, distance kept from the border
+constexpr double kLeastWay = 1e-2;    // likewise, shortest path
+constexpr double kOfTurn = 0.1;       // tolerance of the orientation, as a share of the demanded turn
 constexpr double kLeastTurn = 1e-6;   // rad
 constexpr double kSameDirection = 1e-9;
-constexpr int kSpeedPlaces = 32;  // of a way, at which the speed of the tool is looked at
+constexpr int kSpeedPlaces = 32;  // points of a path at which the speed of the tool is computed
 
 using kinematics::Joints;
 using kinematics::Reason;
@@ -31,12 +31,12 @@ double OrZero(double speed) {
   return std::isnan(speed) ? 0 : speed;
 }
 
-// The speeds of a jog, seen from the MCS.
+// The velocities of a jog, in the MCS.
 struct Speeds {
   KDL::Vector along;  // mm/s
   KDL::Vector about;  // rad/s
   Joints axes{};      // u/s
-  double most = 0;    // of them all, mm/s, deg/s or u/s
+  double most = 0;    // largest of them, mm/s, deg/s or u/s
 
   Frame ToolAfter(const Frame& from, double time_s) const {
     const double rate = about.Norm();
@@ -64,7 +64,7 @@ Speeds SpeedsOf(const Request& jog, const Frame& tool) {
   return speeds;
 }
 
-// s that a jog may take for one way.
+// Returns the longest duration of one path of a jog [s].
 double LongestTime(const Speeds& speeds) {
   double time = kNoLimit;
   const auto take = [&](double most, double speed) {
@@ -80,7 +80,7 @@ path::Triple TripleOf(const KDL::Vector& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-// Holds the speed along the way beneath that of the group's jogs. `time_s`: that its length takes at the speeds given.
+// Limits the path speed to the jog limits of the group. `time_s`: duration of the path at the velocities given.
 void HoldSpeed(const Context& c, const State& s, const Speeds& speeds, double time_s, Stretch& stretch) {
   const JogLimits& most = c.params.jog;
   const double speed = stretch.segment.length / time_s;
@@ -170,7 +170,7 @@ ErrorId MakeJog(const Context& c, const Request& jog, LookAhead& ahead, State& s
   const Speeds speeds = SpeedsOf(jog, ahead.end_tool);
   const bool axes = jog.system == CoordinateSystem::kAcs;
   Joints good = ahead.end_joints;
-  Reason reason = Reason::kNone;  // of the last that may not be
+  Reason reason = Reason::kNone;  // of the last failure
   const auto may = [&](double time_s) {
     Joints joints = speeds.AxesAfter(axes ? ahead.end_joints : good, axes ? time_s : 0);
     if (!axes) {
@@ -182,7 +182,7 @@ ErrorId MakeJog(const Context& c, const Request& jog, LookAhead& ahead, State& s
         reason = found;
         return false;
       }
-      // Mechanisms without a wrist take any orientation for theirs.
+      // Mechanisms without a wrist ignore the demanded orientation.
       Frame reached;
       const double turn = speeds.about.Norm() * time_s;
       if (turn > 0 && (ToolAt(c, joints, reached) != Reason::kNone ||
@@ -246,7 +246,7 @@ double JogSpeed(const State& s) noexcept {
 }
 
 bool AtBorder(const Context& c, State& s) noexcept {
-  if (s.jog.border == ErrorId::kNone) {  // so far as one way leads
+  if (s.jog.border == ErrorId::kNone) {  // the largest length of one path
     s.begun = false;
     s.way_before += s.pace.now.position;
     s.pace = {};

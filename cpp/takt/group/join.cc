@@ -17,22 +17,22 @@ namespace {
 
 constexpr int kBlendPlaces = 6;
 constexpr int kHalvings = 8;
-// Slower than this a joint without a blend is no better than a stop, mm/s.
+// mm/s; slower joints without a blend are no better than a stop
 constexpr double kLeastJointSpeed = 1;
 constexpr double kRounding = 1e-9;
-constexpr double kLeastSaved = 3;  // cycles: what a blend saves beside a stop, else there is none
-// Of a stretch that goes over from ride to ride, at most, on each side.
+constexpr double kLeastSaved = 3;  // cycles that a blend must save compared with a stop
+// Share of a stretch with a transition between carrier bindings, at most, for blends at each end.
 constexpr double kBlendShare = 0.4;
-// How unlike both sides of a corner may be, of chords of a curve: else it would bend to the other side.
+// Largest ratio of both sides of a corner between chords of a curve: beyond it the blend would bend to the other side.
 constexpr double kMostUneven = 2.5;
 
-// How a path goes on at this element: that of the move, but for the first element of a path, which is joined as the
-// move.
+// Returns true if a blend is demanded at the start of this element; the first element of a path is joined as the move
+// is.
 bool Blends(const Request& move, std::uint32_t element) {
   return move.transition_mode != TransitionMode::kNone && (move.blends() || element > 0);
 }
 
-// Whether the path goes on behind this stretch without a stop, as far as is known.
+// Returns true if the path continues after this stretch without a stop, as far as is known.
 bool GoesOn(const Context& c, const State& s) {
   const Request& move = MoveAt(s, s.planning.move);
   if (s.planning.element + 1 < ElementsOf(c, move)) return true;
@@ -52,7 +52,7 @@ double BlendVelocity(const Request& move, double before, double after) {
   }
 }
 
-// How a motion along both speeds up.
+// Returns the limits that a motion along both shares.
 path::Ramp RampOf(const Context& c, const Stretch& before, const Stretch& after) {
   const LookAhead& ahead = c.ahead;
   if (!c.params.path.planned_ahead || IsCarried(ahead, before) || IsCarried(ahead, after)) return {};
@@ -62,14 +62,14 @@ path::Ramp RampOf(const Context& c, const Stretch& before, const Stretch& after)
   return {l.velocity, a, l.jerk};
 }
 
-// A blend that begins and ends so far from the corner.
+// Makes a blend that begins and ends at these distances from the corner.
 bool MakeBlend(const Context& c, const Stretch& before, const Stretch& after, double first, double second,
                path::Segment& out) {
   return path::Blend(before.segment, before.to - first, after.segment, after.from + second, out,
                      RampOf(c, before, after)) == path::Problem::kNone;
 }
 
-// The least velocity, squared, that the limits allow on a blend; negative where there is no way to follow it.
+// Returns the least squared velocity that the limits allow on a blend; negative if the axes cannot follow it.
 double SquareOn(const Context& c, const State& s, const Stretch& blend) {
   double square = std::numeric_limits<double>::infinity();
   kinematics::Joints near = c.ahead.end_joints;
@@ -85,16 +85,16 @@ double SquareOn(const Context& c, const State& s, const Stretch& blend) {
   return square;
 }
 
-// From the corner; 0: there is no transition.
+// mm, from the corner; 0: no transition.
 struct Distances {
   double first = 0;
   double second = 0;
-  // What they may be at most, and how far from the lines the blend.
+  // Largest values of both, and of the distance from the lines to the blend.
   double reach = 0;
   double deviation = kNoEnd;
 };
 
-// How far from the corner the transition that a move asks for begins and ends.
+// Returns the distances from the corner at which the transition that a move demands begins and ends.
 Distances DistancesOf(const Context& c, const State& s, const Request& move, const Stretch& before,
                       const Stretch& after, const path::Room& room, Stretch blend, int& work) {
   const double parameter = move.transition_parameter;
@@ -109,7 +109,7 @@ Distances DistancesOf(const Context& c, const State& s, const Request& move, con
     case TransitionMode::kStartVelocity:
       return both(trajectory::RampLength(parameter, 0, before.limits.deceleration, before.limits.jerk));
     case TransitionMode::kConstantVelocity: {
-      // The shortest one on which that speed can be kept.
+      // The shortest blend on which that speed can be kept.
       double short_of = 0;
       double enough = std::min(room.first, room.second);
       for (int i = 0; i < kHalvings; ++i) {
@@ -125,7 +125,7 @@ Distances DistancesOf(const Context& c, const State& s, const Request& move, con
   }
 }
 
-// Whether the motion can still stop at a place, at a node or between it and the next one.
+// Returns true if the motion can still stop at `place`, at a node or between it and the next one.
 bool CanStopAt(const trajectory::PathWindow& window, const trajectory::PathPace& pace, std::uint64_t node,
                double place) {
   if (pace.raw_stands) return pace.node < node;
@@ -141,15 +141,15 @@ bool CanStopAt(const trajectory::PathWindow& window, const trajectory::PathPace&
   }
   const double v = pace.raw.velocity;
   const double left = later - pace.raw.position;
-  // It may go by the ceiling itself.
+  // It may follow the ceiling itself.
   return left > 0 && v * v + 2 * left * window[pace.node].bounds.Least(pace.entered) <= square * (1 + kRounding);
 }
 
-// Takes back what is planned behind a place, to be sampled again from a stretch on, if the motion can still stop
-// before.
+// Removes the nodes behind `place`, so that the path is sampled again from `stretch` on. Returns false if the motion
+// can no longer stop before.
 bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch) {
   LookAhead& ahead = c.ahead;
-  if (!ahead[stretch].begun) return true;  // there are no nodes of it yet: it waited for this
+  if (!ahead[stretch].begun) return true;  // it has no nodes yet: it waited for this
   trajectory::PathWindow& window = ahead.window;
   std::uint64_t node = window.end() - 1;
   while (node > window.begin() && window[node].at.s > place) --node;
@@ -167,7 +167,7 @@ bool CutAt(const Context& c, const State& s, double place, std::uint64_t stretch
     const double way = ahead[on].from + (place - ahead[on].begin);
     const kinematics::Reason reason = SlopesOn(c, s, ahead[on], way, ahead.last_joints, there, motion);
     if (reason != kinematics::Reason::kNone) return false;
-    // Where nodes are far apart, the motion would have to stop far before the place: it gets one of its own.
+    // Where nodes are far apart, the motion would have to stop far before the place: it gets a node of its own.
     if (place > end.s) end = there;
   }
   if (s.begun) {
@@ -198,7 +198,7 @@ void Append(LookAhead& ahead, Stretch stretch) {
   ahead[ahead.end() - 1] = stretch;
 }
 
-// From where to where the tool goes over to the ride of the last stretch.
+// Updates the arc lengths of the transition to the carrier binding of the last stretch.
 void SettleRide(LookAhead& ahead, bool first, double left) {
   const Stretch& last = ahead[ahead.end() - 1];
   if (last.from_ride == last.to_ride) return;
@@ -207,7 +207,7 @@ void SettleRide(LookAhead& ahead, bool first, double left) {
   ride.end = last.end() + left;
 }
 
-// What a corner without a blend allows.
+// Returns true if a corner can be passed without a blend and without a stop.
 bool Passes(const Context& c, const State& s, const Stretch& before, const Stretch& after) {
   trajectory::PathPoint ends, begins;
   kinematics::JointMotion motion;
@@ -218,7 +218,7 @@ bool Passes(const Context& c, const State& s, const Stretch& before, const Stret
   return square > kLeastJointSpeed * kLeastJointSpeed;
 }
 
-// A blend between two lines as chords of a curve.
+// Makes a blend between two lines as chords of a curve.
 bool MakeRound(const OpenCorner& corner, const path::Segment& second, double to, const path::Bends& bends,
                path::Segment& out) {
   const double before = corner.first.length - corner.from;
@@ -227,7 +227,7 @@ bool MakeRound(const OpenCorner& corner, const path::Segment& second, double to,
   return corner.deviation >= kNoEnd || path::Deviation(corner.first, second, out) <= corner.deviation;
 }
 
-// Instead of a blend of its own, one that goes on from that of the last corner in the middle of the stretch between
+// In place of a separate blend, makes one that continues that of the last corner from the middle of the stretch between
 // them, with the same curvature. `blend` lacks its segment.
 bool GoOnFromLastCorner(const Context& c, const State& s, const CornerBlend& d, int& work) {
   LookAhead& ahead = c.ahead;
@@ -238,8 +238,8 @@ bool GoOnFromLastCorner(const Context& c, const State& s, const CornerBlend& d, 
   if (c.params.workspace && line.length > c.params.workspace->margin) return false;
   Stretch blend = d.stretch;
   const double middle = line.length / 2;
-  if (d.first < middle && d.second < ahead.next.segment.length / 2) return false;  // it is the deviation that counts
-  // Both corners are passed sooner by two ramps each that overlap than at one speed: there is no curvature to keep up.
+  if (d.first < middle && d.second < ahead.next.segment.length / 2) return false;  // the deviation limits it
+  // Both corners are passed sooner by two overlapping ramps each than at one speed: there is no curvature to keep up.
   const auto is_sharp = [&](const path::Segment& first, const path::Segment& second, double distance) {
     return std::isfinite(path::Overlap(first, second, distance, RampOf(c, ahead[last_one], ahead.next)));
   };
@@ -251,7 +251,7 @@ bool GoOnFromLastCorner(const Context& c, const State& s, const CornerBlend& d, 
   Stretch last = ahead[last_one];
   OpenCorner corner{true, line, middle, {}, d.reach, d.deviation};
   bool made = false;
-  for (const double share : {1.0, 0.5, 0.0}) {  // less of it comes nearer to the corners
+  for (const double share : {1.0, 0.5, 0.0}) {  // less curvature comes closer to the corners
     for (std::size_t i = 0; i < bend->size(); ++i) corner.bend[i] = share * (*bend)[i];
     made = MakeRound(ahead.corner, line, middle, {ahead.corner.bend, corner.bend}, last.segment) &&
            MakeRound(corner, ahead.next.segment, d.second, {corner.bend, {}}, blend.segment);
@@ -274,15 +274,15 @@ bool GoesOver(const Stretch& stretch) {
   return stretch.from_ride != stretch.to_ride;
 }
 
-// All of a blend but its segment. False: there is none.
+// Computes all of a blend but its segment. Returns false if there is none.
 bool FindDistances(const Context& c, const State& s, const Request& move, std::uint32_t element, const Stretch& before,
                    const Stretch& after, int& work, CornerBlend& out) {
   if (!Blends(move, element)) return false;
   if (before.joints != after.joints || before.segment.measure != after.segment.measure) return false;
-  if (before.begun && GoesOver(before)) return false;  // where it ends is settled
+  if (before.begun && GoesOver(before)) return false;  // its end is fixed
   path::Room room = path::HalfOf(before.segment, after.segment);
   room.first = std::min(room.first, before.to - before.from);
-  // Some way is left to go over from ride to ride on.
+  // Some length is left for the transition between carrier bindings.
   if (GoesOver(before)) room.first = std::min(room.first, kBlendShare * before.segment.length);
   if (GoesOver(after)) room.second = std::min(room.second, kBlendShare * after.segment.length);
   Stretch& blend = out.stretch;
@@ -294,7 +294,7 @@ bool FindDistances(const Context& c, const State& s, const Request& move, std::u
   blend.from_ride = blend.to_ride = before.to_ride;
   if (after.to_ride == before.to_ride) blend.from_ride = after.from_ride;  // within one transition
   blend.eta_begin = blend.eta_end = before.eta_end;
-  // No element of a path is gone faster than it may, on its blends either.
+  // No element of a path is passed faster than it allows, nor are its blends.
   const double slower = std::min(before.limits.velocity, after.limits.velocity);
   blend.limits.velocity = element > 0 ? slower : BlendVelocity(move, before.limits.velocity, after.limits.velocity);
   const Distances d = DistancesOf(c, s, move, before, after, room, blend, work);
@@ -302,10 +302,10 @@ bool FindDistances(const Context& c, const State& s, const Request& move, std::u
   out.second = d.second;
   out.reach = d.reach;
   out.deviation = d.deviation;
-  // One that the deviation keeps short of the middle of both lines is never made again: nothing has to wait for it.
+  // A blend that the deviation keeps short of the middle of both lines is never made again: nothing has to wait for it.
   out.to_middle = d.first >= room.first || d.second >= room.second;
   if (!(d.first > 0 && d.second > 0)) return false;
-  // A stop costs next to nothing more, and asks for no plan through a bend of a micrometre.
+  // A stop takes hardly longer, and needs no plan through a bend of a micrometre.
   const double saved_s =
       path::Overlap(before.segment, after.segment, std::min(d.first, d.second), RampOf(c, before, after));
   return saved_s >= kLeastSaved * c.cycle.period_s;
