@@ -33,7 +33,7 @@ Boarding* BoardingOn(LookAhead& ahead, const Stretch& stretch) noexcept;
 // Boarding::reach is the arc length that the raw motion reaches at the earliest when the tool is in sync, computed from
 // the bounds of the nodes as they are appended. Called at the first node, ...
 void BeginReserve(const Context& c, Boarding& boarding) noexcept;
-// ... with the last node before the next is appended: returns an upper bound for the arc length of that one; ...
+// ... with the last node before the next is appended: returns an upper bound of the arc length of the next; ...
 double FindReach(const trajectory::PathNode& last, Boarding& boarding) noexcept;
 // ... with both; ...
 void PassNode(const Context& c, const trajectory::PathNode& last, const trajectory::PathNode& node,
@@ -45,7 +45,7 @@ double SpeedBesideBoarding(const trajectory::PathPoint& point, const trajectory:
                            double build_up_s, const Boarding& boarding) noexcept;
 
 // Returns true if a tool that boards should come to rest at once for a move onto `carrier` (0: the world): it boards
-// another one and is still in the first half of that.
+// another one and is still in the first half of boarding.
 bool TurnsBack(const Context& c, const State& s, std::uint32_t carrier) noexcept;
 
 // Ends boarding for a move that cannot be carried out with it: the tool stops, then the move is planned from rest with

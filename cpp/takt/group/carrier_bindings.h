@@ -51,7 +51,7 @@ MovingFrame ToolNow(const Context& c, const State& s, const Stretch& stretch, co
 MovingFrame PredictedTool(const Context& c, const Stretch& stretch, const KinematicState& way, bool still) noexcept;
 // Updates LookAhead::unsteady; once per cycle.
 void WatchCarriers(const Context& c, const State& s) noexcept;
-// Returns whether a carrier of the stretch has accelerated within the last 3 s (WatchCarriers).
+// Returns true if a carrier of the stretch has accelerated within the last 3 s (WatchCarriers).
 bool IsUnsteady(const Context& c, const Stretch& stretch) noexcept;
 
 // As ToolNow, with carriers extrapolated by `ahead_s` [s], boarding included.

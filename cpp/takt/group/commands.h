@@ -265,7 +265,7 @@ struct SetDynCoordTransform {
 struct TrackConveyorBelt {
   Name belt;
   std::uint32_t pcs = 1;  // becomes the coordinate system of the object
-  // Origin of the belt in the MCS, in place of its own; all unset: its own, else unset values are 0.
+  // Origin of the belt in the MCS; if all are unset its own, else unset values are 0.
   std::optional<double> origin_x{}, origin_y{}, origin_z{}, origin_a{}, origin_b{}, origin_c{};
   double x = 0, y = 0, z = 0, a = 0, b = 0, c = 0;  // InitialObjectPosition, on the belt
   std::optional<double> recorded_position{};        // u, position of the belt's axis; unset: the present one

@@ -16,15 +16,15 @@ namespace {
 
 using trajectory::PathCoordinateValues;
 
-// Of the axes' limits; the rest is for what changes until the tool is there. More where only carriers are a little
-// faster or slower than was planned for.
+// Shares of the axes' limits; the rest is a reserve for changes until the tool is there. The larger one where only
+// carriers are a little faster or slower than planned.
 constexpr double kMostWhenLate = 0.7, kNearlyAll = 0.9;
-constexpr double kLeast = 0.02;        // of the speed of the path: it goes on, however slowly
-constexpr double kBrakeShare = 0.7;    // of what the axes can do; the rest is for getting there
-constexpr double kLeastBrake = 0.03;   // of the path's
-constexpr double kLeastSpeed = 1;      // mm/s, to try places with
-constexpr double kSameSpeed = 0.05;    // of a carrier
-constexpr double kJerkOver_s = 0.004;  // a jerk is an acceleration's change in so long a time
+constexpr double kLeast = 0.02;        // of the path speed: the motion goes on, however slowly
+constexpr double kBrakeShare = 0.7;    // of what the axes have left; the rest is for getting there
+constexpr double kLeastBrake = 0.03;   // of the path's own deceleration
+constexpr double kLeastSpeed = 1;      // mm/s, for difference quotients
+constexpr double kSameSpeed = 0.05;    // relative change of a carrier's velocity that is ignored
+constexpr double kJerkOver_s = 0.004;  // time over which the jerk is measured as a change of acceleration
 constexpr double kFurthest_s = 1;
 
 bool HasChanged(const Context& c, std::uint64_t number) {
@@ -41,7 +41,8 @@ bool CarriersHaveChanged(const Context& c, const State& s) {
   return here && (HasChanged(c, here->from_ride) || HasChanged(c, here->to_ride));
 }
 
-// Where the tool is on the ride that it goes over to next, or where the plan ends; 0: nothing carries it.
+// Returns the arc length at which the tool has changed over to its next carrier binding, or at which the sampled path
+// ends; 0 if nothing carries it.
 double EndOf(const Context& c, const State& s) {
   const LookAhead& ahead = c.ahead;
   double end = 0;
@@ -65,7 +66,7 @@ bool Begin(const Context& c, const State& s) {
   return true;
 }
 
-// The largest v up to which |a + b v + c v²| stays within a limit that it keeps at rest.
+// Returns the largest v up to which |a + b v + c v²| stays within a limit that it keeps at rest.
 double UpTo(double a, double b, double c, double limit) {
   double least = std::numeric_limits<double>::infinity();
   for (const double side : {-limit, limit}) {
@@ -84,7 +85,7 @@ double UpTo(double a, double b, double c, double limit) {
   return least;
 }
 
-// The earliest time in which the mean of the motion can be there.
+// Returns the earliest time in which the mean of the motion can reach `place` [s].
 double TimeTo(const State& s, double place, double acceleration, double wish) {
   const double way = std::max(0.0, place - s.pace.now.position);
   const double v = s.pace.now.velocity;
@@ -93,8 +94,9 @@ double TimeTo(const State& s, double place, double acceleration, double wish) {
   return std::min(time, kFurthest_s);
 }
 
-// The speed in the next cycle that can still be brought down to `later` in what is left. A raw motion that has sped up
-// can brake only when that has left the mean: it speeds up only as far as it could be held for so long.
+// Computes the largest speed in the next cycle that can still be reduced to `later` over the distance left. A raw
+// motion that has accelerated can brake only when that acceleration has left the mean: it accelerates only as far as it
+// could hold the speed for that time.
 struct Brakes {
   double v = 0;
   double deceleration = 0;
@@ -133,7 +135,7 @@ void LookAt(const Context& c, const State& s, double place, double wish, KeepUp:
     const double plus = by_way[k] - at_rest[k], minus = bend[k] - at_rest[k];
     by_way[k] = (plus - minus) / (2 * u);
     bend[k] = (plus + minus) / (2 * u * u);
-    // What carriers ask for by themselves no speed of the path makes good.
+    // No path speed can compensate for what carriers demand by themselves.
     if (slope[k] != 0 && std::abs(velocity[k]) < of.velocity) {
       const double toward = std::copysign(velocity[k], velocity[k] * slope[k]);
       seen.velocity = std::min(seen.velocity, (of.velocity - toward) / std::abs(slope[k]));
@@ -143,7 +145,7 @@ void LookAt(const Context& c, const State& s, double place, double wish, KeepUp:
       seen.velocity = std::min(seen.velocity, UpTo(at_rest[k], by_way[k], bend[k], most));
   }
   const double most = std::clamp(seen.velocity, kLeast * u, 4 * u);
-  // The jerk grows with the third power of the speed at most.
+  // The jerk grows at most with the third power of the speed.
   PathCoordinateValues later;
   const bool known = Foresee(c, s, {place + most * kJerkOver_s, most, 0}, time + kJerkOver_s, after, later, later);
   double share = 1;
@@ -172,7 +174,7 @@ double SlowDown(const Context& c, const State& s, double wish) noexcept {
   const KinematicState& raw = s.pace.raw;
   const bool late = IsLate(c, s);
   if (k.on && raw.position >= k.begin + k.apart * (kWatched - 1)) {
-    // A blend may have made the way from ride to ride longer.
+    // A blend may have made the transition longer.
     const Stretch* here = c.ahead.At(raw.position);
     if (!here || here->from_ride == here->to_ride || !Begin(c, s)) k = {};
   }
@@ -182,7 +184,7 @@ double SlowDown(const Context& c, const State& s, double wish) noexcept {
   const double period = c.cycle.period_s;
   const double square = raw.velocity * raw.velocity;
   const double brake = std::min(node.bounds.deceleration, node.bounds.strength.Gentle(square));
-  // The mean is there later, of speeds before and behind.
+  // The mean lags behind the raw motion by this distance, and averages speeds on both sides.
   const double lag = 0.5 * raw.velocity * s.pace.cycles * period;
   const double seen_to = raw.position + lag + square / brake + raw.velocity * node.build_up_s;
   const auto index = [&](double place) {
@@ -210,7 +212,7 @@ double SlowDown(const Context& c, const State& s, double wish) noexcept {
     const double left = std::max(0.0, k.begin + i * k.apart - raw.position - lag);
     most = std::min(most, brakes.Before(left, k.places[i].velocity));
   }
-  // Against the acceleration that leaves the mean in this cycle.
+  // Relative to the acceleration that leaves the mean in this cycle.
   const double before = s.pace.last[s.pace.oldest].acceleration;
   const double least = std::min(std::max(-gentle, before - change), gentle);
   const double greatest = std::max(std::min(gentle, before + change), -gentle);

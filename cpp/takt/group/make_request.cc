@@ -28,7 +28,7 @@ constexpr Numbers NoNumbers() {
   return numbers;
 }
 
-// Whether there is a number for a place where there is no axis.
+// Returns true if a coordinate is given for an axis that is not a member.
 bool GivesNobody(const Numbers& to, const State& s) {
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0 && !std::isnan(to[kToolNumbers + k])) return true;
@@ -126,7 +126,7 @@ struct RequestMaker {
     r.limits = {own.velocity, s.acceleration_factor * m.acceleration.value_or(own.acceleration),
                 s.acceleration_factor * m.deceleration.value_or(deceleration),
                 s.jerk_factor * m.jerk.value_or(own.jerk)};
-    // Speeds of the tool belong to it, those of the axes that move it to ACS.
+    // Velocities of the tool belong to Cartesian systems, those of the axes that move it to ACS.
     const auto first = r.to.begin(), of_axes = first + kToolNumbers;
     const auto given = [](double speed) { return !std::isnan(speed); };
     const auto moves_tool = static_cast<std::ptrdiff_t>(InKinematics(c, s));

@@ -14,16 +14,15 @@ namespace takt::group {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-// A spline begins where the tool stands: mm and rad.
+// Tolerances for a spline that begins at the present pose: mm and rad.
 constexpr double kSamePlace = 1e-3;
 constexpr double kSameTurn = 1e-4;
-// What a belt's speed may change without the limits being exceeded.
+// Factor by which a belt's velocity may change within the limits.
 constexpr double kBeltChange = 1.1;
 constexpr double kMostReserve = 0.9;  // of a limit
 constexpr int kReserveRounds = 3;
 constexpr int kBoardingRounds = 6;
-constexpr double kBegins =
-    0.1;  // of the velocity share, kept of acceleration and jerk for a steady carrier that begins to change its speed
+constexpr double kBegins = 0.1;  // of the velocity share: acceleration and jerk kept for changes of a steady carrier
 constexpr double kBends = 1e-6;  // of the acceleration limit: less is rounding
 
 bool Given(double number) {
@@ -33,7 +32,7 @@ double Taken(double number, double before, bool relative) {
   return Given(number) ? (relative ? before + number : number) : before;
 }
 
-// The pose in its coordinate system that a move goes to.
+// Returns the target pose of a move in its coordinate system.
 kinematics::Pose PoseOf(const Request& move, const kinematics::Pose& from) {
   const auto taken = [&](std::size_t i, double before) { return Taken(move.to[i], before, move.relative); };
   return {taken(0, from.x), taken(1, from.y), taken(2, from.z), taken(3, from.a), taken(4, from.b), taken(5, from.c)};
@@ -50,7 +49,7 @@ bool Any(const Request& move, std::size_t begin, std::size_t end) {
                      move.to.begin() + static_cast<std::ptrdiff_t>(end), Given);
 }
 
-// What goes along with the tool.
+// Returns the auxiliary axes, which move along with the tool.
 path::Auxiliaries Behind(const kinematics::Joints& joints, std::size_t count) {
   path::Auxiliaries auxiliaries{};
   std::copy(joints.begin() + static_cast<std::ptrdiff_t>(count), joints.end(), auxiliaries.begin());
@@ -64,13 +63,13 @@ KDL::Vector ToVector(const path::Triple& t) {
   return {t[0], t[1], t[2]};
 }
 
-// All axes evenly, so that they arrive together.
+// Moves all axes in proportion, so that they arrive together.
 ErrorId AlongJoints(const Request& move, const kinematics::Joints& to, LookAhead& ahead, State& s) {
   Stretch& stretch = ahead.next;
   stretch.joints = true;
   s.problem = path::MakeLine({Frame::Identity(), ahead.end_joints}, {Frame::Identity(), to}, stretch.segment);
   if (s.problem != path::Problem::kNone) return ErrorId::kPathGeometry;
-  // Of the axis that is nearest to its limit.
+  // Limits by the axis that is closest to its own.
   trajectory::AlongPath& limits = stretch.limits;
   limits = {kUnlimited, kUnlimited, kUnlimited, kUnlimited};
   const trajectory::CoordinateLimits& own = ahead.window.limits();
@@ -98,7 +97,7 @@ ErrorId AlongTool(const Context& c, const Request& move, const Frame& to, const 
   return s.problem == path::Problem::kNone ? ErrorId::kNone : ErrorId::kPathGeometry;
 }
 
-// Computes the arc in the coordinate system of the command, in which a normal left out is chosen. `to`: in that system.
+// Computes the arc in the coordinate system of the command, in which a missing normal is chosen. `to`: in that system.
 ErrorId AlongCircle(const Context& c, const Request& move, const Frame& system, const Frame& to,
                     const path::Auxiliaries& auxiliaries, LookAhead& ahead, State& s) {
   const path::Point begin{system.Inverse() * ahead.end_tool, Behind(ahead.end_joints, c.kinematics->count)};
@@ -114,7 +113,7 @@ ErrorId AlongCircle(const Context& c, const Request& move, const Frame& system, 
   return ErrorId::kNone;
 }
 
-// Holds what a spline does not give where it is at its beginning: auxiliary axes, and perhaps the orientation.
+// Keeps what a spline does not define as at its start: auxiliary axes, and the orientation unless null.
 void Hold(const KDL::Rotation* orientation, const path::Auxiliaries& auxiliaries, path::Segment& segment) {
   segment.auxiliary_count = 0;
   for (std::size_t i = 0; i < path::kMaxAuxiliaries; ++i) {
@@ -164,7 +163,7 @@ ErrorId AlongPath(const Context& c, const Request& move, std::uint32_t element, 
   return AlongTool(c, one, system * kinematics::ToFrame(to), auxiliaries, arc ? &circle : nullptr, ahead, s);
 }
 
-// One piece of an arch.
+// Makes one piece of an arch.
 ErrorId AlongArch(const Context&, const Request& move, int piece, LookAhead& ahead, State& s) {
   Stretch& stretch = ahead.next;
   stretch.limits = move.limits;
@@ -180,7 +179,7 @@ ErrorId AlongArch(const Context&, const Request& move, int piece, LookAhead& ahe
   return s.problem == path::Problem::kNone ? ErrorId::kNone : ErrorId::kPathGeometry;
 }
 
-// As fast as the axes can.
+// Moves the tool straight; direct moves with the limits of the axes only.
 ErrorId Straight(const Context& c, const Request& move, const Frame& to, const path::Auxiliaries& auxiliaries,
                  LookAhead& ahead, State& s) {
   Request one = move;
@@ -188,7 +187,7 @@ ErrorId Straight(const Context& c, const Request& move, const Frame& to, const p
   return AlongTool(c, one, to, auxiliaries, nullptr, ahead, s);
 }
 
-// The coordinate system of a move in the still world; the ride that leads there.
+// Returns the coordinate system of a move in the planning frame, and sets the carrier binding that leads there.
 Frame StillFrameOf(const Context& c, const Request& move, LookAhead& ahead) {
   const CarriedTarget& cargo = move.cargo;
   const CarrierBinding& end = ahead.rides[ahead.end_ride % kRides];
@@ -197,7 +196,7 @@ Frame StillFrameOf(const Context& c, const Request& move, LookAhead& ahead) {
   if (cargo.carrier == 0 && !end.displaces) return frame;
   if (cargo.carrier != 0) frame = Frame::Identity();
   if (cargo == end.cargo) return ReferenceOf(end) * frame;
-  // Where it will be when the tool gets there depends on how long that takes, and the other way round.
+  // The pose of the target on arrival depends on the duration of the move, which depends on that pose.
   double time = ahead.next_time_s;
   if (!(time > 0)) {
     const Frame from = DisplacementOf(c, end, 0).GetFrame() * ahead.end_tool;
@@ -208,8 +207,8 @@ Frame StillFrameOf(const Context& c, const Request& move, LookAhead& ahead) {
   return ReferenceOf(ahead.rides[stretch.to_ride % kRides]) * frame;
 }
 
-// From a ride to where the axes stand by themselves: straight, for all axes to come to rest on the way would be to fall
-// off the ride.
+// From a carrier to positions of the axes: the tool moves straight, since a move of the axes would begin at rest, off
+// the carrier.
 ErrorId OffRide(const Context& c, const Request& move, const kinematics::Joints& to, LookAhead& ahead, State& s) {
   Frame tool;
   s.reason = ToolAt(c, to, tool);
@@ -264,7 +263,7 @@ ErrorId MakeStretch(const Context& c, const Request& move, std::uint32_t element
     ahead.arch_pieces = path::ArchPieces(ahead.arch_begin, ahead.arch_end, move.height, ahead.arch_up);
     return AlongArch(c, move, 0, ahead, s);
   }
-  // Onto what moves, and off it, the tool goes straight: where the axes are to be in the end is not known.
+  // Onto a moving carrier, and off it, the tool moves straight: the final positions of the axes are not known.
   if (move.kind == MoveKind::kDirect && !IsCarried(ahead, stretch)) {
     kinematics::Joints target = joints;
     Failures failures;
@@ -335,7 +334,7 @@ trajectory::PathSlopes SlopesOf(const kinematics::JointMotion& motion) {
   return slopes;
 }
 
-// Used shares of the limits of a coordinate.
+// Shares of a coordinate's limits that are in use.
 struct TakenShares {
   double velocity = 0;
   double acceleration = 0;
@@ -347,7 +346,7 @@ TakenShares TakenBeside(const trajectory::CoordinateLimits::One& of, const Carri
   const double own = kBeltChange * std::abs(part.velocity), own_bend = kBeltChange * std::abs(part.bend);
   const double faster = boarding ? boarding->faster : 1;
   const double over = kBeltChange * faster * 2 * std::abs(part.cross) * speed;
-  // Where the axes are not linear in the travel of the carrier, its part of the jerk is not known.
+  // Where the axes are not linear in the travel of the carrier, its share of the jerk is not known.
   const double bends = (over + own_bend) / of.acceleration;
   const double jerk = bends > kBends ? std::max(own / of.velocity, bends) : kBegins * own / of.velocity;
   if (!boarding) return {own / of.velocity, bends, jerk};
@@ -360,9 +359,9 @@ trajectory::Left LeftOf(const TakenShares& taken) {
   return {left(taken.velocity), left(taken.acceleration + kBegins * taken.velocity), left(taken.jerk)};
 }
 
-// Computes the share of each limit that the path may use: carriers use q_t of the velocity, q = q_s v + q_t, and
-// 2 q_st v + q_tt of the acceleration. An unsteady carrier may have to be braked together with the path: then the least
-// share over all axes and quantities holds for every one of them. A tool that boards takes its own part besides.
+// Computes the share of each limit that the path may use: carriers use q_t of the velocity, q = q_s v + q_t, and 2 q_st
+// v + q_tt of the acceleration. An unsteady carrier may have to be braked together with the path: then the least share
+// over all axes and quantities applies to all of them. Boarding takes a share of its own.
 void Reserve(const Context& c, const trajectory::PathSlopes& moving, const trajectory::PathSlopes& resting,
              bool unsteady, const Boarding* boarding, trajectory::PathPoint& point) {
   const trajectory::CoordinateLimits& limits = c.ahead.window.limits();

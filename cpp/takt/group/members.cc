@@ -51,7 +51,7 @@ ErrorId Try(const Context& c, const State& s, std::size_t place, const axis::Com
 bool AreInStep(const Context& c, const State& s) noexcept {
   const double same = std::max(kSame, c.params.tracking.tolerance), period = c.cycle.period_s;
   return AllMembers(c, s, [&](const axis::State& member) {
-    // Before the members have moved in this cycle they are where they were told to be in the one before.
+    // Before the members have moved in this cycle they are at their demands of the previous one.
     const KinematicState& demand = member.guidance.demand;
     const double lag = demand.position - member.origin - member.setpoint.position;
     const double moved = period * (demand.velocity - 0.5 * period * demand.acceleration);

@@ -87,7 +87,7 @@ struct PathElement {
 
 struct PathParams {
   std::string name;
-  std::string file;                   // CSV of elements in their place, relative to the machine file
+  std::string file;                   // instead of elements: a CSV file, relative to the machine file
   std::vector<PathElement> elements;  // the first one starts at the present pose, unless it is a spline
 };
 

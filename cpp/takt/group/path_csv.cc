@@ -112,7 +112,7 @@ class Reader {
   PathCsv csv_;
 };
 
-// The number behind `key` at the front of `path`, which loses both.
+// Removes `key` and the number after it from the front of `path`. Returns the number; nothing if they are not there.
 std::optional<std::size_t> TakeIndex(std::string_view& path, std::string_view key) {
   if (!path.starts_with(key)) return std::nullopt;
   std::size_t index = 0;

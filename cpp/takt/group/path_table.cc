@@ -9,7 +9,7 @@ namespace takt::group {
 
 namespace {
 
-// A place with what is known of its orientation.
+// A pose with an optional orientation.
 struct Station {
   kinematics::Pose pose;
   bool turned = false;
@@ -57,7 +57,7 @@ class TableMaker {
     return true;
   }
 
-  // Only a command says where the first element begins.
+  // The start of the first element is known only from a command.
   bool CanBeGone(const PathPiece& piece, Station from, const Station& to, const std::string& path) {
     if (!to.turned) from.turned = false;
     path::Segment segment;
@@ -97,7 +97,7 @@ class TableMaker {
     return true;
   }
 
-  // What is not given of the orientation is as before; before any is given, it is all or nothing.
+  // Missing orientation values are as before; in the first orientation all three are needed.
   bool Follow(const PathPose& pose, const std::string& path, Station& to) {
     const bool before = at_ && at_->turned;
     const bool any = pose.a || pose.b || pose.c;
@@ -111,7 +111,7 @@ class TableMaker {
   }
 
   const PathParams& params_;
-  std::optional<Station> at_;  // where the element before ends
+  std::optional<Station> at_;  // end of the previous element
   std::string path_, problem_;
 };
 

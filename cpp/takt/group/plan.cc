@@ -21,24 +21,24 @@ namespace takt::group {
 
 namespace {
 
-// So many inverses of the kinematics in a cycle; each takes up to a µs with closed forms.
+// Inverse kinematics per cycle; each takes up to a µs with closed forms.
 constexpr int kBudget = 40;
 constexpr int kBudgetAtRest = 80;
-// Of the members' limits: the rest keeps them within theirs in spite of what the timing takes for linear.
+// Share of the members' limits; the rest covers what the timing takes for linear.
 constexpr double kLimitShare = 0.98;
 constexpr std::size_t kSweepNodes = 512;
 constexpr int kRehearsed = 24;         // cycles of the motion ahead
-constexpr int kRehearsedIfCostly = 4;  // with an inverse of a chain for each
+constexpr int kRehearsedIfCostly = 4;  // with an inverse of a serial chain for each
 constexpr int kLeastPlaces = 4;
 constexpr int kMostPlaces = 64;
-constexpr double kPlaceWay = 8;           // mm between two places at which a path is tried beforehand
-constexpr double kFreeBefore = 1;         // mm or deg: a jog ends so far before what would be met
-constexpr double kMostLoad = 0.8;         // share of a limit that carriers may take
+constexpr double kPlaceWay = 8;           // mm between two points at which a path is verified
+constexpr double kFreeBefore = 1;         // mm or deg, distance kept by a jog from an obstacle
+constexpr double kMostLoad = 0.8;         // largest share of a velocity limit for carriers
 constexpr double kLatency_s = 0.004;      // from planning to motion
-constexpr double kStraightEnough = 1;     // mm that a target moves while the tool is early or late
-constexpr std::uint64_t kLookAgain = 64;  // cycles, at a move onto what moves that waits for a zone
+constexpr double kStraightEnough = 1;     // mm, displacement of a target by early or late arrival that is ignored
+constexpr std::uint64_t kLookAgain = 64;  // cycles between tries of a carried move that waits for a zone
 
-// `least` of them.
+// Returns the number of steps for verification, at least `least`.
 int PlacesOf(const Stretch& stretch, int least) {
   return std::clamp(static_cast<int>(std::ceil(stretch.segment.length / kPlaceWay)), least, kMostPlaces);
 }
@@ -47,13 +47,13 @@ ErrorId ErrorOf(kinematics::Reason reason) {
   return reason == kinematics::Reason::kSingular ? ErrorId::kSingular : ErrorId::kUnreachable;
 }
 
-// It has elements.
+// Returns true if the move has elements.
 bool IsPath(const State& s) {
   const MoveKind kind = MoveAt(s, s.planning.move).kind;
   return kind == MoveKind::kPath || kind == MoveKind::kArch;
 }
 
-// All elements of a path are tried before the first one is planned.
+// Returns true if the elements of a path are being verified; all are before the first one is planned.
 bool Tries(const State& s) {
   return IsPath(s) && !s.planning.tried;
 }
@@ -112,7 +112,7 @@ void Refuse(const Context& c, ErrorId error, State& s) {
 
 void BeginStretch(const Context& c, double time_s, State& s);
 
-// Some of what is planned is still to be gone.
+// Returns true if part of the plan has not yet been executed.
 bool LiesAhead(const Context& c, const State& s) {
   const LookAhead& ahead = c.ahead;
   return ahead.known && ahead.count > 0 && !(s.begun && s.pace.now.position >= ahead[ahead.end() - 1].end());
@@ -146,7 +146,7 @@ void Begin(const Context& c, State& s) {
   BeginStretch(c, 0, s);
 }
 
-// With how long it is expected to take, once that is known.
+// `time_s`: expected duration; 0: not yet known.
 void BeginStretch(const Context& c, double time_s, State& s) {
   const Request& move = MoveAt(s, s.planning.move);
   c.ahead.next = {};
@@ -154,7 +154,7 @@ void BeginStretch(const Context& c, double time_s, State& s) {
   c.ahead.load = 0;
   c.ahead.next.move = s.planning.move;
   const ErrorId error = MakeStretch(c, move, s.planning.element, c.ahead, s);
-  if (s.problem == path::Problem::kLengthZero) {  // it is there already
+  if (s.problem == path::Problem::kLengthZero) {  // already there
     s.problem = path::Problem::kNone;
     return NextElement(c, s);
   }
@@ -185,7 +185,7 @@ void BeginStretch(const Context& c, double time_s, State& s) {
   s.planning.stage = Stage::kVerify;
 }
 
-// Whether what is tried goes to where its target will be: else it begins once more.
+// Returns true if the stretch was verified with the expected pose of its target; else it is refused or begun again.
 bool Settled(const Context& c, State& s) {
   Stretch& next = c.ahead.next;
   if (c.ahead.load > kMostLoad) {
@@ -209,7 +209,7 @@ bool Settled(const Context& c, State& s) {
   return false;
 }
 
-// Where the tool is then in the still world.
+// Sets the tool at the end of the stretch, in the planning frame.
 void TakeNextTool(const Context& c, const State& s) {
   LookAhead& ahead = c.ahead;
   if (!HasTool(c, s)) return;
@@ -222,10 +222,10 @@ void TakeNextTool(const Context& c, const State& s) {
   if (ride.displaces) ahead.next_tool = ReferenceOf(ride) * ahead.next_tool;
 }
 
-// Per mm or whatever the path counts: what is less is rounding.
+// Per mm or unit of the length: less is rounding.
 constexpr double kTowardsAlong = 1e-6;
 
-// Whether the path goes towards a limit switch that is on there; State::refused says which.
+// Returns true if the path leads towards an active limit switch there; sets State::refused.
 bool IsClosed(const Context& c, const Stretch& stretch, double way, const trajectory::PathSlopes& slopes, State& s) {
   const Directions closed = ClosedNow(c, s);
   if (!closed.any()) return false;
@@ -241,19 +241,19 @@ bool IsClosed(const Context& c, const Stretch& stretch, double way, const trajec
   return s.refused.any();
 }
 
-// The next stretch is known; zones that the blend into it leads through count, too.
+// The next stretch is known: adds the zones of the blend into it.
 void EnterNext(const Context& c, State& s) {
   NoteBlend(c, s);
   s.planning.stage = Stage::kEnter;
 }
 
-// Tries places all along, before anything moves.
+// Verifies points all along the stretch before anything moves.
 void Verify(const Context& c, int& budget, State& s) {
   const Stretch& stretch = c.ahead.next;
   const double length = stretch.segment.length;
   Planning& p = s.planning;
   const bool carried = IsCarried(c.ahead, stretch);
-  // Of the many elements of a path one after the other is tried: theirs are near enough.
+  // The elements of a path are many and short: points at their ends suffice.
   const double full = length / PlacesOf(stretch, Tries(s) ? 1 : kLeastPlaces);
   for (; budget > 0 && p.verified < length; budget -= carried ? 3 : 1) {
     const double way = p.verifying ? p.verified + p.step : 0;
@@ -285,7 +285,7 @@ void Verify(const Context& c, int& budget, State& s) {
     NoteZones(c, s, motion.position, to, !p.verifying);
     c.ahead.near = motion.position;
     c.ahead.tried = point.slopes;
-    // Where boarding takes a part, accelerations build up as fast as behind that.
+    // Points before Boarding::reach do not count: accelerations build up there as fast as after it.
     const Boarding& boarding = c.ahead.rides[stretch.to_ride % kRides].boarding;
     const bool boards = boarding.on && stretch.begin + to < boarding.reach && to < length;
     if ((!p.verifying || p.step == full) && !boards) c.ahead.build_up.Add(point, c.ahead.window.limits());
@@ -313,7 +313,7 @@ void Verify(const Context& c, int& budget, State& s) {
   }
 }
 
-// False: it is not yet known whether the path is free.
+// Evaluates the answer to a path check. Returns false if it has not arrived.
 bool Check(const Context& c, State& s) {
   if (!IsAnswered(c, s)) return false;
   const PathChecked& answer = s.answer;
@@ -349,14 +349,14 @@ void Sweep(const Context& c, State& s) {
   }
 }
 
-// False: it waits for a zone. What is planned already is then sampled to its end, where the tool waits.
+// Returns false if the move waits for a zone. The plan before it is then sampled to its end, where the tool waits.
 bool MayEnter(const Context& c, State& s) {
   const bool waited = s.waits_for != 0;
   switch (EnterZones(c, s)) {
     case Entry::kWaits:
-      if (IsJog(MoveAt(s, s.planning.move))) {  // it does not wait: it ends before the zone
+      if (IsJog(MoveAt(s, s.planning.move))) {  // a jog does not wait: it ends before the zone
         const double length = c.ahead.next.segment.length, from = ZonesBeginAt(c.ahead.next, s.zones_wanted);
-        // Tried again over a shorter way, where the places that are looked at lie nearer to one another.
+        // Verified again over a shorter distance, where the points lie closer together.
         const double nearer = from + 1.25 * length / kMostPlaces;
         const bool shorter = ShortenJog(nearer < 0.9 * length ? nearer : from, ErrorId::kZoneTaken, s);
         s.zones_claimed = s.zones_wanted = s.waits_for = s.waits_zone = 0;
@@ -365,7 +365,7 @@ bool MayEnter(const Context& c, State& s) {
       }
       c.ahead.corner.open = false;
       if (IsCarried(c.ahead, c.ahead.next) && s.planning.element == 0 && c.cycle.count % kLookAgain == 0) {
-        BeginAgain(false, s);  // what carries its target has moved
+        BeginAgain(false, s);  // the carrier has moved its target
         return false;
       }
       if (c.ahead.sampling >= SampledTo(c, s)) return false;
@@ -378,7 +378,7 @@ bool MayEnter(const Context& c, State& s) {
     case Entry::kFree:
       break;
   }
-  // What carries its target has moved meanwhile.
+  // The carrier has moved its target meanwhile.
   const bool stale = waited && s.planning.element == 0 && IsCarried(c.ahead, c.ahead.next);
   if (stale) {
     BeginAgain(false, s);
@@ -434,10 +434,10 @@ void Plan(const Context& c, State& s) noexcept {
         }
         if (s.planning.move >= s.done + s.queue.count || c.ahead.cut_short) return;
         if (WaitsForTracking(s, MoveAt(s, s.planning.move))) return;
-        // It boards at the end of what is planned before it.
+        // Boarding begins at the end of what is planned before.
         if (c.ahead.count > 0 && s.planning.move > s.done && MayBoard(c, s)) return;
         if (!Tries(s) && !HasRoom(c.ahead)) return;
-        if (c.ahead.corner.open && !IsPath(s) && HasWorkspace(c, s)) {  // nothing waits for an answer
+        if (c.ahead.corner.open && !IsPath(s) && HasWorkspace(c, s)) {  // an open corner does not wait for an answer
           c.ahead.corner.open = false;
           break;
         }
@@ -455,7 +455,7 @@ void Plan(const Context& c, State& s) noexcept {
         if (!MayEnter(c, s)) return;
         break;
       case Stage::kJoin:
-        if (CanBoard(c, s) && Board(c, s)) break;  // it is planned anew from there
+        if (CanBoard(c, s) && Board(c, s)) break;  // the move is planned anew from there
         budget -= Join(c, s);
         s.planning.joined = c.cycle.count;
         NextElement(c, s);
@@ -510,12 +510,12 @@ void Rehearse(const Context& c, const State& s) noexcept {
   const Owner owner{c, s};
   if (s.velocity_factor < 1 || WaitsForClutch(s) || c.ahead.keep_up.on || Jogs(s)) {
     c.ahead.delayed = true;
-  } else if (c.ahead.delayed) {  // it comes later than was rehearsed
+  } else if (c.ahead.delayed) {  // it is later than rehearsed
     c.ahead.delayed = false;
     c.ahead.rehearsal.Clear();
     c.ahead.rehearsal.GoOn(c.ahead.window);
   }
-  if (c.ahead.keep_up.on) return;  // what is near is looked at there
+  if (c.ahead.keep_up.on) return;  // points ahead are checked there
   const auto look = [](const void* with, const KinematicState& along, double ahead_s,
                        trajectory::PathCoordinateValues& positions, trajectory::PathCoordinateValues& velocities,
                        trajectory::PathCoordinateValues& accelerations) noexcept {

@@ -1,4 +1,4 @@
-// What everybody sees of a group.
+// Outputs of a group.
 #include "takt/group/carrier_bindings.h"
 #include "takt/group/group.h"
 #include "takt/group/members.h"
@@ -12,7 +12,7 @@ namespace takt::group {
 
 namespace {
 
-// Of the members, as commanded and as measured.
+// Returns the motion of the members, commanded or actual.
 kinematics::JointMotion MotionOf(const Context& c, const State& s, bool actual) {
   kinematics::JointMotion motion;
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
@@ -32,7 +32,7 @@ void PublishTracking(const Context& c, const State& s, const kinematics::MovingF
   out.in_sync = out.track_state == TrackState::kInSync;
   if (!IsOnRide(c, s)) return;
   const Stretch& stretch = *Here(c, s);
-  // Until it begins to go over it is on what it comes from.
+  // Until the transition begins the tool is on the previous binding.
   const double way = stretch.from + s.pace.now.position - stretch.begin;
   const std::uint64_t number = ShareAt(c.ahead, stretch, way).position > 0 ? stretch.to_ride : stretch.from_ride;
   const CarriedTarget& cargo = c.ahead.rides[number % kRides].cargo;
@@ -78,7 +78,7 @@ void Publish(const Context& c, const State& s, Outputs& out) noexcept {
       const kinematics::MovingFrame tcp = measured * tool;
       actual = kinematics::ToPose(tcp.GetFrame());
       out.actual_velocity = tcp.p.v.Norm();
-      // Nothing is commanded to an axis that is off.
+      // An axis that is off has no commanded position.
       const bool on = AllMembers(c, s, [](const axis::State& member) { return member.loop_closed; });
       out.path_error = on ? kNotGiven : 0;
       if (on && ToolAt(c, due, due_tool) == known) out.path_error = (due_tool.p - tcp.p.p).Norm();

@@ -6,7 +6,7 @@ namespace takt::group {
 
 void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error, double value) noexcept {
   const bool unreachable = error == ErrorId::kUnreachable || error == ErrorId::kSingular;
-  // Once: what fails next fails for reasons of its own. A module reports itself.
+  // Reported once: later failures have their own causes. Moves without a ticket are reported by their module.
   const std::uint64_t detail = unreachable && ticket != 0 ? std::exchange(c.ahead.failures, 0) : 0;
   const Blame& blame = c.ahead.blame;
   const bool names = error != ErrorId::kNone && error == blame.error && blame.axis != 0;

@@ -22,7 +22,7 @@ struct CarriedTarget {
   std::uint32_t carrier = 0;  // number; 0: none, at rest in the MCS
   double from = 0;            // mm or rad, travel of the carrier at which it was recorded
   kinematics::Pose lies;      // pose relative to the origin of the carrier
-  bool has_origin = false;    // in place of the carrier's own:
+  bool has_origin = false;    // instead of the carrier's own:
   kinematics::Pose origin;    // in the MCS
 
   bool operator==(const CarriedTarget&) const = default;
@@ -40,7 +40,7 @@ struct Request {
   CoordinateSystem system = CoordinateSystem::kMcs;
   std::uint32_t pcs = 0;   // index
   kinematics::Pose frame;  // pose of that coordinate system in the MCS when the command was given
-  CarriedTarget cargo;     // the target of that coordinate system in its place, if it moves
+  CarriedTarget cargo;     // instead of `frame`: the target of that system, if it moves
   Numbers to{};
   path::Circle circle;
   std::uint32_t path = 0;    // index among the paths of the machine

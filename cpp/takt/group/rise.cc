@@ -10,8 +10,8 @@ namespace takt::group {
 
 namespace {
 
-constexpr double kShare = 0.7;    // of the limits: the path is braked with the rest
-constexpr double kLook_s = 0.06;  // so much lower the path is expected to lead
+constexpr double kShare = 0.7;    // of the limits; the path is braked with the rest
+constexpr double kLook_s = 0.06;  // s, for which the descent of the path is anticipated
 
 }  // namespace
 

@@ -22,7 +22,7 @@ namespace takt::group {
 
 namespace {
 
-// The stretch that a place of the path lies on; those before it are forgotten.
+// Returns the stretch at an arc length of the path, and forgets those before it.
 const Stretch* GoOnTo(LookAhead& ahead, double s) {
   while (ahead.count > 1 && ahead[ahead.first].end() <= s) {
     ++ahead.first;
@@ -31,17 +31,17 @@ const Stretch* GoOnTo(LookAhead& ahead, double s) {
   return ahead.count > 0 ? &ahead[ahead.first] : nullptr;
 }
 
-constexpr double kTowardsThen = 1;   // u/s: a motion that ends there at rest does not
+constexpr double kTowardsThen = 1;   // u/s: a motion that comes to rest there stays below
 constexpr double kTowards_s = 1e-6;  // u/s, mm/s or rad/s: less is rounding
 
-// Whether the next set points go towards a limit switch that is on.
+// Returns true if the next set points lead towards an active limit switch; sets State::refused.
 bool GoesToClosed(const Context& c, const kinematics::JointMotion& motion, const MovingFrame* tool, State& s) {
   if (s.state == GroupState::kErrorStop) return false;  // braked for a switch, along the path
   const Directions closed = ClosedNow(c, s);
   if (!closed.any()) return false;
   s.refused = TakenOf(closed, s, motion.velocity, tool, kTowards_s);
   if (s.refused.any()) return true;
-  // An acceleration towards it is taken back within the jerk of the axis: by then it would go there.
+  // An acceleration towards it is taken back within the jerk of the axis: by then the axis would move towards it.
   kinematics::Joints then = motion.velocity;
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     const double jerk = s.members[k] != 0 ? c.axes.params[s.members[k] - 1].planner_limits().jerk : 0;
@@ -74,7 +74,7 @@ bool FollowCarried(const Context& c, const Stretch& stretch, double way, State& 
   }
   if (GoesToClosed(c, motion, &tool, s)) return false;
   Demand(c, motion, s);
-  // Where it could not be braked any more it is braked now.
+  // If the tool could no longer be braked in the next cycles, it is braked now.
   if (!s.lets_go && !CanLetGo(c, s)) {
     EndTracking(c, FeedbackState::kError, ErrorId::kUnreachable, s);
     AbortMoves(c, ErrorId::kUnreachable, s);
@@ -115,14 +115,14 @@ bool Follow(const Context& c, State& s) {
   return true;
 }
 
-// Whether the path is at the end of a move on a carrier and the tool is not: a clutch slips, or the axes lag.
+// Returns true if the path is at the end of a move on a carrier but the tool is not: a clutch slips, or the axes lag.
 bool ToolLags(const Context& c, const State& s) {
   const bool at_end = s.pace.raw_stands && c.ahead.window[s.pace.node].stop;
   const bool rides = std::ranges::any_of(s.ridden, [](std::uint32_t carrier) { return carrier != 0; });
   return at_end && rides && (s.lets_go || Slips(s) || !AreInStep(c, s));
 }
 
-// Moves whose last stretch is behind are done; the one in execution is active.
+// Reports moves whose last stretch is complete as done, and the one in execution as active.
 void TellMoves(const Context& c, State& s) {
   if (c.ahead.count == 0) return;
   std::uint64_t at = c.ahead[c.ahead.first].move;
@@ -138,9 +138,9 @@ double Braked(const Context& c, const trajectory::PathNode& node, const Brake& b
   double deceleration = brake.full               ? trajectory::CoordinateLimits::kNone
                         : brake.deceleration > 0 ? brake.deceleration
                                                  : node.bounds.deceleration;
-  // What takes no longer to build up, and to be taken back, than all accelerations of this path.
+  // The deceleration that builds up with this jerk within the build-up time of the path.
   if (brake.jerk > 0) deceleration = std::min(deceleration, brake.jerk * node.build_up_s);
-  // What is left of the axes when carriers are braked, too. Not of what bends leave: the pace keeps to that by itself.
+  // What the axes have left while carriers are braked, too. Bends are accounted for by the pace.
   if (s.lets_go || Slips(s)) {
     const double square = s.pace.raw.velocity * s.pace.raw.velocity;
     deceleration = std::min(deceleration, BrakeShare(s) * node.bounds.strength.Gentle(square));
@@ -154,14 +154,14 @@ double WishOf(const Context& c, State& s) {
     if (WaitsForClutch(s)) return SlowDown(c, s, Braked(c, node, {}, s));
     if (Follows(c, s)) return SlowDown(c, s, WishOfMaster(c, s));
     const double own = node.at.limits.velocity;
-    const double full = own < kUnlimited ? own : std::sqrt(node.own);  // as fast as the axes can
+    const double full = own < kUnlimited ? own : std::sqrt(node.own);  // up to the limits of the axes
     if (Jogs(s)) return SlowDown(c, s, s.velocity_factor * std::min(full, JogSpeed(s)));
     return SlowDown(c, s, s.velocity_factor < 1 ? s.velocity_factor * full : trajectory::kFullSpeed);
   }
   return SlowDown(c, s, Braked(c, node, s.brake, s));
 }
 
-// What lies behind is forgotten.
+// Discards the nodes behind the motion.
 void Forget(const Context& c, State& s) {
   trajectory::PathWindow& window = c.ahead.window;
   if (s.pace.passed > window.begin() + 1) window.DropBefore(s.pace.passed - 1);
@@ -206,8 +206,8 @@ bool CanBeTimed(const Context& c, const State& s) {
   // The moves up to the next stop.
   std::uint64_t behind = s.done + 1;
   while (behind < s.done + s.queue.count && MoveAt(s, behind).blends()) ++behind;
-  // How long it takes is known to the next stop only, and a module wants to know it to the end of its order. Others may
-  // give a move later that blends onto what moves.
+  // The time is known to the next stop only, and a module needs it to the end of its order. Without modules a later
+  // move may blend onto a carrier.
   const bool to_the_end = c.carriers.modules;
   if (!to_the_end && std::ranges::any_of(s.cargoes, [](const CarriedTarget& cargo) { return cargo.carrier != 0; }))
     return false;
@@ -235,10 +235,10 @@ void BeginTiming(const Context& c, State& s) noexcept {
 
 bool Advance(const Context& c, State& s) noexcept {
   if (s.pace.raw_stands && trajectory::Stands(s.pace) && !s.ends) {
-    // Behind a stop the next motion begins.
+    // After a stop the next motion begins.
     const std::uint64_t next = s.pace.node + 1;
     const trajectory::PathWindow& window = c.ahead.window;
-    // The move for which the tool boards begins meanwhile, others when it is in step.
+    // The move for which the tool boards begins meanwhile, others when it is in sync.
     const bool begins = s.pace.now.position == 0 && s.queue.count > 0 && s.boards == MoveAt(s, s.done).ticket;
     const bool boards = begins && std::ranges::any_of(s.clutches, &Clutch::boards);
     const bool waits = !boards && ToolLags(c, s);
@@ -246,7 +246,7 @@ bool Advance(const Context& c, State& s) noexcept {
       trajectory::BeginAt(window, next, c.cycle.period_s, s.pace);
       const std::uint64_t move = c.ahead[c.ahead.first].move;
       BeginFollowing(c, MoveAt(s, move), move, s);
-      // A module has foretold when its order ends by the timing that the order began with.
+      // A module has announced the end of its order by the timing in use when the order began.
       if (!c.carriers.modules || c.ahead.timing.active()) BeginTiming(c, s);
     }
   }
@@ -284,7 +284,7 @@ double RestAt(const Context& c, const State& s) noexcept {
   const bool full = s.ends && s.brake.full;
   const double deceleration = std::min(node.bounds.Gentle(v * v, full), c.ahead.keep_up.brake);
   const double way = deceleration > 0 ? 0.5 * v * v / deceleration : kNoEnd;
-  // What it has sped up with is taken back first.
+  // Its acceleration is taken back first.
   const bool speeds_up = s.pace.last[s.pace.oldest].acceleration > 0 || s.pace.raw.acceleration > 0;
   return s.pace.raw.position + way + v * (speeds_up ? node.build_up_s : c.cycle.period_s);
 }
@@ -316,7 +316,7 @@ void Sit(const Context& c, State& s) noexcept {
   CarrierBinding ride = ahead.rides[number % kRides];
   ride.boarding.earliest_s = NAN;
   path::Point place = path::PointAt(stretch->segment, way);
-  if (s.rise.used) {  // as high as it is
+  if (s.rise.used) {  // at its present height
     const KDL::Vector up = PlaceOf(c, ride.cargo).M.R.UnitZ();
     place.frame.p += DisplacementOf(c, ride, 0).M.R.Inverse() * (s.rise.offset.position * up);
     s.rise = {};
@@ -393,13 +393,13 @@ void GiveUpPath(const Context& c, const Brake& brake, bool lets_go, State& s) no
 }
 
 void EndMotion(const Context& c, const Brake& brake, bool lets_go, State& s) noexcept {
-  // Of several the one that brakes harder: 0 is the path's own.
+  // The harder brake applies: 0 is the path's own.
   const double own = s.begun && c.ahead.known ? c.ahead.window[s.pace.node].bounds.deceleration : 0;
   const auto strength = [&](const Brake& b) { return b.full ? HUGE_VAL : b.deceleration > 0 ? b.deceleration : own; };
   const bool softer = s.ends && s.begun && strength(brake) < strength(s.brake);
   s.ends = true;
   s.lets_go = lets_go;
-  for (Clutch& clutch : s.clutches) clutch.law_length = 0;  // whoever takes over does not wait for the carrier
+  for (Clutch& clutch : s.clutches) clutch.law_length = 0;  // the next motion does not wait for the carrier
   s.interrupted = false;
   if (!softer) s.brake = brake;
 }

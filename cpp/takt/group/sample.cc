@@ -16,16 +16,16 @@ namespace {
 
 constexpr std::size_t kSpareNodes = 4;
 constexpr double kLeastStep = 1e-3;  // mm
-// What waits to be sampled is, as soon as the motion might have to brake for it within so many nodes and seconds: in
-// time to rehearse it.
+// Stretches that wait are sampled once the motion might have to brake for them within this number of nodes, or this
+// time [s]: early enough to rehearse them.
 constexpr std::uint64_t kNodesAhead = 256;
 constexpr double kTimeAhead = 0.2;
-constexpr double kTrifle_s = 0.02;    // at the speed of the path; time within which a move may come, ...
-constexpr double kFarAhead_s = 0.05;  // ... and from what is waited for, at the present speed
+constexpr double kTrifle_s = 0.02;    // time in which a next move may come, and largest duration of what waits
+constexpr double kFarAhead_s = 0.05;  // at the present speed, least distance to what waits
 constexpr double kUneven = 0.25;      // mm or deg
 constexpr double kUnevenShare = 0.1;
 
-// What a path began and cannot go on with ends there, and so do the moves behind it.
+// Ends a path that has begun and cannot be continued, and aborts the moves after it.
 void CutShort(const Context& c, const Stretch& stretch, kinematics::Reason reason, double at, State& s) {
   s.reason = reason;
   c.ahead.failures = FailuresOn(c, s, stretch, stretch.from + at, reason, c.ahead.last_joints);
@@ -42,14 +42,14 @@ bool SampleBegin(const Context& c, const Stretch& stretch, State& s) {
   point.limits = stretch.limits;
   const trajectory::PathWindow& window = c.ahead.window;
   Boarding* boarding = BoardingOn(c.ahead, stretch);
-  // Behind a stop the path begins when the tool is in step.
+  // After a stop the path begins when the tool is in sync.
   const bool behind_stop = window.end() > window.begin() && window[window.end() - 1].stop;
   if (boarding && boarding->square > 0 && behind_stop) boarding->reach = point.s;
   kinematics::JointMotion motion;
   if (SlopesOn(c, s, stretch, stretch.from, c.ahead.last_joints, point, motion) != kinematics::Reason::kNone) {
     return false;
   }
-  // Where carriers will be is not foreseen alike each time: that is no corner.
+  // Predictions of carriers differ from time to time: that is no corner.
   if (stretch.goes_on) point.slopes.first = c.ahead.last.slopes.first;
   c.ahead.last_joints = motion.position;
   c.ahead.last = point;
@@ -59,11 +59,11 @@ bool SampleBegin(const Context& c, const Stretch& stretch, State& s) {
   return true;
 }
 
-// Appends one node. Returns false where the path cannot be followed.
+// Appends one node. Returns false if the path cannot be followed.
 bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s) {
   kinematics::Reason reason = kinematics::Reason::kNone;
   double failed_at = 0;
-  kinematics::JointMotion motion, before;  // of the last two places: the node, then the middle on the way to it
+  kinematics::JointMotion motion, before;  // at the last two points: the node, then the middle before it
   const bool carried = IsCarried(c.ahead, stretch);
   const auto slopes_at = [&](double at, trajectory::PathPoint& point) {
     budget -= carried ? 3 : 1;
@@ -81,7 +81,7 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   }
   most = std::max(most, kLeastStep);
   double end = left < 1.5 * most ? stretch.end() : c.ahead.last.s + most;
-  // Boarding reserves limits up to an arc length.
+  // Boarding reserves limits up to an arc length: the next node is no further.
   trajectory::PathWindow& window = c.ahead.window;
   Boarding* boarding = BoardingOn(c.ahead, stretch);
   if (boarding && c.ahead.last.s >= boarding->reach) boarding = nullptr;
@@ -112,7 +112,7 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   return true;
 }
 
-// Returns whether the known end of the path does not yet slow the motion down.
+// Returns true if the known end of the path does not yet slow the motion down.
 bool GoesFreely(const Context& c, const State& s) {
   if (const trajectory::PathTiming& timing = c.ahead.timing; timing.active()) {
     const Stretch& blend = c.ahead[c.ahead.end() - 2];
@@ -129,8 +129,8 @@ bool GoesFreely(const Context& c, const State& s) {
   return false;
 }
 
-// Whether a next move may come in time for the corner before the last stretch: the last one has just come, and what is
-// left out meanwhile is a trifle, far ahead.
+// Returns true if a next move may still come in time for the corner before the last stretch: the last move has just
+// come, and what waits meanwhile is short and far ahead.
 bool MayComeSoon(const Context& c, const State& s) {
   const LookAhead& ahead = c.ahead;
   const Stretch& last = ahead[ahead.end() - 1];
@@ -160,7 +160,7 @@ std::uint64_t SampledTo(const Context& c, const State& s) noexcept {
   const LookAhead& ahead = c.ahead;
   const bool more = s.planning.move < s.done + s.queue.count;
   if (ahead.cut_short || ahead.count == 0) return ahead.end();
-  // The transition between rides depends on where it ends.
+  // The transition between carrier bindings depends on its end.
   if (more && (s.planning.element > 0 || MoveAt(s, s.planning.move).blends())) {
     std::uint64_t open = ahead.end();
     while (open > ahead.first && IsTransition(ahead[open - 1]) && !ahead[open - 1].begun) --open;

@@ -26,7 +26,7 @@ using kinematics::Reason;
 
 constexpr double kTurnsTowards = 1e-6;  // u/s, mm/s or rad/s: less is rounding
 
-// As the group counts: without the turns and zeros of when it took its members.
+// Returns the set point in the coordinates of the group: relative to the origins when it took its members.
 KinematicState SetOf(const Context& c, const State& s, std::size_t k) {
   const axis::State& member = MemberOf(c, s, k);
   KinematicState set = member.setpoint;
@@ -47,7 +47,7 @@ ErrorId ErrorFor(Reason reason, State& s) {
   return reason == Reason::kSingular ? ErrorId::kSingular : ErrorId::kUnreachable;
 }
 
-// A set point as it was given, and what it asks of the axes.
+// A set point as given, converted to the axes.
 struct Point {
   std::array<std::optional<double>, kToolNumbers> tool, tool_velocity;
   std::array<std::optional<double>, kMaxAxes> axes, axes_velocity;
@@ -67,7 +67,7 @@ struct Point {
     return std::ranges::any_of(numbers, [](const auto& number) { return number.has_value(); });
   }
 
-  // Whether these numbers may be given for this group.
+  // Returns an error if these coordinates may not be given for this group.
   ErrorId Admissible(const Context& c, const State& s) const {
     const bool of_axes = system == CoordinateSystem::kAcs, of_tool = Any(tool) || Any(tool_velocity);
     if (!of_axes && !HasTool(c, s)) return ErrorId::kState;
@@ -82,7 +82,7 @@ struct Point {
     return ErrorId::kNone;
   }
 
-  // Computes position and velocity of the axes, as far as they are given; `motion`: those of the set point before.
+  // Computes position and velocity of the axes, as far as given; `motion`: in, those of the previous set point.
   ErrorId ToAxes(const Context& c, State& s, kinematics::JointMotion& motion, std::array<bool, kMaxAxes>& known) const {
     if (Any(tool) || Any(tool_velocity)) {
       const Frame frame = SystemFrame(c, s, system, pcs);
@@ -121,14 +121,14 @@ struct Point {
     return ErrorId::kNone;
   }
 
-  // The turn of a rotary axis that is nearest.
+  // Returns the position of a rotary axis in the turn nearest to `near`.
   static double Unwrapped(const Context& c, const State& s, std::size_t k, double position, double near) {
     const axis::AxisParams& params = c.axes.params[s.members[k] - 1];
     return params.rotary() ? near + std::remainder(position - near, params.modulus) : position;
   }
 };
 
-// Not faster than 1.5 times as fast as each axis can.
+// Returns true if an axis would have to exceed 1.5 times its velocity limit.
 bool Jumps(const Context& c, const State& s, const Joints& from, const Joints& to, double time_s) {
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
@@ -144,7 +144,7 @@ Joints JointsOf(const StreamState& k, std::size_t place) {
   return joints;
 }
 
-// Whether the members may be told to be so; else why not.
+// Returns an error if these set points may not be given to the members.
 ErrorId MayBe(const Context& c, const kinematics::JointMotion& next, State& s) {
   Joints rest{};
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
@@ -273,7 +273,7 @@ void FollowStream(const Context& c, State& s) noexcept {
     }
     const axis::Context member = ContextOf(c, s, i);
     const KinematicState before = SetOf(c, s, i);
-    // Until there is a set point, the axis comes to rest where it is.
+    // Before the first set point, the axis comes to rest where it is.
     const KinematicState demand =
         has_points ? axis::DemandAt(of) : KinematicState{before.position + period * before.velocity, 0, 0};
     const trajectory::Limits own = member.params.planner_limits();

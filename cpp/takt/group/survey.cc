@@ -12,7 +12,7 @@ namespace takt::group {
 
 namespace {
 
-// mm or deg between two samples, between which the axes are taken to go straight: on lines and on what bends.
+// mm or deg between two samples, on lines and on bends; in between the axes are assumed to move straight.
 constexpr double kStep = 1;
 constexpr double kStepInBend = 0.25;
 constexpr double kFewest = 8;
@@ -27,7 +27,7 @@ double StepsOn(const Stretch& stretch, bool blend) {
 
 }  // namespace
 
-// A group like that of the cycle, but for what it does: it only plans.
+// A group as in the cycle that only plans.
 struct Survey::Inside {
   explicit Inside(const Fixed& f) : fixed(f), ahead({}, f.cycle.period_s), sink({}) {}
 
@@ -43,7 +43,7 @@ struct Survey::Inside {
       state.members[k] = q.members[k] ? static_cast<std::uint32_t>(k + 1) : 0;
       axes[k].limits.lower = q.ranges[k].lower;
       axes[k].limits.upper = q.ranges[k].upper;
-      axes[k].limits.velocity = q.limits.of[k].velocity;  // by which configurations are chosen
+      axes[k].limits.velocity = q.limits.of[k].velocity;  // for the choice of configurations
     }
     ahead.window.SetLimits(q.limits);
     GoTo(q.from);
@@ -54,7 +54,7 @@ struct Survey::Inside {
     ToolAt(Now(), joints, ahead.end_tool);
   }
 
-  // Samples from where `ahead` ends. `s_at_end`: what s counts there, evenly over the stretch.
+  // Samples from the end of `ahead`. `s_at_begin`, `s_at_end`: values of s at both ends, even over the stretch.
   kinematics::Reason Walk(const Stretch& stretch, bool blend, kinematics::Joints near, double s_at_begin,
                           double s_at_end) {
     samples.clear();
@@ -77,7 +77,7 @@ struct Survey::Inside {
   FeedbackSink sink;
   std::array<axis::AxisParams, kMaxAxes> axes;
   std::vector<workspace::Sample> samples;
-  double way = 0;  // to where `ahead` ends
+  double way = 0;  // at the end of `ahead`
 };
 
 kinematics::Reason Survey::Inside::Run(const PathCheckRequest& q, const std::function<bool(const Part&)>& use) {

@@ -7,8 +7,8 @@ namespace takt::group {
 
 namespace {
 
-// The first axis whose switch or power command closes one of these directions, a follower's included, from 1; 0: it is
-// an input of a module.
+// Returns the first axis, from 1, whose switch or power command closes one of these directions, followers included; 0:
+// an input of a module does.
 std::uint32_t AxisThatCloses(const Context& c, const State& s, const Directions& taken) {
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     for (const int sense : {1, -1}) {
@@ -35,16 +35,16 @@ Directions ClosedNow(const Context& c, const State& s) noexcept {
     // While the group brakes by a command, directions that are not enabled are ignored. If the path is continued before
     // it rests, the axis reports the fault in the next cycle, and the group brakes along the path.
     const bool rests = s.ends || s.interrupted || (s.begun && member.guidance.comes_to_rest);
-    // Those of followers of a gantry count for the one that leads.
+    // Followers of a gantry count for their master.
     const axis::Context own = ContextOf(c, s, k);
     if (!rests && !member.bars_positive && axis::Bars(own, member, 1)) closed.positive |= 1u << k;
     if (!rests && !member.bars_negative && axis::Bars(own, member, -1)) closed.negative |= 1u << k;
-    // A switch that turns on is a fault of the axis, which all brake for along the path.
+    // A switch that becomes active is a fault of the axis, for which all members brake along the path.
     if (member.limit_positive && member.limit_positive_before) closed.positive |= 1u << k;
     if (member.limit_negative && member.limit_negative_before) closed.negative |= 1u << k;
     if (axis::FollowerOnLimit(own, member, 1, true)) closed.positive |= 1u << k;
     if (axis::FollowerOnLimit(own, member, -1, true)) closed.negative |= 1u << k;
-    // Likewise a direction that is not enabled any more: the axis looks at it behind the group.
+    // Likewise a direction that is no longer enabled: the axis checks it after the group.
     if (rests || member.bars_cycle == c.cycle.count) continue;
     if (member.bars_positive) closed.positive |= 1u << k;
     if (member.bars_negative) closed.negative |= 1u << k;

@@ -10,22 +10,22 @@ namespace takt::group {
 
 namespace {
 
-// A path is in step with its master when the tool is nearer than this to where it should be, mm.
+// mm, largest distance from the demanded position that counts as in sync.
 constexpr double kInStep = 0.01;
-// In so many times of building up accelerations a small distance to the master is made up: an acceleration can be taken
-// back only after such a time.
+// A small distance to the master is made up in this number of build-up times: an acceleration can be taken back only
+// after one of them.
 constexpr double kCatchUpTimes = 3;
-// Of the deceleration: for coming into step from behind; the rest is for what the master does meanwhile.
+// Share of the deceleration for catching up; the rest is for what the master does meanwhile.
 constexpr double kCatchUpShare = 0.5;
 
-// Of the master, as the path counts it.
+// Returns the motion of the master in units of the path.
 KinematicState WayOf(const Context& c, const State& s) {
   const axis::State& master = c.axes.states[s.master.axis - 1];
   return {s.master.ratio * (master.setpoint.position + master.origin - s.master.begin),
           s.master.ratio * master.setpoint.velocity, s.master.ratio * master.setpoint.acceleration};
 }
 
-// How much faster than its master the path may be, so far behind it: such that this speed v can be taken back with a
+// Returns the path speed above the master's at this distance behind it: such that this speed v can be taken back with a
 // deceleration d, v + v²/(2 d) in units of the times above.
 double Closing(double behind, const trajectory::PathNode& node) {
   const double deceleration = kCatchUpShare * node.bounds.deceleration;
@@ -43,7 +43,7 @@ axis::State& StateOf(const Context& c, const SyncedAxis& synced) {
 }  // namespace
 
 void BeginFollowing(const Context& c, const Request& move, std::uint64_t number, State& s) noexcept {
-  if (s.master.axis != 0 && s.master.move == number) return;  // behind a stop within it
+  if (s.master.axis != 0 && s.master.move == number) return;  // after a stop within the move
   s.master = {};
   if (move.master == 0) return;
   const axis::State& master = c.axes.states[move.master - 1];
@@ -62,7 +62,7 @@ double WishOfMaster(const Context& c, State& s) noexcept {
   const double period = c.cycle.period_s;
   const KinematicState way = WayOf(c, s);
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
-  // The raw motion whose mean is the way of the master, as long as that has the same jerk.
+  // The raw motion whose mean is the motion of the master, as long as its jerk is constant.
   const double half = 0.5 * s.pace.cycles * period;
   const double third = half * half / 3;
   const double jerk = (way.acceleration - s.master.before) / period;
@@ -75,7 +75,7 @@ double WishOfMaster(const Context& c, State& s) noexcept {
 
 void WatchMaster(const Context& c, State& s) noexcept {
   if (s.master.axis == 0) return;
-  if (s.done != s.master.move) {  // what comes behind does not follow
+  if (s.done != s.master.move) {  // later moves do not follow
     s.master = {};
     return;
   }
@@ -91,7 +91,7 @@ ErrorId Sync(const Context& c, Ticket ticket, const SyncAxis& command, State& s)
   const std::uint32_t axis = found + 1;
   if (c.group_of[axis - 1] != 0) return ErrorId::kGroupMember;
   const auto known = std::ranges::find(s.synced, axis, &SyncedAxis::axis);
-  // Another component leads it: a cam module, another group.
+  // Another component guides it: a cam module, another group.
   if (known == s.synced.end() && axis::IsGuided(c.axes.states[found])) return ErrorId::kState;
   const auto place = known != s.synced.end() ? known : std::ranges::find(s.synced, 0u, &SyncedAxis::axis);
   if (place == s.synced.end()) return ErrorId::kBufferFull;
@@ -111,7 +111,7 @@ void LeadSynced(const Context& c, State& s) noexcept {
   for (SyncedAxis& synced : s.synced) {
     if (synced.axis == 0) continue;
     axis::State& state = StateOf(c, synced);
-    if (!axis::IsGuided(state)) {  // somebody else has it
+    if (!axis::IsGuided(state)) {  // another component or command has taken it
       const bool failed = state.plc == axis::PlcState::kErrorStop;
       Report(c, synced.ticket, failed ? FeedbackState::kError : FeedbackState::kAborted,
              failed ? ErrorId::kAxisFault : ErrorId::kNone);

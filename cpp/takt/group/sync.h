@@ -12,7 +12,7 @@ void BeginFollowing(const Context& c, const Request& move, std::uint64_t number,
 bool Follows(const Context& c, const State& s) noexcept;
 // Returns the path speed that brings the tool to the position that the master demands [mm/s]. Once per cycle.
 double WishOfMaster(const Context& c, State& s) noexcept;
-// Updates whether the path is in sync; ends following after that move.
+// Updates MasterState::in_step; the path stops following after the move.
 void WatchMaster(const Context& c, State& s) noexcept;
 
 ErrorId Sync(const Context& c, Ticket ticket, const SyncAxis& command, State& s) noexcept;

@@ -66,14 +66,15 @@ kinematics::Reason JointsAt(const Context& c, const Frame& tcp, const kinematics
 
 namespace {
 
-// Both the SW limits of a member and, of the first `moved` ones, the range of the kinematics: a URDF has its own.
+// Returns the intersection of the SW limits of a member and, for the first `moved` ones, the range of the kinematics: a
+// URDF has its own.
 kinematics::JointRange RangeOf(const Context& c, const State& s, std::size_t k, std::size_t moved) {
   const axis::AxisLimits& limits = c.axes.params[s.members[k] - 1].limits;
   const kinematics::JointRange own = k < moved ? c.kinematics->ranges[k] : kinematics::JointRange{};
   return {std::max(own.lower, limits.lower.value_or(own.lower)), std::min(own.upper, limits.upper.value_or(own.upper))};
 }
 
-// The turn of a rotary axis within its range that is nearest. False: there is none.
+// Moves a rotary position to the nearest turn within the range. Returns false if there is none.
 bool TakeTurn(const kinematics::JointRange& range, double near, double& position) {
   constexpr double kTurn = 360;
   position += kTurn * std::round((near - position) / kTurn);
@@ -108,7 +109,7 @@ kinematics::Reason NearestJointsAt(const Context& c, const State& s, const Frame
       slowest = std::max(slowest, time);
       sum += time;
     }
-    // Where the slowest axis is the same the others decide.
+    // If the slowest axes are equal the others decide.
     const double cost = slowest + 1e-3 * sum;
     if (!admissible || cost >= least) continue;
     least = cost;
@@ -150,7 +151,7 @@ Failures FailuresAt(const Context& c, const State& s, const Frame& tcp, kinemati
   }
   failures = FailuresOf(c, s, nearest);
   if (failures.Detail(c.number) != 0) return failures;
-  // It is just out of it: then the one that is nearest to an end.
+  // It is only just out of range: returns the axis that is closest to a limit.
   std::size_t axis = 0;
   bool upper = false;
   least = std::numeric_limits<double>::infinity();

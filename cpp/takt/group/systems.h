@@ -18,7 +18,7 @@ inline const kinematics::Pose& ToolOnFlange(const Context& c, const State& s) no
   return s.tool_changed ? s.tool : c.params.tool;
 }
 
-// Return the number of members, and of those that the kinematics moves.
+// Return the number of members, and of the axes of the kinematics (0 without a tool).
 std::size_t CountOf(const State& s) noexcept;
 std::size_t InKinematics(const Context& c, const State& s) noexcept;
 // Returns true if there are kinematics with all their members, and they are switched on.

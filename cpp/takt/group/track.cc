@@ -17,11 +17,11 @@ namespace takt::group {
 
 namespace {
 
-constexpr double kCenter = 1e-6;       // mm from the axis of a table: at no angle
+constexpr double kCenter = 1e-6;       // mm from the axis of a table: the angle is undefined
 constexpr double kBackwards = -1e-9;   // mm/s or rad/s
 constexpr double kRoundingWay = 1e-9;  // mm or rad
 
-// Since the recorded position, in the sense in which the carrier is expected to go.
+// Returns the travel since the recorded position, in the direction in which the carrier is expected to move.
 double Progress(const Track& track, const kinematics::Carrier& carrier) {
   return track.sense * (carrier.travel.position - track.cargo.from);
 }
@@ -53,7 +53,7 @@ ErrorId Begin(const Context& c, Ticket ticket, std::uint32_t pcs, double offset,
   return ErrorId::kNone;
 }
 
-// Where the carrier's travel would be if the tool, where it is, were where the object is along the travel.
+// Returns the travel of the carrier at which the object would be at the present position of the tool, along the travel.
 double TravelOfTool(const Track& track, const kinematics::Carrier& carrier, const Frame& tool) {
   const KDL::Vector there = carrier.origin.Inverse() * tool.p;
   const kinematics::Pose& on = track.cargo.lies;
@@ -64,13 +64,13 @@ double TravelOfTool(const Track& track, const kinematics::Carrier& carrier, cons
   return now + std::remainder(angle - now, 2 * std::numbers::pi);
 }
 
-// Sits down on the object's carrier; the clutch takes the tool along.
+// Binds the tool to the object's carrier; the clutch brings it into sync.
 void SitDownOnObject(const Context& c, const kinematics::Carrier& carrier, State& s) {
   const ErrorId error = TakeMembers(c, s);
   if (error != ErrorId::kNone) return EndTracking(c, FeedbackState::kError, error, s);
   Track& track = s.track;
   Clutch clutch;
-  // Where it should begin, if that was passed just now.
+  // Start of tracking, if it was passed just now.
   const double begin = track.cargo.from + track.sense * track.begin;
   const double passed = std::abs(carrier.travel.position - begin);
   const bool just = passed <= 2 * c.cycle.period_s * std::abs(carrier.travel.velocity);
@@ -97,7 +97,7 @@ void Wait(const Context& c, const kinematics::Carrier& carrier, State& s) {
   if (progress > s.track.end) return EndTracking(c, FeedbackState::kError, ErrorId::kTrackShort, s);
   if (s.ends) return;
   const bool by_move = s.planning.move < s.done + s.queue.count && WaitsForTracking(s, MoveAt(s, s.planning.move));
-  if (by_move && IsOnRide(c, s) && s.planning.move == s.done) {  // from belt to belt
+  if (by_move && IsOnRide(c, s) && s.planning.move == s.done) {  // from one carrier to the next
     s.track.started = true;
     return;
   }
@@ -119,7 +119,7 @@ Clutch* ClutchOf(const Context& c, State& s) {
   return nullptr;
 }
 
-// The object leaves where it may be tracked.
+// The object leaves the range of tracking.
 void Leave(const Context& c, double distance, double of_tool, State& s) {
   AbortMoves(c, ErrorId::kNone, s);
   EndMotion(c, {}, true, s);

@@ -15,7 +15,7 @@ ErrorId BeginTracking(const Context& c, Ticket ticket, const TrackRotaryTable& c
 
 // Stage move, before planning.
 void StepTracking(const Context& c, State& s) noexcept;
-// Stage move, after the set points: updates what is in sync and ends tracking that is over.
+// Stage move, after the set points: updates Track::in_sync and ends tracking that is over.
 void WatchTracking(const Context& c, State& s) noexcept;
 // Ends tracking, if there is any, and reports its command.
 void EndTracking(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;

@@ -19,8 +19,8 @@ namespace takt::group {
 
 namespace {
 
-constexpr double kLeast = 1e-9;  // mm: it begins there and leads out of it at once
-constexpr int kLooks = 6;        // at places on the way to rest, and along a ride
+constexpr double kLeast = 1e-9;  // mm, for a zone that is met only at the start of a stretch
+constexpr int kLooks = 6;        // points while braking, and along a carrier
 constexpr int kBlendLooks = 8;
 
 std::uint32_t BitOf(std::size_t zone) {
@@ -31,8 +31,8 @@ bool Shares(const Zone& zone, std::size_t group) {
   return group < kZoneGroups && (zone.groups >> group & 1) != 0;
 }
 
-// The share of the line from `from` to `to` up to which it meets the zone, widened by `margin`; less than 0: it does
-// not. On each coordinate it is within for a part of the line, and those parts have one in common (slabs).
+// Returns the share of the line from `from` to `to` up to which it meets the zone widened by `margin`; negative if it
+// does not. In each coordinate the line is within the zone for an interval, and those intervals intersect (slabs).
 double MeetsUntil(const Zone& zone, const KDL::Vector& from, const KDL::Vector& to, double margin) {
   double first = 0, last = 1;
   for (int i = 0; i < 3; ++i) {
@@ -49,7 +49,7 @@ double MeetsUntil(const Zone& zone, const KDL::Vector& from, const KDL::Vector& 
   return first <= last ? last : -1;
 }
 
-// Masks: zones of this group that something meets, and those of which it meets the box itself.
+// Masks of the zones of this group that are met: with their margin, and the box itself.
 struct Met {
   std::uint32_t widened = 0;
   std::uint32_t inside = 0;
@@ -63,7 +63,7 @@ void MeetLine(const Context& c, const KDL::Vector& from, const KDL::Vector& to, 
   }
 }
 
-// The group that has one of these zones, from 1, and which; 0: none has.
+// The group, from 1, that has one of these zones, and which; 0: none.
 struct Holder {
   std::uint32_t group = 0;
   std::uint32_t zones = 0;
@@ -78,7 +78,7 @@ Holder HolderOf(const Context& c, std::uint32_t zones) {
   return {};
 }
 
-// One that waits for these zones longer, and could have them.
+// Returns a group that has waited longer for these zones and could have them.
 Holder NextInLine(const Context& c, std::uint32_t zones, const State& s) {
   for (std::size_t i = 0; i < c.zones.groups.size(); ++i) {
     const State& other = c.zones.groups[i];
@@ -91,14 +91,14 @@ Holder NextInLine(const Context& c, std::uint32_t zones, const State& s) {
   return {};
 }
 
-// Whether that group waits for this one, or for others that do, which have `zones` or what it wants.
+// Returns true if that group waits for this one, directly or through other groups. `zones`: those of this group.
 bool WaitsForUs(const Context& c, std::uint32_t group, std::uint32_t zones) {
   for (std::size_t steps = 0; steps <= c.zones.groups.size(); ++steps) {
     const State& other = c.zones.groups[group - 1];
     if (other.waits_for == 0) return false;
     const State& next = c.zones.groups[other.waits_for - 1];
     const std::uint32_t had = other.waits_for == c.number ? zones : next.zones;
-    if ((had & other.zones_wanted) == 0) return false;  // it has not looked yet
+    if ((had & other.zones_wanted) == 0) return false;  // it has not yet checked again
     if (other.waits_for == c.number) return true;
     group = other.waits_for;
   }
@@ -109,7 +109,7 @@ void EndWait(State& s) {
   s.zones_wanted = s.waits_for = s.waits_zone = 0;
 }
 
-// The tool now, as its axes are told.
+// Computes the tool at the set points of the axes.
 bool ToolOf(const Context& c, const State& s, kinematics::MovingFrame& tool) {
   kinematics::JointMotion motion;
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
@@ -128,7 +128,7 @@ double WayAt(const Stretch& stretch, double place) {
   return std::clamp(stretch.from + place - stretch.begin, stretch.from, stretch.to);
 }
 
-// Where a carrier without travel of its own is let go of each axis brakes by itself: along its velocity, about.
+// When a carrier without travel is released each axis brakes individually: roughly along the velocity of the tool.
 KDL::Vector FreelyBraked(const Context& c, const kinematics::MovingFrame& tool) {
   const PathLimits& path = c.params.path;
   const double deceleration = path.deceleration.value_or(path.acceleration);
@@ -136,8 +136,8 @@ KDL::Vector FreelyBraked(const Context& c, const kinematics::MovingFrame& tool) 
   return tool.p.p + stop_s * tool.p.v;
 }
 
-// What a tool on a carrier can still come to if it is braked from the next cycle on: path and carriers slow down at
-// once, so it is somewhere between where the path alone and where both would have taken it.
+// Finds the zones that a tool on a carrier can still reach if it is braked from the next cycle on: path and carriers
+// slow down at once, so it is between the point to which the path alone and that to which both would have taken it.
 void MeetBraking(const Context& c, const State& s, const kinematics::MovingFrame& tool, Met& met) {
   const LookAhead& ahead = c.ahead;
   if (ahead.count == 0) return;
@@ -145,7 +145,7 @@ void MeetBraking(const Context& c, const State& s, const kinematics::MovingFrame
   if (!IsCarried(ahead, *ahead.At(now)) && !IsCarried(ahead, *ahead.At(rest))) return;
   const KDL::Vector here = c.mounting.base * tool.p.p;
   if (RidesFreely(c, s)) MeetLine(c, here, c.mounting.base * FreelyBraked(c, tool), met);
-  KDL::Vector up = KDL::Vector::Zero();  // still to be risen
+  KDL::Vector up = KDL::Vector::Zero();  // remaining rise
   if (s.rise.used) {
     const Stretch& stretch = *ahead.At(now);
     const CarrierBinding& to = ahead.rides[stretch.to_ride % kRides];
@@ -170,7 +170,7 @@ void MeetBraking(const Context& c, const State& s, const kinematics::MovingFrame
   }
 }
 
-// What the tool meets while all axes go evenly from one place to another.
+// Finds the zones that the tool meets while all axes move in proportion from one position to another.
 void MeetJoints(const Context& c, const kinematics::Joints& from, const kinematics::Joints& to, Met& met) {
   KDL::Vector before;
   bool known = false;
@@ -186,7 +186,7 @@ void MeetJoints(const Context& c, const kinematics::Joints& from, const kinemati
   }
 }
 
-// Set points that are kept lead into these.
+// Returns the zones into which set points that are kept lead.
 std::uint32_t ZonesOfStream(const Context& c, const State& s) {
   std::uint32_t zones = 0;
   for (std::size_t k = 0; k < c.zones.of.size(); ++k) {
@@ -195,7 +195,7 @@ std::uint32_t ZonesOfStream(const Context& c, const State& s) {
   return zones;
 }
 
-// Where the ride of a stretch takes a place of it within this time.
+// Finds the zones into which its carrier takes a point of a stretch within this time.
 void MeetRide(const Context& c, const Stretch& stretch, double way, double time_s, Met& met) {
   KDL::Vector before;
   for (int i = 0; i <= kLooks; ++i) {
@@ -205,8 +205,8 @@ void MeetRide(const Context& c, const Stretch& stretch, double way, double time_
   }
 }
 
-// What the tool is taken into within zones_ahead_s if all that carries it goes on as now, until it is not tracked any
-// more.
+// Returns the zones into which the tool is carried within zones_ahead_s if its carriers move on as now, until tracking
+// ends.
 std::uint32_t ZonesOfRide(const Context& c, const State& s) {
   if (!s.begun || s.ends || s.lets_go || !IsOnRide(c, s)) return 0;
   double time_s = c.params.tracking.zones_ahead_s;
@@ -224,7 +224,7 @@ std::uint32_t ZonesOfRide(const Context& c, const State& s) {
   return met.widened;
 }
 
-// What the rest of the path meets.
+// Returns the zones that the rest of the path meets.
 std::uint32_t ZonesAhead(const Context& c, const State& s) {
   const LookAhead& ahead = c.ahead;
   std::uint32_t zones = 0;
@@ -276,9 +276,9 @@ void NoteRide(const Context& c, const State& s) noexcept {
   const CarrierBinding& ride = c.ahead.rides[next.to_ride % kRides];
   if (c.zones.of.empty() || !HasTool(c, s) || next.joints || !Moves(ride)) return;
   const Stretch* here = IsOnRide(c, s) ? Here(c, s) : nullptr;
-  if (here && c.ahead.rides[here->to_ride % kRides].cargo == ride.cargo) return;  // it does not board it
+  if (here && c.ahead.rides[here->to_ride % kRides].cargo == ride.cargo) return;  // the tool is on it already
   Met met;
-  // From now on: stopped on the way over it comes to rest nearer to where its target is then.
+  // From now on: a tool stopped during the transition comes to rest closer to the pose of its target at that time.
   const double there_s = std::max(0.0, next.eta_end - Now(c));
   MeetRide(c, next, next.segment.length, there_s + c.params.tracking.zones_ahead_s, met);
   for (std::size_t k = 0; k < c.zones.of.size(); ++k) {
@@ -377,7 +377,7 @@ bool EnterZonesOf(const Context& c, const kinematics::Joints& before, const kine
 
 ErrorId StepZones(const Context& c, State& s) noexcept {
   if (c.zones.of.empty() || !HasTool(c, s)) return ErrorId::kNone;
-  // Before the next move stands the tool, and nothing but that move is left to do.
+  // The tool is at rest before the next move, and nothing but that move is left to do.
   const bool only_waits = s.waits_for != 0 && s.done == s.planning.move && !s.interrupted;
   const bool plans = s.queue.count > 0 && s.claimed_for == s.planning.move && !s.ends;
   if (!plans) s.zones_claimed = 0;
@@ -389,14 +389,14 @@ ErrorId StepZones(const Context& c, State& s) noexcept {
   const KDL::Vector here = c.mounting.base * tool.p.p;
   Met now, comes;
   MeetLine(c, here, here, now);
-  // No path to brake along: each axis brakes by itself.
+  // Without a path to brake along, each axis brakes individually.
   const bool by_itself = Streams(s) || (s.ends && !s.begun);
   if (s.begun) MeetBraking(c, s, tool, comes);
   if (by_itself) MeetJoints(c, PresentJoints(c, s), JointsBraked(c, s), comes);
   const std::uint32_t ride = ZonesOfRide(c, s);
-  const std::uint32_t stays = s.pace.now.velocity == 0 ? ride : 0;  // else its path may lead away from there
+  const std::uint32_t stays = s.pace.now.velocity == 0 ? ride : 0;  // else its path may lead out of there
   s.zones &= now.widened | comes.widened | ride | ZonesAhead(c, s) | ZonesOfStream(c, s) | s.zones_claimed;
-  // Who is within the margin already may leave it.
+  // A tool that is within the margin already may leave it.
   const std::uint32_t must_not = now.inside | comes.inside | (comes.widened & ~now.widened);
   const std::uint32_t wanted = must_not | comes.widened | stays | (s.begun || Streams(s) ? 0 : now.widened);
   std::uint32_t of_others = 0;
@@ -412,7 +412,7 @@ ErrorId StepZones(const Context& c, State& s) noexcept {
   if ((must_not & of_others) == 0) return ErrorId::kNone;
   EndStream(c, FeedbackState::kError, ErrorId::kZoneTaken, s);
   if (!s.begun) return ErrorId::kNone;
-  if (s.ends && s.lets_go) {  // as strongly as it can
+  if (s.ends && s.lets_go) {  // as hard as it can
     EndMotion(c, {}, true, s);
     return ErrorId::kNone;
   }
