@@ -21,7 +21,7 @@ constexpr std::array kShares = {0.15, 0.3, 0.5, 0.7, 0.9};
 constexpr std::array kLeads = {0.0, 0.5, 1.0, 1.5, 2.5};
 constexpr double kVelocityShare = 0.9;      // of each coordinate's velocity limit, for the clutch
 constexpr double kBendsShare = 0.4;         // of acceleration and jerk limits, for the curvature along the travel
-constexpr double kLeastOverspeed = 1.3;     // least velocity limit of the clutch, relative to the carrier's velocity
+constexpr double kLeastOverspeed = 1.3;     // of the carrier's velocity: curvature leaves the clutch this in any case
 constexpr int kTries = 3;                   // candidates that are measured
 constexpr double kShareMargin = 1.1;        // on the share computed from a failed measurement
 constexpr double kMostSampled = 0.96;       // of a limit, as sampled
@@ -29,7 +29,7 @@ constexpr double kSampleMargin = 1.05;      // between samples
 constexpr int kSamplesPerPiece = 4;         // of the profile, both ends among them
 constexpr int kSamplesPerPieceOfChain = 2;  // with inverse kinematics of a serial chain
 constexpr int kSpeedRounds = 4;             // fixed-point iterations of the path speed at the end of boarding
-constexpr double kDifference = 1e-3;        // s of the carrier's travel, for difference quotients
+constexpr double kDifference = 1e-3;        // [s] of the carrier's travel, for difference quotients
 // Time of the transition between carrier bindings relative to a path at rest, per path length that the carrier travels
 // meanwhile: up to one length, and from there to kTransitionLengths. Margin on the estimated time with boarding. Fitted
 // to 213 moves of gantries on belts and tables.

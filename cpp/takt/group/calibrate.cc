@@ -11,7 +11,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-constexpr double kLeastSpread = 0.1;  // mm: points closer together, or closer to one line, define no frame
+constexpr double kLeastSpread = 0.1;  // [mm]: points closer together, or closer to one line, define no frame
 
 struct Places {
   std::array<Vector, 4> of;

@@ -13,7 +13,7 @@ namespace takt::group {
 
 struct Calibrated {
   kinematics::Pose pose;  // in the MCS
-  double largest = 0;     // mm, largest residual
+  double largest = 0;     // [mm] largest residual
 };
 // Returns nothing if points coincide or lie on one line.
 std::optional<Calibrated> FrameOf(const Calibrate& command) noexcept;

@@ -13,9 +13,9 @@ namespace {
 // Relative rounding error of arc lengths, which accumulate while the tool does not come to rest: within it from the
 // ends of a transition the weight is 0 or 1.
 constexpr double kOfPlace = 1e-14;
-constexpr double kLeastRounded = 1e5;  // mm, least arc length for which rounding is assumed
+constexpr double kLeastRounded = 1e5;  // [mm] least arc length for which rounding is assumed
 constexpr double kUnsteady_s = 3;      // after a change of velocity a carrier counts as unsteady
-constexpr double kSteady = 1e-3;       // mm/s² or rad/s²: less is rounding
+constexpr double kSteady = 1e-3;       // [mm/s² or rad/s²]: less is rounding
 
 // Converts a motion over arc length to one over time.
 MovingFrame InTime(const MovingFrame& over_way, const KinematicState& way) {

@@ -313,7 +313,7 @@ trajectory::Limits LimitsAlong(const Context& c, const State& s, const Stretch& 
   const bool stands = speed == 0;
   trajectory::Limits limits = {path.velocity, path.acceleration, path.deceleration.value_or(path.acceleration),
                                path.jerk};
-  double length = 0;  // mm of tool motion per unit of travel
+  double length = 0;  // [mm] of tool motion per unit of travel
   kinematics::Joints near = s.joints;
   double velocity = trajectory::CoordinateLimits::kNone, acceleration = velocity, jerk = velocity;
   for (int i = 0; i < kLooks; ++i) {

@@ -38,7 +38,7 @@ MovingFrame ToolBraked(const Context& c, const State& s, const Stretch& stretch,
 // can move it there as fast as its carriers move now; sets s.reason if not.
 bool CanLetGo(const Context& c, State& s) noexcept;
 
-// s, for which the limits of a clutch of a coupled tool are computed ahead
+// [s] over which the limits of a coupled clutch are computed ahead.
 inline constexpr double kAhead_s = 0.15;
 
 // Returns the limits of a carrier's travel that keep the limits of group and axes at `way` of a stretch, over

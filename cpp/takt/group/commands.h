@@ -48,7 +48,7 @@ struct MoveLinear {  // MC_MoveLinearAbsolute, MC_MoveLinearRelative
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
   TransitionMode transition_mode = TransitionMode::kNone;
-  double transition_parameter = 0;  // mm, or mm/s for transitions by velocity
+  double transition_parameter = 0;  // [mm], or [mm/s] for transitions by velocity
 };
 using MoveLinearAbsolute = MoveLinear<Reference::kAbsolute>;
 using MoveLinearRelative = MoveLinear<Reference::kRelative>;
@@ -56,7 +56,7 @@ using MoveLinearRelative = MoveLinear<Reference::kRelative>;
 template <Reference kReference>
 struct MoveCircular {  // MC_MoveCircularAbsolute, MC_MoveCircularRelative
   path::CircMode circ_mode = path::CircMode::kBorder;
-  double aux_x = 0, aux_y = 0, aux_z = 0;  // mm; meaning by circ_mode (path/make.h)
+  double aux_x = 0, aux_y = 0, aux_z = 0;  // [mm]; meaning by circ_mode (path/make.h)
   path::PathChoice path_choice = path::PathChoice::kCounterclockwise;
   double normal_x = 0, normal_y = 0, normal_z = 0;
   std::uint32_t turns = 0;
@@ -96,7 +96,7 @@ using MoveDirectRelative = MoveDirect<Reference::kRelative>;
 struct MoveArch {
   std::optional<double> x{}, y{}, z{}, a{}, b{}, c{};
   std::optional<double> a1{}, a2{}, a3{}, a4{}, a5{}, a6{}, a7{}, a8{};
-  double height = 0;  // mm, of the crest above the higher of start and end
+  double height = 0;  // [mm] of the crest above the higher of start and end
   CoordinateSystem coordinate_system = CoordinateSystem::kMcs;
   std::uint32_t pcs = 1;
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
@@ -118,7 +118,7 @@ struct MovePath {  // MC_MovePath, with the path that MC_PathSelect names
 struct MovePathSynchronized {  // MC_MovePathSynchronized
   Name path;
   Name master;       // name of an axis that is not a member
-  double ratio = 1;  // mm of the path per u of the master
+  double ratio = 1;  // [mm/u] path per master
   CoordinateSystem coordinate_system = CoordinateSystem::kMcs;
   std::uint32_t pcs = 1;
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
@@ -128,8 +128,8 @@ struct MovePathSynchronized {  // MC_MovePathSynchronized
 
 struct SyncAxis {                // MC_SyncAxisToGroup
   Name axis;                     // name of an axis that is not a member
-  double ratio_numerator = 1;    // u of the axis ...
-  double ratio_denominator = 1;  // ... per mm of the path
+  double ratio_numerator = 1;    // [u] of the axis ...
+  double ratio_denominator = 1;  // ... per [mm] of the path
 };
 
 // Coordinate system of a jog: the axes, the machine, the world, a product, or the tool itself.
@@ -139,9 +139,9 @@ enum class JogSystem : std::uint8_t { kAcs, kMcs, kWcs, kPcs, kTool };
 // of the tool along and about the axes of the coordinate system, a1 to a8 of the axes in ACS; of auxiliary axes in
 // every system.
 struct Jog {
-  double x = 0, y = 0, z = 0;                                             // mm/s
-  double a = 0, b = 0, c = 0;                                             // deg/s
-  double a1 = 0, a2 = 0, a3 = 0, a4 = 0, a5 = 0, a6 = 0, a7 = 0, a8 = 0;  // u/s
+  double x = 0, y = 0, z = 0;                                             // [mm/s]
+  double a = 0, b = 0, c = 0;                                             // [deg/s]
+  double a1 = 0, a2 = 0, a3 = 0, a4 = 0, a5 = 0, a6 = 0, a7 = 0, a8 = 0;  // [u/s]
   JogSystem coordinate_system = JogSystem::kMcs;
   std::uint32_t pcs = 1;
   std::optional<double> acceleration{}, deceleration{}, jerk{};
@@ -150,8 +150,8 @@ struct Jog {
 // Follows set points from outside, given as StreamPoints (AX-114).
 struct Stream {
   std::int32_t key = 0;
-  double delay = 0.02;             // s, from the arrival of the first set point until it is due
-  double timeout = 0.1;            // s, longest time without a set point
+  double delay = 0.02;             // [s] from the arrival of the first set point until it is due
+  double timeout = 0.1;            // [s] longest time without a set point
   double velocity_factor = 1;      // 1e-3 to 1, of the axes' own limits, to catch up with the set points
   double acceleration_factor = 1;  // likewise
   double jerk_factor = 1;          // likewise
@@ -159,11 +159,11 @@ struct Stream {
 struct StreamPoint {
   std::optional<double> x{}, y{}, z{}, a{}, b{}, c{};
   std::optional<double> a1{}, a2{}, a3{}, a4{}, a5{}, a6{}, a7{}, a8{};
-  std::optional<double> vx{}, vy{}, vz{}, wx{}, wy{}, wz{};              // mm/s, deg/s
-  std::optional<double> v1{}, v2{}, v3{}, v4{}, v5{}, v6{}, v7{}, v8{};  // u/s
+  std::optional<double> vx{}, vy{}, vz{}, wx{}, wy{}, wz{};              // [mm/s, deg/s]
+  std::optional<double> v1{}, v2{}, v3{}, v4{}, v5{}, v6{}, v7{}, v8{};  // [u/s]
   CoordinateSystem coordinate_system = CoordinateSystem::kMcs;
   std::uint32_t pcs = 1;
-  std::optional<double> time{};  // s, by the sender's clock; unset: time of arrival
+  std::optional<double> time{};  // [s] by the sender's clock; unset: time of arrival
   std::int32_t key = 0;
 };
 
@@ -212,8 +212,8 @@ struct SetKinTransform {  // MC_SetKinTransform
 };
 struct SetCartesianTransform {  // MC_SetCartesianTransform: a PCS in the MCS
   std::uint32_t pcs = 1;
-  double x = 0, y = 0, z = 0;  // mm
-  double a = 0, b = 0, c = 0;  // deg
+  double x = 0, y = 0, z = 0;  // [mm]
+  double a = 0, b = 0, c = 0;  // [deg]
 };
 struct SetCoordinateTransform {  // MC_SetCoordinateTransform: a PCS in any other coordinate system
   std::uint32_t pcs = 1;
@@ -225,23 +225,23 @@ struct SetCoordinateTransform {  // MC_SetCoordinateTransform: a PCS in any othe
 
 // Changes the tool (GR-46): the pose of the tool centre point on the flange.
 struct SetTool {
-  double x = 0, y = 0, z = 0;  // mm
-  double a = 0, b = 0, c = 0;  // deg
+  double x = 0, y = 0, z = 0;  // [mm]
+  double a = 0, b = 0, c = 0;  // [deg]
 };
 
 // Computes a PCS from three or four measured positions of the tool (GR-46).
 struct Calibrate {
   std::uint32_t pcs = 1;
-  // mm, in the MCS.
+  // [mm] in the MCS.
   double x1 = 0, y1 = 0, z1 = 0;
   double x2 = 0, y2 = 0, z2 = 0;
   double x3 = 0, y3 = 0, z3 = 0;
   std::optional<double> x4{}, y4{}, z4{};
-  // mm, the same points in the PCS. Unset: X points from point 1 to point 2, point 3 lies towards +Y; the origin is
+  // [mm] the same points in the PCS. Unset: X points from point 1 to point 2, point 3 lies towards +Y; the origin is
   // point 1, or point 4 if given.
   std::optional<double> seen_x1{}, seen_y1{}, seen_z1{}, seen_x2{}, seen_y2{}, seen_z2{};
   std::optional<double> seen_x3{}, seen_y3{}, seen_z3{}, seen_x4{}, seen_y4{}, seen_z4{};
-  std::optional<double> largest_residual{};  // mm, above which the command fails; unset: no limit
+  std::optional<double> largest_residual{};  // [mm] above which the command fails; unset: no limit
 };
 
 // When a command that is not itself a motion takes effect.
@@ -258,7 +258,7 @@ struct SetDynCoordTransform {
   Name carrier;  // name of the belt, table, group or pose
   double x = 0, y = 0, z = 0;
   double a = 0, b = 0, c = 0;
-  std::optional<double> recorded_position{};  // u, position of the belt's axis; unset: the present one
+  std::optional<double> recorded_position{};  // [u] position of the belt's axis; unset: the present one
 };
 
 // Synchronizes the tool with an object on a belt; moves in its PCS are superimposed (MC_TrackConveyorBelt).
@@ -268,13 +268,13 @@ struct TrackConveyorBelt {
   // Origin of the belt in the MCS; if all are unset its own, else unset values are 0.
   std::optional<double> origin_x{}, origin_y{}, origin_z{}, origin_a{}, origin_b{}, origin_c{};
   double x = 0, y = 0, z = 0, a = 0, b = 0, c = 0;  // InitialObjectPosition, on the belt
-  std::optional<double> recorded_position{};        // u, position of the belt's axis; unset: the present one
+  std::optional<double> recorded_position{};        // [u] position of the belt's axis; unset: the present one
   // Range of tracking: travel of the belt since the recorded position, at the start also x.
-  double start_distance = 0;             // mm
-  std::optional<double> end_distance{};  // mm; unset: unlimited
+  double start_distance = 0;             // [mm]
+  std::optional<double> end_distance{};  // [mm]; unset: unlimited
   // TrackOptions; unset or 0: as fast as the limits allow.
-  std::optional<double> sync_in_conveyor_distance{}, sync_in_tcp_distance{};    // mm
-  std::optional<double> sync_out_conveyor_distance{}, sync_out_tcp_distance{};  // mm
+  std::optional<double> sync_in_conveyor_distance{}, sync_in_tcp_distance{};    // [mm]
+  std::optional<double> sync_out_conveyor_distance{}, sync_out_tcp_distance{};  // [mm]
   ExecutionMode execution_mode = ExecutionMode::kImmediately;
 };
 
@@ -283,10 +283,10 @@ struct TrackRotaryTable {
   Name table;
   std::uint32_t pcs = 1;
   double x = 0, y = 0, z = 0, a = 0, b = 0, c = 0;
-  std::optional<double> recorded_position{};                // u, position of the table's axis; unset: the present one
-  double start_angle = 0;                                   // deg, in the direction in which the table turns
-  std::optional<double> end_angle{};                        // deg; unset: unlimited
-  std::optional<double> sync_in_angle{}, sync_out_angle{};  // deg of the table; unset or 0: by the limits
+  std::optional<double> recorded_position{};                // [u] position of the table's axis; unset: the present one
+  double start_angle = 0;                                   // [deg] in the direction in which the table turns
+  std::optional<double> end_angle{};                        // [deg]; unset: unlimited
+  std::optional<double> sync_in_angle{}, sync_out_angle{};  // [deg] of the table; unset or 0: by the limits
   ExecutionMode execution_mode = ExecutionMode::kImmediately;
 };
 

@@ -61,7 +61,7 @@ std::string InWords(std::size_t configuration, unsigned names) {
   return text;
 }
 
-// Returns the names of a subset of those used, as few as possible.
+// Returns, in words, the names that distinguish `these` among those used: as few as possible.
 std::string Which(const std::vector<std::size_t>& these, const std::vector<std::size_t>& used) {
   for (const unsigned names : {1U, 2U, 4U, 3U, 5U, 6U}) {
     if (Alike(used, these.front(), names) == these) return InWords(these.front(), names);

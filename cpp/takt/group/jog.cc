@@ -15,12 +15,12 @@ namespace takt::group {
 
 namespace {
 
-constexpr double kFarthest = 16'384;  // mm or u, longest path; a jog continues from its end
-constexpr double kMostTurn = 3'600;   // deg, likewise
-constexpr double kShort = 1e-3;       // mm, deg or u, distance kept from the border
+constexpr double kFarthest = 16'384;  // [mm or u] longest path; a jog continues from its end
+constexpr double kMostTurn = 3'600;   // [deg] likewise
+constexpr double kShort = 1e-3;       // [mm, deg or u] distance kept from the border
 constexpr double kLeastWay = 1e-2;    // likewise, shortest path
 constexpr double kOfTurn = 0.1;       // tolerance of the orientation, as a share of the demanded turn
-constexpr double kLeastTurn = 1e-6;   // rad
+constexpr double kLeastTurn = 1e-6;   // [rad]
 constexpr double kSameDirection = 1e-9;
 constexpr int kSpeedPlaces = 32;  // points of a path at which the speed of the tool is computed
 
@@ -33,9 +33,9 @@ double OrZero(double speed) {
 
 // The velocities of a jog, in the MCS.
 struct Speeds {
-  KDL::Vector along;  // mm/s
-  KDL::Vector about;  // rad/s
-  Joints axes{};      // u/s
+  KDL::Vector along;  // [mm/s]
+  KDL::Vector about;  // [rad/s]
+  Joints axes{};      // [u/s]
   double most = 0;    // largest of them, mm/s, deg/s or u/s
 
   Frame ToolAfter(const Frame& from, double time_s) const {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kBlendPlaces = 6;
 constexpr int kHalvings = 8;
-// mm/s; slower joints without a blend are no better than a stop
+// [mm/s]; slower joints without a blend are no better than a stop
 constexpr double kLeastJointSpeed = 1;
 constexpr double kRounding = 1e-9;
 constexpr double kLeastSaved = 3;  // cycles that a blend must save compared with a stop
@@ -85,7 +85,7 @@ double SquareOn(const Context& c, const State& s, const Stretch& blend) {
   return square;
 }
 
-// mm, from the corner; 0: no transition.
+// [mm] from the corner; 0: no transition.
 struct Distances {
   double first = 0;
   double second = 0;

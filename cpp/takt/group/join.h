@@ -5,7 +5,7 @@
 
 namespace takt::group {
 
-inline constexpr double kNoEnd = 1e12;  // mm
+inline constexpr double kNoEnd = 1e12;  // [mm]
 
 // Appends `ahead.next`, and a blend before it if there is one. Returns the number of inverse kinematics used, about.
 int Join(const Context& c, State& s) noexcept;
@@ -13,9 +13,9 @@ int Join(const Context& c, State& s) noexcept;
 // The blend that a move, or an element of a path, demands at the corner before it.
 struct CornerBlend {
   Stretch stretch;
-  double first = 0;           // mm, from the corner back to its start ...
+  double first = 0;           // [mm] from the corner back to its start ...
   double second = 0;          // ... and from the corner on to its end
-  double reach = 0;           // mm, largest value of both ...
+  double reach = 0;           // [mm] largest value of both ...
   double deviation = kNoEnd;  // ... and of the distance from the lines to the blend
   bool to_middle = false;     // it reaches the middle of one of the lines
 };

@@ -22,7 +22,7 @@ constexpr double kMostWhenLate = 0.7, kNearlyAll = 0.9;
 constexpr double kLeast = 0.02;        // of the path speed: the motion goes on, however slowly
 constexpr double kBrakeShare = 0.7;    // of what the axes have left; the rest is for getting there
 constexpr double kLeastBrake = 0.03;   // of the path's own deceleration
-constexpr double kLeastSpeed = 1;      // mm/s, for difference quotients
+constexpr double kLeastSpeed = 1;      // [mm/s] for difference quotients
 constexpr double kSameSpeed = 0.05;    // relative change of a carrier's velocity that is ignored
 constexpr double kJerkOver_s = 0.004;  // time over which the jerk is measured as a change of acceleration
 constexpr double kFurthest_s = 1;

@@ -21,15 +21,15 @@ inline constexpr std::size_t kWatched = 16;  // points ahead
 // The points ahead; follows from the state and, like the plan, is not part of it.
 struct KeepUp {
   struct Place {
-    double velocity = 0;      // mm/s, bound of the path speed
-    double acceleration = 0;  // mm/s², path acceleration that the axes have left
-    double change = 0;        // mm/s², change of acceleration within the build-up time
+    double velocity = 0;      // [mm/s] bound of the path speed
+    double acceleration = 0;  // [mm/s²] path acceleration that the axes have left
+    double change = 0;        // [mm/s²] change of acceleration within the build-up time
   };
   bool on = false;
   double share = 1;                                        // of the axes' limits that may be used
-  double begin = 0;                                        // mm, arc length of the first point ...
+  double begin = 0;                                        // [mm] arc length of the first point ...
   double apart = 0;                                        // ... and distance from one point to the next
-  double brake = std::numeric_limits<double>::infinity();  // mm/s², deceleration that the axes have left
+  double brake = std::numeric_limits<double>::infinity();  // [mm/s²] deceleration that the axes have left
   std::uint32_t next = 0;                                  // point to be checked
   std::array<Place, kWatched> places{};
 };

@@ -57,7 +57,7 @@ struct CarrierBinding {
 // A carrier of a product coordinate system, and whether its velocity has changed in the last seconds.
 struct Unsteady {
   std::uint32_t carrier = 0;
-  double left_s = 0;  // s, until it counts as steady; 0: steady
+  double left_s = 0;  // [s] until it counts as steady; 0: steady
 };
 
 // A piece of path in the planning frame.
@@ -73,10 +73,10 @@ struct Stretch {
   bool bends_at_ends = false;  // is blended also where it joins a line tangentially
   bool begun = false;          // its first node has been sampled
   trajectory::AlongPath limits;
-  double build_up_s = 0;  // s, of accelerations; the same from one stop to the next
+  double build_up_s = 0;  // [s] of accelerations; the same from one stop to the next
   // Numbers of the carrier bindings at its start and at its end; if they differ, the tool changes over between them.
   std::uint64_t from_ride = 0, to_ride = 0;
-  double eta_begin = 0, eta_end = 0;         // s since the start of the engine, expected when planned
+  double eta_begin = 0, eta_end = 0;         // [s] since the start of the engine, expected when planned
   std::array<double, kZones> zones_until{};  // arc length of the segment up to which it meets each zone; 0: not at all
   std::array<double, kZones> zones_from{};   // arc length before which it does not
 
@@ -119,7 +119,7 @@ struct LookAhead {
   std::uint64_t from_ride = 0;                       // of the start of the move being planned
   std::uint64_t rides_end = 1;                       // number after the newest one
   double end_eta = 0;                                // expected time of arrival there [s since the start of the engine]
-  double next_time_s = 0;                            // s, expected duration of the next stretch; 0: not yet known
+  double next_time_s = 0;                            // [s] expected duration of the next stretch; 0: not yet known
 
   // The stretch being planned, not yet joined to the others.
   Stretch next;
@@ -134,7 +134,7 @@ struct LookAhead {
   path::Point arch_begin, arch_end;
   path::Triple arch_up{};
   int arch_pieces = 0;
-  double arch_left = 0;           // mm, of the pieces after the next one
+  double arch_left = 0;           // [mm] of the pieces after the next one
   double load = 0;                // largest share of a velocity limit taken by carriers at the points verified
   double tried_at_way = 0;        // arc length of `next` and ...
   KDL::Vector tried_at;           // ... position in the world of the point noted last for zones
@@ -144,7 +144,7 @@ struct LookAhead {
   kinematics::Frame tried_from_tool;
   std::uint64_t tried_from_ride = 0;
   double tried_from_eta = 0;
-  double tried_way = 0;        // mm, of the elements before the next one
+  double tried_way = 0;        // [mm] of the elements before the next one
   bool known = false;          // the end is that of a plan; false: the present position of the members
   kinematics::Joints near{};   // at the point verified last
   trajectory::PathPoint last;  // the node sampled last

@@ -11,7 +11,7 @@ namespace takt::group {
 
 namespace {
 
-constexpr double kSame = 1e-3;  // u
+constexpr double kSame = 1e-3;  // [u]
 
 }  // namespace
 

@@ -20,12 +20,12 @@ struct Outputs {
   GroupState state = GroupState::kDisabled;
   ErrorId error = ErrorId::kNone;
   // Commanded pose of the tool centre point in the machine coordinate system; NaN without kinematics.
-  double x = 0;  // mm
-  double y = 0;  // mm
-  double z = 0;  // mm
-  double a = 0;  // deg
-  double b = 0;  // deg
-  double c = 0;  // deg
+  double x = 0;  // [mm]
+  double y = 0;  // [mm]
+  double z = 0;  // [mm]
+  double a = 0;  // [deg]
+  double b = 0;  // [deg]
+  double c = 0;  // [deg]
   // Actual pose, likewise.
   double actual_x = 0;
   double actual_y = 0;
@@ -33,16 +33,16 @@ struct Outputs {
   double actual_a = 0;
   double actual_b = 0;
   double actual_c = 0;
-  double velocity = 0;         // mm/s, commanded speed of the tool centre point
-  double acceleration = 0;     // mm/s², magnitude of its commanded acceleration
-  double actual_velocity = 0;  // mm/s
+  double velocity = 0;         // [mm/s] commanded speed of the tool centre point
+  double acceleration = 0;     // [mm/s²] magnitude of its commanded acceleration
+  double actual_velocity = 0;  // [mm/s]
   // Along the path, since the group began to move from rest.
-  double path_position = 0;      // mm
-  double path_velocity = 0;      // mm/s
-  double path_acceleration = 0;  // mm/s²
-  double path_left = 0;          // mm, remaining path as far as it is planned
-  double time_left = 0;          // s, until the motion rests at the end of all commanded moves; NaN: not known
-  double path_error = 0;         // mm, from the position commanded for this cycle to the actual one; 0: a member is off
+  double path_position = 0;      // [mm]
+  double path_velocity = 0;      // [mm/s]
+  double path_acceleration = 0;  // [mm/s²]
+  double path_left = 0;          // [mm] remaining path as far as it is planned
+  double time_left = 0;          // [s] until the motion rests at the end of all commanded moves; NaN: not known
+  double path_error = 0;  // [mm] from the position commanded for this cycle to the actual one; 0: a member is off
   double override_factor = 1;
   std::uint64_t command = 0;   // ticket of the move in execution; 0: none
   std::uint32_t buffered = 0;  // moves that wait
@@ -62,11 +62,11 @@ struct Outputs {
   // Synchronization with an object on a carrier; NaN without one.
   TrackState track_state = TrackState::kNone;
   bool in_sync = false;
-  double track_lag = 0;  // mm (tables: rad), travel of the carrier minus that of the tool
-  double object_x = 0;   // mm, of the tool as commanded, in the coordinate system of the object
+  double track_lag = 0;  // [mm; tables: rad] travel of the carrier minus that of the tool
+  double object_x = 0;   // [mm] of the tool as commanded, in the coordinate system of the object
   double object_y = 0;
   double object_z = 0;
-  double object_a = 0;  // deg
+  double object_a = 0;  // [deg]
   double object_b = 0;
   double object_c = 0;
   bool kinematics_on = false;  // there are kinematics with all their members, and they are switched on
@@ -76,7 +76,7 @@ struct Outputs {
   // Why the last move was refused or ended.
   kinematics::Reason reason = kinematics::Reason::kNone;  // why the axes cannot take a pose
   path::Problem problem = path::Problem::kNone;           // why there is no such path
-  // mm, from the start of that move; in a path from the start of `blocked_element` (with `trouble`: of the path).
+  // [mm] from the start of that move; in a path from the start of `blocked_element` (with `trouble`: of the path).
   double blocked_at = 0;
   std::uint32_t blocked_element = 0;  // element of a path of the machine file, from 1; 0: no such path
   workspace::Trouble trouble = workspace::Trouble::kNone;  // why the path is not free

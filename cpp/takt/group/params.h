@@ -15,28 +15,28 @@ namespace takt::group {
 
 // Default limits along the path, for moves that give none; all > 0.
 struct PathLimits {
-  double velocity = 0;                   // mm/s
-  double acceleration = 0;               // mm/s²
-  std::optional<double> deceleration{};  // mm/s²; unset: as acceleration
-  double jerk = 0;                       // mm/s³
+  double velocity = 0;                   // [mm/s]
+  double acceleration = 0;               // [mm/s²]
+  std::optional<double> deceleration{};  // [mm/s²]; unset: as acceleration
+  double jerk = 0;                       // [mm/s³]
   bool planned_ahead = true;             // timing laws that are known up to rest (trajectory/path_timing.h)
 };
 
 // Limits of the TCP along and about each of X, Y and Z of the world frame; unset: only those of the axes apply.
 struct ToolLimits {
-  std::optional<double> velocity{};              // mm/s
-  std::optional<double> acceleration{};          // mm/s²
-  std::optional<double> jerk{};                  // mm/s³
-  std::optional<double> angular_velocity{};      // deg/s
-  std::optional<double> angular_acceleration{};  // deg/s²
-  std::optional<double> angular_jerk{};          // deg/s³
+  std::optional<double> velocity{};              // [mm/s]
+  std::optional<double> acceleration{};          // [mm/s²]
+  std::optional<double> jerk{};                  // [mm/s³]
+  std::optional<double> angular_velocity{};      // [deg/s]
+  std::optional<double> angular_acceleration{};  // [deg/s²]
+  std::optional<double> angular_jerk{};          // [deg/s³]
 };
 
 // Upper limits of jogs; faster ones are limited to them.
 struct JogLimits {
   // Speed of the TCP and angular speed of the tool, also for jogs of axes; unset: the limits of moves.
-  std::optional<double> velocity{};          // mm/s
-  std::optional<double> angular_velocity{};  // deg/s
+  std::optional<double> velocity{};          // [mm/s]
+  std::optional<double> angular_velocity{};  // [deg/s]
   double axis_factor = 1;                    // 1e-3 to 1, of the velocity limits of jogged axes
 };
 
@@ -70,8 +70,8 @@ struct GroupParams {
 
 // A pose on a path of the machine file.
 struct PathPose {
-  double x = 0, y = 0, z = 0;           // mm
-  std::optional<double> a{}, b{}, c{};  // deg; unset: as before
+  double x = 0, y = 0, z = 0;           // [mm]
+  std::optional<double> a{}, b{}, c{};  // [deg]; unset: as before
 };
 
 enum class ElementShape : std::uint8_t { kLine, kArc, kSpline };
@@ -82,7 +82,7 @@ struct PathElement {
   std::optional<PathPose> to{};                     // end of the element; unset for splines
   std::optional<double> via_x{}, via_y{}, via_z{};  // arc: a point on it
   std::vector<PathPose> points;                     // spline: its end last; as a path's first element its start first
-  std::optional<double> velocity{};                 // mm/s, on this element; unset: that of the command
+  std::optional<double> velocity{};                 // [mm/s] on this element; unset: that of the command
 };
 
 struct PathParams {
@@ -94,7 +94,7 @@ struct PathParams {
 inline constexpr std::size_t kZones = 8;  // per machine
 
 struct ZoneCorner {
-  double x = 0;  // mm, in the world
+  double x = 0;  // [mm] in the world
   double y = 0;
   double z = 0;
 };
@@ -105,7 +105,7 @@ struct ZoneParams {
   std::vector<std::string> groups;  // names; empty: all
   ZoneCorner lower;
   ZoneCorner upper;
-  double margin = 5;  // mm around the box that count as inside
+  double margin = 5;  // [mm] around the box that count as inside
 };
 
 void describe(Description<ZoneCorner>&);

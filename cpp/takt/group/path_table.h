@@ -13,7 +13,8 @@
 namespace takt::group {
 
 // One element, or the piece between two points of a spline. Poses are in the coordinate system that the command names.
-// The start of the path is the present pose of the group: lines and arcs are made when they are executed.
+// The start of the path is the present pose of the group: lines and arcs are made when the move
+// is planned.
 struct PathPiece {
   ElementShape shape = ElementShape::kLine;
   kinematics::Pose to{};  // end of the piece
@@ -22,7 +23,7 @@ struct PathPiece {
   bool turned = false;
   path::Triple via{};       // arc
   path::Segment segment{};  // spline: complete
-  double velocity = 0;      // mm/s, limit; 0: that of the command
+  double velocity = 0;      // [mm/s] limit; 0: that of the command
 };
 
 struct PathTable {

@@ -31,11 +31,11 @@ constexpr int kRehearsed = 24;         // cycles of the motion ahead
 constexpr int kRehearsedIfCostly = 4;  // with an inverse of a serial chain for each
 constexpr int kLeastPlaces = 4;
 constexpr int kMostPlaces = 64;
-constexpr double kPlaceWay = 8;           // mm between two points at which a path is verified
-constexpr double kFreeBefore = 1;         // mm or deg, distance kept by a jog from an obstacle
+constexpr double kPlaceWay = 8;           // [mm] between two points at which a path is verified
+constexpr double kFreeBefore = 1;         // [mm or deg] distance kept by a jog from an obstacle
 constexpr double kMostLoad = 0.8;         // largest share of a velocity limit for carriers
 constexpr double kLatency_s = 0.004;      // from planning to motion
-constexpr double kStraightEnough = 1;     // mm, displacement of a target by early or late arrival that is ignored
+constexpr double kStraightEnough = 1;     // [mm] displacement of a target by early or late arrival that is ignored
 constexpr std::uint64_t kLookAgain = 64;  // cycles between tries of a carried move that waits for a zone
 
 // Returns the number of steps for verification, at least `least`.
@@ -253,7 +253,7 @@ void Verify(const Context& c, int& budget, State& s) {
   const double length = stretch.segment.length;
   Planning& p = s.planning;
   const bool carried = IsCarried(c.ahead, stretch);
-  // The elements of a path are many and short: points at their ends suffice.
+  // A path has many elements: fewer points on each suffice for them.
   const double full = length / PlacesOf(stretch, Tries(s) ? 1 : kLeastPlaces);
   for (; budget > 0 && p.verified < length; budget -= carried ? 3 : 1) {
     const double way = p.verifying ? p.verified + p.step : 0;

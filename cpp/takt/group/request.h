@@ -20,7 +20,7 @@ enum class MoveKind : std::uint8_t { kNone, kLinear, kCircular, kDirect, kPath, 
 // Target on a carrier: its pose when recorded, and the travel of the carrier then.
 struct CarriedTarget {
   std::uint32_t carrier = 0;  // number; 0: none, at rest in the MCS
-  double from = 0;            // mm or rad, travel of the carrier at which it was recorded
+  double from = 0;            // [mm or rad] travel of the carrier at which it was recorded
   kinematics::Pose lies;      // pose relative to the origin of the carrier
   bool has_origin = false;    // instead of the carrier's own:
   kinematics::Pose origin;    // in the MCS
@@ -45,8 +45,8 @@ struct Request {
   path::Circle circle;
   std::uint32_t path = 0;    // index among the paths of the machine
   std::uint32_t master = 0;  // index + 1 of the axis that the path follows; 0: it runs by time
-  double height = 0;         // mm, of an arch
-  double ratio = 1;          // mm of the path per u of the master
+  double height = 0;         // [mm] of an arch
+  double ratio = 1;          // [mm/u] path per master
   trajectory::AlongPath limits;
   kinematics::Configuration configuration{};  // direct moves to a pose; kKeep: any
   double velocity_factor = 1;                 // direct moves: of the axes' limits; jogs: of the speeds in `to`
@@ -56,7 +56,7 @@ struct Request {
   TransitionMode transition_mode = TransitionMode::kNone;
   double transition_parameter = 0;
   JogSystem jog_system = JogSystem::kMcs;  // jogs; their numbers are velocities
-  double most_s = kNoLimit;                // s, longest duration of a jog at these velocities ...
+  double most_s = kNoLimit;                // [s] longest duration of a jog at these velocities ...
   ErrorId border = ErrorId::kNone;         // ... because of this obstacle
 
   bool blends() const noexcept { return buffer_mode >= BufferMode::kBlendingLow; }

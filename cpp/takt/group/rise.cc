@@ -11,7 +11,7 @@ namespace takt::group {
 namespace {
 
 constexpr double kShare = 0.7;    // of the limits; the path is braked with the rest
-constexpr double kLook_s = 0.06;  // s, for which the descent of the path is anticipated
+constexpr double kLook_s = 0.06;  // [s] over which the descent of the path is anticipated
 
 }  // namespace
 

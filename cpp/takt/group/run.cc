@@ -31,8 +31,8 @@ const Stretch* GoOnTo(LookAhead& ahead, double s) {
   return ahead.count > 0 ? &ahead[ahead.first] : nullptr;
 }
 
-constexpr double kTowardsThen = 1;   // u/s: a motion that comes to rest there stays below
-constexpr double kTowards_s = 1e-6;  // u/s, mm/s or rad/s: less is rounding
+constexpr double kTowardsThen = 1;   // [u/s]: a motion that comes to rest there stays below
+constexpr double kTowards_s = 1e-6;  // [u/s, mm/s or rad/s]: less is rounding
 
 // Returns true if the next set points lead towards an active limit switch; sets State::refused.
 bool GoesToClosed(const Context& c, const kinematics::JointMotion& motion, const MovingFrame* tool, State& s) {

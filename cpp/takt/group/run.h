@@ -31,7 +31,7 @@ void EndMotion(const Context& c, const Brake& brake, bool lets_go, State& s) noe
 // The same in any stage of planning and motion: what is only planned is discarded at once.
 void GiveUpPath(const Context& c, const Brake& brake, bool lets_go, State& s) noexcept;
 
-// Returns the arc length of the path at which braking from now on ends at the latest [mm].
+// Returns the arc length of the path at which braking from now on ends at the furthest [mm].
 double RestAt(const Context& c, const State& s) noexcept;
 
 // Returns the stretch in execution; null if there is none.

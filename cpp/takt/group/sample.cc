@@ -15,14 +15,14 @@ namespace takt::group {
 namespace {
 
 constexpr std::size_t kSpareNodes = 4;
-constexpr double kLeastStep = 1e-3;  // mm
+constexpr double kLeastStep = 1e-3;  // [mm]
 // Stretches that wait are sampled once the motion might have to brake for them within this number of nodes, or this
 // time [s]: early enough to rehearse them.
 constexpr std::uint64_t kNodesAhead = 256;
 constexpr double kTimeAhead = 0.2;
 constexpr double kTrifle_s = 0.02;    // time in which a next move may come, and largest duration of what waits
 constexpr double kFarAhead_s = 0.05;  // at the present speed, least distance to what waits
-constexpr double kUneven = 0.25;      // mm or deg
+constexpr double kUneven = 0.25;      // [mm or deg]
 constexpr double kUnevenShare = 0.1;
 
 // Ends a path that has begun and cannot be continued, and aborts the moves after it.

@@ -5,7 +5,7 @@
 
 namespace takt::group {
 
-inline constexpr double kLeastTry = 1e-3;  // mm, least distance between two points of an uneven path
+inline constexpr double kLeastTry = 1e-3;  // [mm] least distance between two points of an uneven path
 
 // Returns true if the axes move from one point to the next about as the slopes at both predict. If not, something lies
 // between: near a stretched wrist, axes turn by half a turn.

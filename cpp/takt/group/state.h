@@ -39,7 +39,7 @@ struct Planning {
   std::uint32_t element = 0;   // of a path, from 0
   bool tried = false;          // all elements of the path have been verified
   bool verifying = false;      // the start of the move has been verified
-  double verified = 0;         // mm, arc length verified so far ...
+  double verified = 0;         // [mm] arc length verified so far ...
   double step = 0;             // ... and distance to the next point to verify
   std::uint64_t question = 0;  // number of the last path check request
   std::uint64_t joined = 0;    // cycle in which the last stretch was joined
@@ -52,7 +52,7 @@ struct Clutch {
   bool used = false;
   bool coupled = false;     // `travel` is the carrier's own
   std::uint64_t ride = 0;   // number of the carrier binding
-  KinematicState travel;    // mm or rad
+  KinematicState travel;    // [mm or rad]
   bool catches_up = false;  // the tool is getting into sync
   bool boards = false;      // from rest, while the path already runs (boarding.h)
   bool reserved = false;    // its limits are not shared with the path (boarding.h)
@@ -107,9 +107,9 @@ struct Directions {
 // Offset of the tool above its path (rise.h).
 struct Rise {
   bool used = false;
-  double height = 0;      // mm, of the tool at the end, in the coordinate system of the object
-  double target = 0;      // mm, of the offset
-  KinematicState offset;  // mm
+  double height = 0;      // [mm] of the tool at the end, in the coordinate system of the object
+  double target = 0;      // [mm] of the offset
+  KinematicState offset;  // [mm]
   double velocity = 0;    // limits of the offset
   double acceleration = 0;
   double jerk = 0;
@@ -131,8 +131,8 @@ using Brake = trajectory::PathBrake;
 struct SyncedAxis {
   Ticket ticket = 0;
   std::uint32_t axis = 0;  // index + 1; 0: none
-  double ratio = 1;        // u/mm
-  double offset = 0;       // u, over all turns, at arc length 0
+  double ratio = 1;        // [u/mm]
+  double offset = 0;       // [u] over all turns, at arc length 0
   bool reached = false;    // it has been in sync once
 };
 
@@ -140,9 +140,9 @@ struct SyncedAxis {
 struct MasterState {
   std::uint32_t axis = 0;  // index + 1; 0: none, the path runs by time
   std::uint64_t move = 0;  // number of the move that follows
-  double begin = 0;        // u, over all turns, position of the master at the start of the path
-  double ratio = 1;        // mm/u
-  double before = 0;       // mm/s², acceleration of the path demanded in the previous cycle
+  double begin = 0;        // [u] over all turns, position of the master at the start of the path
+  double ratio = 1;        // [mm/u]
+  double before = 0;       // [mm/s²] acceleration of the path demanded in the previous cycle
   bool in_step = false;
   bool reached = false;  // it has been in sync once
 };
@@ -182,7 +182,7 @@ struct State {
   axis::StopOrders holds;  // stops that hold the group, whatever has been commanded since
   Ticket ticket = 0;       // of the task
   Task task = Task::kNone;
-  double lease_s = 0;  // s, of a jog; 0: none
+  double lease_s = 0;  // [s] of a jog; 0: none
   std::uint64_t lease_end_cycle = 0;
   kinematics::Joints joints{};   // commanded positions of the members
   kinematics::Joints origins{};  // origins of the members (whole turns and zero offsets) when guidance began
@@ -192,7 +192,7 @@ struct State {
   bool reset_asked = false;  // the members have received the reset
   Ticket reset_ticket = 0;
   std::array<SyncedAxis, kSynced> synced;
-  double way_before = 0;  // mm, length of all paths before this one
+  double way_before = 0;  // [mm] length of all paths before this one
   MasterState master;
   Jogging jog;
   StreamState stream;

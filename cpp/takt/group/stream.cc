@@ -24,7 +24,7 @@ namespace {
 using kinematics::Joints;
 using kinematics::Reason;
 
-constexpr double kTurnsTowards = 1e-6;  // u/s, mm/s or rad/s: less is rounding
+constexpr double kTurnsTowards = 1e-6;  // [u/s, mm/s or rad/s]: less is rounding
 
 // Returns the set point in the coordinates of the group: relative to the origins when it took its members.
 KinematicState SetOf(const Context& c, const State& s, std::size_t k) {

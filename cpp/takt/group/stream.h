@@ -27,14 +27,14 @@ struct State;
 struct StreamState {
   Ticket ticket = 0;  // 0: none
   std::int32_t key = 0;
-  double delay = 0;    // s
-  double timeout = 0;  // s
+  double delay = 0;    // [s]
+  double timeout = 0;  // [s]
   double velocity_factor = 1;
   double acceleration_factor = 1;
   double jerk_factor = 1;
   bool reached = false;                          // all axes have been on their curves once
   std::array<axis::StreamState, kMaxAxes> of{};  // of each member; all have the same times
-  std::array<double, kZones> zones_until{};      // s, by the sender's clock: end of the set points in each zone
+  std::array<double, kZones> zones_until{};      // [s] by the sender's clock: end of the set points in each zone
   std::uint32_t zones = 0;                       // claimed for set points, a mask
 };
 

@@ -12,7 +12,7 @@ namespace takt::group {
 
 namespace {
 
-// mm or deg between two samples, on lines and on bends; in between the axes are assumed to move straight.
+// [mm or deg] between two samples, on lines and on bends; in between the axes are assumed to move straight.
 constexpr double kStep = 1;
 constexpr double kStepInBend = 0.25;
 constexpr double kFewest = 8;

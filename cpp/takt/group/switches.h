@@ -15,8 +15,8 @@ namespace takt::group {
 // State::closed.
 Directions ClosedNow(const Context& c, const State& s) noexcept;
 
-// Returns the error for a motion that takes closed directions: kAwayFromLimitOnly, or kDirection if all of them are
-// only not enabled. Sets LookAhead::blame to the axis.
+// Returns the error for a motion that takes closed directions: kAwayFromLimitOnly if a switch closes one of them, else
+// kDirection (not enabled by MC_Power). Sets LookAhead::blame to the axis.
 ErrorId RefusalOf(const Context& c, const State& s, Directions taken) noexcept;
 // The same for State::refused.
 inline ErrorId RefusalOf(const Context& c, const State& s) noexcept {

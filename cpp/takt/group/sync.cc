@@ -10,7 +10,7 @@ namespace takt::group {
 
 namespace {
 
-// mm, largest distance from the demanded position that counts as in sync.
+// [mm] largest distance from the demanded position that counts as in sync.
 constexpr double kInStep = 0.01;
 // A small distance to the master is made up in this number of build-up times: an acceleration can be taken back only
 // after one of them.

@@ -17,9 +17,9 @@ namespace takt::group {
 
 namespace {
 
-constexpr double kCenter = 1e-6;       // mm from the axis of a table: the angle is undefined
-constexpr double kBackwards = -1e-9;   // mm/s or rad/s
-constexpr double kRoundingWay = 1e-9;  // mm or rad
+constexpr double kCenter = 1e-6;       // [mm] from the axis of a table: the angle is undefined
+constexpr double kBackwards = -1e-9;   // [mm/s or rad/s]
+constexpr double kRoundingWay = 1e-9;  // [mm or rad]
 
 // Returns the travel since the recorded position, in the direction in which the carrier is expected to move.
 double Progress(const Track& track, const kinematics::Carrier& carrier) {

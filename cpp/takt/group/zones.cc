@@ -19,7 +19,7 @@ namespace takt::group {
 
 namespace {
 
-constexpr double kLeast = 1e-9;  // mm, for a zone that is met only at the start of a stretch
+constexpr double kLeast = 1e-9;  // [mm] for a zone that is met only at the start of a stretch
 constexpr int kLooks = 6;        // points while braking, and along a carrier
 constexpr int kBlendLooks = 8;
 

@@ -33,8 +33,8 @@ inline constexpr std::size_t kZoneGroups = 64;  // that may share zones
 
 // A zone as the cycle uses it.
 struct Zone {
-  KDL::Vector lower, upper;  // mm, in the world
-  double margin = 0;         // mm
+  KDL::Vector lower, upper;  // [mm] in the world
+  double margin = 0;         // [mm]
   std::uint64_t groups = 0;  // that share it, a mask: bit 0 is the first group of the machine
 };
 // `groups`: all groups of the machine.
