@@ -30,8 +30,8 @@ bool Board(const Context& c, State& s) noexcept;
 // Returns the boarding that reserves limits on a stretch; nullptr if there is none.
 Boarding* BoardingOn(LookAhead& ahead, const Stretch& stretch) noexcept;
 
-// Boarding::reach is the arc length that the raw motion reaches at the earliest when the tool is in sync, computed from
-// the bounds of the nodes as they are appended. Called at the first node, ...
+// Boarding::reach is the largest arc length that the raw motion can have reached when the tool is in sync, computed
+// from the bounds of the nodes as they are appended. Called at the first node, ...
 void BeginReserve(const Context& c, Boarding& boarding) noexcept;
 // ... with the last node before the next is appended: returns an upper bound of the arc length of the next; ...
 double FindReach(const trajectory::PathNode& last, Boarding& boarding) noexcept;

@@ -35,6 +35,7 @@ Frame ReferenceOf(const CarrierBinding& ride) noexcept;
 
 // Returns true if a binding of the stretch displaces the tool from its segment.
 bool IsCarried(const LookAhead& ahead, const Stretch& stretch) noexcept;
+// Returns true if the binding has a carrier.
 bool Moves(const CarrierBinding& ride) noexcept;
 // Returns the present velocity of the carrier: of belts [mm/s] and tables [rad/s] signed, of free carriers the norm
 // [mm/s]; 0 without a carrier.
@@ -47,20 +48,21 @@ MovingFrame DisplacementOf(const Context& c, const CarrierBinding& ride, double 
 KinematicState ShareAt(const LookAhead& ahead, const Stretch& stretch, double way) noexcept;
 // Returns the tool on a stretch for a motion along its segment, with the carriers as they are now, clutches included.
 MovingFrame ToolNow(const Context& c, const State& s, const Stretch& stretch, const KinematicState& way) noexcept;
-// The same with carriers extrapolated to the expected arrival at `way.position`. `still`: their velocities set to 0.
+// Returns the tool likewise, without clutches, with carriers extrapolated to the expected arrival at `way.position`.
+// `still`: their velocities set to 0.
 MovingFrame PredictedTool(const Context& c, const Stretch& stretch, const KinematicState& way, bool still) noexcept;
 // Updates LookAhead::unsteady; once per cycle.
 void WatchCarriers(const Context& c, const State& s) noexcept;
 // Returns true if a carrier of the stretch has accelerated within the last 3 s (WatchCarriers).
 bool IsUnsteady(const Context& c, const Stretch& stretch) noexcept;
 
-// As ToolNow, with carriers extrapolated by `ahead_s` [s], boarding included.
+// Returns the tool likewise, with carriers extrapolated by `ahead_s` [s] and their boarding.
 MovingFrame ToolIn(const Context& c, const Stretch& stretch, const KinematicState& way, double ahead_s) noexcept;
 
 using SeeCarrier = kinematics::Carrier (*)(const void* owner, std::uint64_t ride, const kinematics::Carrier& carrier);
 MovingFrame ToolSeen(const Context& c, const Stretch& stretch, const KinematicState& way, SeeCarrier see,
                      const void* owner) noexcept;
-// As ToolNow, with each carrier replaced by see(ride, carrier).
+// Returns the tool likewise, with each carrier replaced by see(ride, carrier).
 template <typename See>
 MovingFrame ToolWith(const Context& c, const Stretch& stretch, const KinematicState& way, const See& see) noexcept {
   const auto seen = [](const void* owner, std::uint64_t ride, const kinematics::Carrier& carrier) {

@@ -3,8 +3,8 @@
 // A tool that is coupled moves exactly with its carrier. To stop in the MCS it is released: the travel that the clutch
 // gives it is braked to rest within limits, while the carrier moves on. Coupled again, that travel catches up with the
 // carrier's, in the frame of the carrier, and from then on is the carrier's own, bit for bit; where the group's limits
-// come first (AfterSync::kLimited) it follows it (trajectory/demand_follower.h). The path keeps its shape and its pose
-// on the object.
+// come first (AfterSync::kLimited) it follows as a demand (trajectory/demand_follower.h). The path keeps its shape and
+// its pose on the object.
 #pragma once
 
 #include "takt/group/carrier_bindings.h"

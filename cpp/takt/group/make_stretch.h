@@ -18,7 +18,7 @@ path::Segment Moved(const Frame& frame, const path::Segment& segment) noexcept;
 // Returns the number of stretches of a move; of an arch only once the first is made.
 std::size_t ElementsOf(const Context& c, const Request& move) noexcept;
 
-// Computes the axes for a tool on a stretch in a motion `along` its segment.
+// Computes the axes for a tool on a stretch in a motion `along` its segment. Returns the reason if there are none.
 kinematics::Reason AxesFor(const Context& c, const State& s, const Stretch& stretch, const path::MovingFrame& tool,
                            const KinematicState& along, const kinematics::Joints& near,
                            kinematics::JointMotion& motion) noexcept;
@@ -33,8 +33,8 @@ trajectory::PathSlopes CoordinatesOf(const Context& c, const kinematics::JointMo
                                      const path::MovingFrame& tool) noexcept;
 
 // Computes what a motion along a carried path demands of all coordinates of LimitsOf `ahead_s` from now, with carriers
-// that move on as now. `positions`: in, of the previous point (NaN: none). Returns false if the path is not carried
-// there, or if the axes cannot follow.
+// that move on as now. `positions`: in, of the previous point (NaN: none); out, of this one. Returns false if the path
+// is not carried there, or if the axes cannot follow.
 bool Foresee(const Context& c, const State& s, const KinematicState& along, double ahead_s,
              trajectory::PathCoordinateValues& positions, trajectory::PathCoordinateValues& velocities,
              trajectory::PathCoordinateValues& accelerations) noexcept;

@@ -13,8 +13,7 @@
 namespace takt::group {
 
 // One element, or the piece between two points of a spline. Poses are in the coordinate system that the command names.
-// The start of the path is the present pose of the group: lines and arcs are made when the move
-// is planned.
+// The start of the path is the present pose of the group: lines and arcs are made when the move is planned.
 struct PathPiece {
   ElementShape shape = ElementShape::kLine;
   kinematics::Pose to{};  // end of the piece

@@ -39,7 +39,8 @@ struct StreamState {
 };
 
 bool Streams(const State& s) noexcept;
-// Takes control at once: what the group did before is aborted, without a stop. Returns an error, with nothing changed.
+// Takes control at once: what the group did before is aborted, without a stop. Returns an error, with nothing
+// changed, if a member cannot be controlled.
 ErrorId BeginStream(const Context& c, Ticket ticket, const Stream& command, State& s) noexcept;
 ErrorId TakePoint(const Context& c, const StreamPoint& command, State& s) noexcept;
 // Ends the stream: each axis comes to rest individually, within its limits.
