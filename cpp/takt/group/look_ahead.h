@@ -154,7 +154,7 @@ struct LookAhead {
   bool asked = false;          // the path check request has been sent
   bool cut_short = false;      // the path ends where it cannot be continued; State::reason says why
   Blame blame;                 // in this cycle
-  std::uint64_t failures = 0;  // Failures::Detail at the point refused last; 0: none
+  std::uint64_t failures = 0;  // Failures::Detail (failures.h) at the point refused last; 0: none
 
   Stretch& operator[](std::uint64_t number) noexcept { return stretches[number % stretches.size()]; }
   const Stretch& operator[](std::uint64_t number) const noexcept { return stretches[number % stretches.size()]; }
