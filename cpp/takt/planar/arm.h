@@ -1,4 +1,4 @@
-// A mover that another one carries with it, as if by an arm: where it is while that one goes on its way.
+// A mover rigidly attached to a carrier mover, as if by an arm: its pose, area and move follow from the carrier's.
 #pragma once
 
 #include "takt/planar/area.h"
@@ -7,16 +7,18 @@
 namespace takt::planar {
 
 struct Arm {
-  Place off{};        // of its middle, seen from the carrier
-  double c = 0;       // deg, to the carrier
-  Footprint mover{};  // that is carried
+  Place off{};        // of its centre, in the frame of the carrier
+  double c = 0;       // [deg] relative to the carrier
+  Footprint mover{};  // the attached mover
 };
 
-// Where it is if the carrier is there.
+// Returns its pose for a pose of the carrier.
 Pose PoseAt(const Arm& arm, const Pose& carrier) noexcept;
-// What it covers while the carrier covers no more than an area of up to 6 places. Where that turns: more than it would.
+// Returns the area that it sweeps while the carrier sweeps `carrier`. Requires: at most 6 places in `carrier`.
+// Conservative if the carrier rotates.
 Area AreaOf(const Arm& arm, const Area& carrier) noexcept;
-// How it moves while the carrier, which is at `from`, moves so. Where that turns it is to be taken anew as it goes.
+// Returns its move while the carrier, at pose `from`, makes the move `carrier`. If that rotates, it has to be computed
+// anew as the move proceeds.
 Move MoveOf(const Arm& arm, const Pose& from, const Move& carrier) noexcept;
 
 }  // namespace takt::planar

@@ -1,5 +1,5 @@
-// How a mover on a track comes to rest at the earliest, and how near two movers get that both do so: what every rule of
-// traffic is made of (traffic.h).
+// The quickest stop of a mover on a track, and the least distance of two movers that both stop: the basis of all rules
+// of traffic (traffic.h).
 #pragma once
 
 #include <array>
@@ -9,36 +9,36 @@
 
 namespace takt::planar {
 
-// How hard a mover brakes.
+// Limits of braking.
 struct Brakes {
-  double deceleration = 0;  // mm/s², > 0
-  double jerk = 0;          // mm/s³, > 0
+  double deceleration = 0;  // [mm/s²] > 0
+  double jerk = 0;          // [mm/s³] > 0
 };
 
-// From one instant on the mover brakes, until it stands. No motion with the same brakes that never reverses is slower
-// at any time, nor behind it.
+// A stop: the mover brakes from one instant on until it is at rest. Of all motions within the same limits that never
+// reverse, none is slower at any time, nor farther back.
 struct Braking {
   std::array<trajectory::Piece, 3> pieces{};
-  std::array<double, 3> ends_s{};  // s from the start, ascending
-  double rest = 0;                 // mm, where it stands then
-  double lowest = 0;               // mm, the least place on the way: start or rest, but where it first goes back
+  std::array<double, 3> ends_s{};  // [s] from the start, ascending
+  double rest = 0;                 // [mm] position of rest
+  double lowest = 0;               // [mm] least position: that of the start or of rest, unless the mover reverses first
   double highest = 0;
 
-  // s from its start, from 0 on.
+  // Returns the state `t` [s] after the start. Requires: t >= 0.
   KinematicState At(double t) const noexcept;
 };
 Braking Brake(const KinematicState& from, const Brakes& brakes) noexcept;
 
-// mm: the least distance from `behind` to `ahead`, both starting now; `apart` is added to all places of `ahead`.
-// Below 0 if it is behind somewhere. Exact: from the roots of the derivatives of the distance.
+// Returns the least distance [mm] from `behind` to `ahead`, both starting now; `apart` is added to all positions of
+// `ahead`. Below 0 if `ahead` is behind at some time. Exact: evaluated at the roots of the derivatives of the distance.
 double LeastDistance(const Braking& behind, const Braking& ahead, double apart) noexcept;
 
-// A speed that falls with the way left: from no acceleration at speed v to rest takes v/2 (v/d + d/j), or v sqrt(v/j)
-// where d is not reached.
+// Returns the distance [mm] from `speed`, without acceleration, to rest: v/2 (v/d + d/j), or v sqrt(v/j) if d is not
+// reached.
 double WayToRest(double speed, const Brakes& brakes) noexcept;
-// The inverse; mm/s.
+// The inverse: returns the speed [mm/s] from which the mover comes to rest in the distance `way` [mm].
 double SpeedForWay(double way, const Brakes& brakes) noexcept;
-// The highest speed (without acceleration) from which a mover gets down to `end` on so long a way.
+// Returns the highest speed [mm/s], without acceleration, from which a mover slows down to `end` within `way` [mm].
 double SpeedBefore(double way, double end, const Brakes& brakes) noexcept;
 
 }  // namespace takt::planar

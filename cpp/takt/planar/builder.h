@@ -1,4 +1,4 @@
-// A track as it is put together, step by step. A step that cannot be taken changes nothing.
+// Builds a track step by step. A step that fails changes nothing.
 #pragma once
 
 #include <optional>
@@ -12,21 +12,21 @@ namespace takt::planar {
 class TrackBuilder {
  public:
   Problem AppendLine(const Place& start, const Place& end);
-  // An arc that ends where it starts is a whole circle.
+  // An arc that ends at its start is a full circle.
   Problem AppendCircle(const Place& start, const Place& end, const Place& center, bool clockwise);
-  // What the track is like at a position depends on what comes behind it.
+  // Direction and curvature of the track at a position depend on the elements after it, too.
   Problem AppendPosition(const Place& position);
   Problem CloseLoop();
 
-  // Where another track ends, or starts. If the track starts or ends there anyhow, nothing changes: a track on a part
-  // that moves may meet several others at the same place.
+  // Links the start of the track to the end of another one, or its end to the start of another one. A track that is
+  // linked there already stays as it is: a track on a moving part may meet several others at the same point.
   Problem StartFrom(const TrackPoint& end_of_other);
   Problem EndAt(const TrackPoint& start_of_other);
 
   void Clear();
 
   const Layout& layout() const { return layout_; }
-  // Null as long as it has no length.
+  // Null as long as the track has no length.
   const Track* track() const { return track_ ? &*track_ : nullptr; }
 
  private:

@@ -1,4 +1,4 @@
-// A track cut into stretches that bend little: what searches along it begin with.
+// A track divided into cells of little curvature: the first level of searches along it.
 #pragma once
 
 #include <cstdint>
@@ -9,29 +9,29 @@
 
 namespace takt::planar {
 
-// All of it lies within `off` of the straight line between its ends, and every direction within `turn` of every other.
+// All of it lies within `off` of the chord between its ends; all its directions differ by at most `turn`.
 struct Cell {
-  double from = 0;  // mm along the track
+  double from = 0;  // [mm] along the track
   double to = 0;
   Place begin;
   Place end;
-  double off = 0;        // mm
-  double turn = 0;       // rad
-  double curvature = 0;  // 1/mm, the largest, without sign
+  double off = 0;        // [mm]
+  double turn = 0;       // [rad]
+  double curvature = 0;  // [1/mm] largest absolute value
   std::uint32_t piece = 0;
-  // Of a transition: its parameter.
+  // Parameters of a transition at both ends.
   double begin_parameter = 0;
   double end_parameter = 1;
 };
 
-// rad: cells turn less.
+// [rad] upper bound of Cell::turn.
 inline constexpr double kCellTurn = 0.25;
 
-// Something fixed to the track that reaches so far from it: how far it may come, within `half` mm around a place of the
-// cell, from where it would be on the straight line through that place.
+// Returns a bound [mm] of how far a point fixed to the track, `radius` [mm] from it, deviates within `half` [mm] around
+// a point of the cell from where it would be on the tangent at that point.
 double StrayOf(const Cell& cell, double half, double radius) noexcept;
 
-// Appends those of a piece that begins at `start` along the track.
+// Appends the cells of a piece that begins at arc length `start`.
 void AppendCells(const path::Segment& segment, double start, std::uint32_t piece, std::vector<Cell>& out);
 
 }  // namespace takt::planar

@@ -16,18 +16,18 @@
 namespace takt::planar {
 
 inline constexpr std::size_t kCourseAreas = 4;
-inline constexpr double kCourseSlack = 0.25;  // mm
+inline constexpr double kCourseSlack = 0.25;  // [mm]
 
 struct Course {
   std::array<Area, kCourseAreas> areas{};
-  std::array<Extent, kCourseAreas> extents{};  // of the areas
+  std::array<Extent, kCourseAreas> extents{};  // of `areas`
   std::uint32_t count = 0;
   Extent extent{};  // of all areas
 
   std::span<const Area> all() const noexcept { return {areas.data(), count}; }
 };
 
-// Appends an area. A full course grows around it instead.
+// Appends an area. If the course is full, its last area grows to contain it.
 void Add(const Area& area, Course& out) noexcept;
 
 // Calls `look` with areas whose union contains what a mover covers while its centre moves along a track from arc length
@@ -58,8 +58,7 @@ void EachArea(const Track& track, const Place& origin, double from, double to, c
     place(from);
     return show();
   }
-  // Linear interpolation over a stride h is off by no more than k h²/8. The curvature of a cell is known to a
-  // thousandth.
+  // The error of linear interpolation over a stride h is at most k h²/8. The curvature of a cell is known to 0.1 %.
   const double curvature = 1.01 * PeakCurvature(track, from, to);
   const double wanted = std::ceil(length * std::sqrt(curvature / (8 * kCourseSlack)));
   const int strides = static_cast<int>(std::clamp(wanted, 1.0, static_cast<double>(most_strides)));
@@ -78,7 +77,7 @@ void EachArea(const Track& track, const Place& origin, double from, double to, c
 
 // Appends areas that contain what a mover (`kind`, as for EachArea) covers while its centre moves along a track from
 // arc length `from` to `to` [mm]. Requires: 0 <= from <= to <= length. They exceed that by at most kCourseSlack while
-// 24 chords suffice and the course has room. `origin`: of the coordinates of the track [mm].
+// 24 chords suffice and the course has room. `origin` [mm]: of the coordinates of the track.
 void AddStretch(const Track& track, const Place& origin, double from, double to, const Area& kind,
                 Course& out) noexcept;
 
@@ -108,15 +107,15 @@ void EachStretch(const Network& network, const Route& route, double from, double
 // The range of positions that a mover may take on its route: to its target, or until it stops; the whole route if it
 // follows a master.
 struct Interval {
-  double from = 0, to = 0;  // mm, from the start of its first track
+  double from = 0, to = 0;  // [mm] from the start of its first track
 };
 Interval WayOf(const Network& network, const Rider& rider) noexcept;
 
 // Returns the course along its route of a mover whose centre stays between two positions [mm].
 Course CourseOn(const Network& network, const Rider& rider, double from, double to, const Area& kind) noexcept;
 
-// Returns true if their distance along the route alone keeps two movers apart that both brake from now on, however the
-// route bends; false if that is not proven. One is ahead of the other on the other's route; `apart` [mm] is added to
+// Returns true if two movers that brake from now on stay apart, however the route bends, by their distance along the
+// route alone; false if that is not proven. One is ahead of the other on the other's route; `apart` [mm] is added to
 // its positions. Schur's comparison theorem: the chord of an arc of length g with a curvature up to k is no shorter
 // than that of a circle, 2/k sin(k g/2), as long as k g <= pi.
 bool ApartByOrder(const Network& network, const Rider& behind, const Braking& behind_brakes, const Area& behind_kind,
@@ -128,7 +127,7 @@ struct BrakingMover {
   const Area& kind;
 };
 // Returns true if two braking movers never overlap, checked by conservative advancement in whole cycles; false if they
-// do, or if the instants that it looks at do not suffice.
+// do, or if a bounded number of checks does not decide.
 bool ApartInTime(const Network& network, const BrakingMover& a, const BrakingMover& b, double period_s) noexcept;
 
 }  // namespace takt::planar

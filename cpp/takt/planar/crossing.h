@@ -1,4 +1,4 @@
-// Where a track crosses itself.
+// Self-crossings of a track.
 #pragma once
 
 #include <optional>
@@ -8,15 +8,15 @@
 namespace takt::planar {
 
 struct Crossing {
-  double first = 0;   // mm along the track
-  double second = 0;  // further on
+  double first = 0;   // [mm] along the track
+  double second = 0;  // [mm] > first
 };
 
-// Nearer than this to itself, a track touches itself.
-inline constexpr double kTouch = 1e-3;  // mm
+// A track that comes nearer than this to itself touches itself.
+inline constexpr double kTouch = 1e-3;  // [mm]
 
-// One place where the track crosses or touches itself; where a closed loop is closed does not count. Not for the cycle:
-// looks at all pairs of cells.
+// Returns one point where the track crosses or touches itself; the joint of a closed loop does not count. Not for the
+// cycle: examines all pairs of cells.
 std::optional<Crossing> SelfCrossing(const Track& track) noexcept;
 
 }  // namespace takt::planar

@@ -1,4 +1,4 @@
-// Segments of a path as curves in the plane.
+// Path segments as curves in the plane.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,12 +35,12 @@ inline Flat Left(const Flat& v) noexcept {
 inline double Cross(const Flat& a, const Flat& b) noexcept {
   return a.x() * b.y() - a.y() * b.x();
 }
-// From one direction to the other, between -pi and pi.
+// Returns the angle [rad] from one direction to the other, between -pi and pi.
 inline double AngleTo(const Flat& from, const Flat& to) noexcept {
   return maths::Atan2(Cross(from, to), from.dot(to));
 }
 
-// Of a quintic, over its parameter.
+// Point and derivatives of a quintic with respect to its parameter.
 struct Bent {
   Flat value, first, second, third;
 
@@ -48,7 +48,7 @@ struct Bent {
     const double squared = first.squaredNorm();
     return Cross(first, second) / (squared * std::sqrt(squared));
   }
-  // Of the curvature by arc length.
+  // Derivative of the curvature with respect to arc length.
   double curvature_rate() const noexcept {
     const double squared = first.squaredNorm();
     return (Cross(first, third) - 3 * Cross(first, second) * first.dot(second) / squared) / (squared * squared);
@@ -62,7 +62,7 @@ inline Bent BentAt(const path::VectorPolynomial& c, double u) noexcept {
           2 * k[2] + u * (6 * k[3] + u * (12 * k[4] + u * (20 * k[5]))), 6 * k[3] + u * (24 * k[4] + u * (60 * k[5]))};
 }
 
-// The part of a polynomial between two parameters, over one from 0 to 1.
+// Returns the part of a polynomial between two parameters, reparameterised from 0 to 1.
 inline path::VectorPolynomial PartOf(const path::VectorPolynomial& c, double from, double to) noexcept {
   const Bent p = BentAt(c, from);
   const double h = to - from;

@@ -1,5 +1,5 @@
-// How a mover follows another: with what acceleration. That keeps a little more than the invariant asks for, which
-// right_of_way.h sees to.
+// The acceleration with which a mover follows another one. It keeps a little more distance than the invariant
+// (right_of_way.h) requires.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace takt::planar {
 
-// Where it has to be able to stop: so far from here, and how fast that place goes away.
+// A point before which the mover must be able to stop: distance to it [mm], and the speed at which it recedes [mm/s].
 struct Limit {
   double room = std::numeric_limits<double>::infinity();
   double rate = 0;
@@ -20,15 +20,17 @@ struct Limit {
   std::uint32_t by = kNobody;
 };
 
-// What holds this mover back, in its direction: the one before it, and those at nodes. The least acceleration that is
-// asked for, and by which limit.
+// Finds the limits that apply to a mover in its direction: of the mover ahead, and of movers at nodes. Updates `limit`
+// and `least` [mm/s²] to the limit that demands the least acceleration, and that acceleration.
 void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, double& least) noexcept;
-// It goes just as the one before it, or falls behind: the gap needs no more than the invariant.
+// Returns true if `wish` is no faster than the step of the mover ahead: then the gap needs no more than the invariant.
 bool GoesAlong(const RightOfWay& w, std::uint32_t i, const KinematicState& wish, const Limit& limit) noexcept;
-// The acceleration with which a mover comes up behind something that goes on by itself: so much room is left to where
-// it is to be, which goes at this speed and acceleration. Both could still stop, and it would not have passed.
+// Returns the acceleration [mm/s²] with which a mover approaches from behind a point that moves independently of it:
+// `room` [mm] is the distance to the point, `there` the point's speed and acceleration. The mover would not pass the
+// point if both stopped.
 double ComeUp(const Rider& r, double room, const KinematicState& there, const Brakes& brakes, double period_s) noexcept;
-// Behind the mover ahead: down to the gap, without a reserve for swinging, so that in the end both go as one.
+// Returns the acceleration [mm/s²] that closes the gap to the mover ahead without a reserve against oscillation, so
+// that in the end both move as one; minus infinity if the mover ahead is not the limit, or brakes harder.
 double CloseUp(const RightOfWay& w, std::uint32_t i, const Limit& limit) noexcept;
 
 }  // namespace takt::planar

@@ -1,5 +1,5 @@
-// A mover on tracks that goes along with a master: an axis, whose place comes from outside in each cycle, or another
-// mover. Places of both are counted over all tracks that they have left behind.
+// A mover on tracks that follows a master: an axis, whose position comes from outside in each cycle, or another mover.
+// Positions of both are counted over all tracks that they have left.
 #pragma once
 
 #include <cstdint>
@@ -8,23 +8,23 @@
 
 namespace takt::planar {
 
-// What else became of it.
+// How a geared motion ended.
 enum class GearEnd : std::uint8_t {
-  kNot,  // it goes along
-  kWay,  // its way ends where the master leads it; it comes to rest there
+  kNot,  // it has not ended
+  kWay,  // its route ends short of the master's position; it moves to that end and comes to rest
 };
 
 struct Gear {
-  std::uint32_t master = 0xffffffff;  // a mover; none: the demand comes from outside
-  double offset = 0;                  // mm: own place minus the master's, both over all tracks
-  double tolerance = 0;               // mm, within which it counts as in step
-  std::int8_t sense = 0;              // until it has been in step: it goes this way only; 0: either
-  bool takes_masters_way = false;     // its route is the master's
-  double apart = 0;                   // mm: the same place as this mover counts it minus as the master counts it
+  std::uint32_t master = 0xffffffff;  // index of a mover; none: the demand comes from outside
+  double offset = 0;                  // [mm] own position minus the master's, both over all tracks
+  double tolerance = 0;               // [mm] largest error that counts as in step
+  std::int8_t sense = 0;              // the only direction until it has been in step; 0: either
+  bool takes_masters_way = false;     // it takes over the master's route
+  double apart = 0;                   // [mm] position of a point as this mover counts it minus as the master counts it
 
   bool was_in_step = false;
   bool in_step = false;
-  double error = 0;  // mm: own place minus where it should be
+  double error = 0;  // [mm] own position minus the demanded one
   GearEnd end = GearEnd::kNot;
 };
 

@@ -1,4 +1,4 @@
-// What a mover that goes along with a master (gear.h) does by itself; what is left of that in traffic: traffic.h.
+// The motion of a mover that follows a master (gear.h), without other movers; the rest is in traffic.h.
 #pragma once
 
 #include "takt/planar/braking.h"
@@ -9,33 +9,34 @@
 
 namespace takt::planar {
 
-// Its state at the end of the cycle if it were alone on a straight way: the demand itself where its limits allow.
-// `exact`: it is that. Places are those on the first track of its route.
+// Returns its state at the end of the cycle as if it were alone on a straight route; the demand itself if its limits
+// allow it, then `exact` becomes true. Positions on the first track of its route.
 KinematicState GoAlong(trajectory::Planner& planner, const Rider& rider, const KinematicState& demand, double period_s,
                        bool& exact) noexcept;
 
-// Where it could not come to rest on its route any more from here, with the dynamics that it was given: 1, beyond the
-// end; -1, before the start; 0: nowhere.
+// Returns 1 if the mover could not come to rest before the end of its route from here with its commanded dynamics, -1
+// if not before its start, else 0.
 int RunsOut(const Network& network, const Rider& rider, const KinematicState& at) noexcept;
 
-// Whether it keeps its greatest speed, and its lateral acceleration in curves, if from this step on it brakes with so
-// much jerk.
+// Returns true if the mover keeps its maximum speed, and its maximum lateral acceleration in curves, while it brakes
+// from this step on with `jerk`.
 bool KeepsToLimits(const Network& network, const Rider& rider, const KinematicState& next, const Braking& braking,
                    double jerk) noexcept;
-// Whether the vectors of acceleration and jerk keep their maxima in this step, and in braking from there on.
+// Returns true if acceleration and jerk, as vectors, keep their maxima in this step and while the mover brakes from
+// there.
 bool KeepsToVectors(const Network& network, const Rider& rider, const KinematicState& next, const Braking& braking,
                     double period_s) noexcept;
-// Whether it has to look out for curves.
+// Returns true if curves ahead bound its speed below the commanded one.
 bool CurvesAhead(const Network& network, const Rider& rider) noexcept;
-// Whether from this step on it has to look out for nothing but others: no curve is so near that it would slow down for
-// it, nor the end of its way, and it gets no faster than it was told to.
+// Returns true if from this step on only other movers can slow it down: it is no faster than commanded, and neither a
+// curve nor the end of its route is near enough to matter.
 bool RunsFree(const Network& network, const Rider& rider, const KinematicState& step) noexcept;
 
-// Whether its route may become this one: tracks that it gets onto whatever happens stay.
+// Returns true if `route` may replace its route: the tracks that it cannot avoid any more stay the same.
 bool MayTake(const Network& network, const Rider& rider, const Route& route) noexcept;
 
-// Takes over where the master's route leads on, from where both routes are the same. False: it is past the place where
-// the master turns off, or the master is out of its sight.
+// Takes over the master's route from where both routes meet. Returns false if the mover is past the branch where the
+// master turns off, or if the master is beyond its route.
 bool TakeMastersWay(const Network& network, const Rider& master, Rider& rider) noexcept;
 
 }  // namespace takt::planar

@@ -1,5 +1,5 @@
-// Who is in which group of movers, and what each group has reserved: what movers, tracks, environments and the groups
-// themselves share. Groups are numbered from 1; 0: none. All of it is fit for the cycle.
+// Members and reservations of the groups of movers: shared by movers, tracks, environments and the groups themselves.
+// Groups are numbered from 1; 0: none. All of it is fit for the cycle.
 #pragma once
 
 #include <cstddef>
@@ -19,23 +19,23 @@
 
 namespace takt::planar {
 
-// A mover as it is at the end of a cycle.
+// A mover at the end of a cycle.
 struct MoverView {
   Footprint mover{};
-  std::uint32_t system = 0;        // coordinate system that it is in
-  Pose pose{};                     // in that
+  std::uint32_t system = 0;        // its coordinate system, from 0
+  Pose pose{};                     // in `system`
   bool rests = true;               // in X, Y and C
-  std::uint32_t body = 0;          // those with the same number, from 1, move as one; 0: it moves alone
-  bool on_track = false;           // and else it goes nowhere
-  std::uint32_t track = kNoTrack;  // that one
-  bool comes = false;              // its part is on its way, and brings it
-  Spot goal{};                     // there
+  std::uint32_t body = 0;          // movers with the same number, from 1, move as one body; 0: it moves alone
+  bool on_track = false;           // on a track, neither joining nor leaving it
+  std::uint32_t track = kNoTrack;  // the track, if on one
+  bool comes = false;              // its part is on the way to another position, with the mover on it
+  Spot goal{};                     // its coordinate system and position there, if it `comes`
 };
 
-// What is remembered of a group.
+// State of a group.
 struct GroupReservations {
-  bool watches = false;  // it is enabled: only then anything is reserved or refused
-  bool waits = false;    // moves of its movers wait for their area instead of being refused; as the machine file says
+  bool watches = false;  // enabled: only then areas are reserved and moves refused
+  bool waits = false;    // moves of its movers wait for their area instead of being refused; from the machine file
   Reservations reserved;
 };
 
@@ -43,11 +43,11 @@ struct GroupRegistry {
   GroupRegistry(std::size_t movers, std::size_t tracks, std::size_t environments, std::vector<std::string> groups);
 
   std::uint32_t Find(std::string_view group) const noexcept;
-  // 0: none, or it does not watch.
+  // Returns the group if it is enabled, else 0.
   std::uint32_t Watching(std::uint32_t group) const noexcept {
     return group != 0 && grounds[group - 1].watches ? group : 0;
   }
-  // The environment of a group, from 1; 0: none.
+  // Returns the environment of a group, from 1; 0: none.
   std::uint32_t EnvironmentOf(std::uint32_t group) const noexcept;
   StaticObstacles Around(std::uint32_t group) const noexcept;
   std::uint32_t NetworkOf(std::uint32_t track) const noexcept {
@@ -60,43 +60,46 @@ struct GroupRegistry {
   std::vector<std::uint32_t> group_of_environment;
   std::vector<GroupReservations> grounds;  // by group, from 0
 
-  // What follows from the states of others.
+  // Derived from the states of other objects.
   std::vector<MoverView> movers;
   std::vector<const TrackArea*> areas;       // by track; null: it has no length
-  std::vector<Spot> spots;                   // by track: where the part that it lies on is
-  std::vector<std::uint8_t> moving;          // by track: it is Moving
-  std::vector<const Environment*> surfaces;  // by environment; null: it has no boundary
-  bool on_parts = false;                     // the surface is made of parts: environments are what these say
+  std::vector<Spot> spots;                   // by track: origin of the part that it lies on
+  std::vector<std::uint8_t> moving;          // by track: 1 if it is Moving
+  std::vector<const Environment*> surfaces;  // by environment; null: no boundary
+  bool on_parts = false;                     // the surface is made of parts, which then define its border
   Guard guard;                               // of all movers, in a group or not
 };
 
-// Whether something of a group that watches is or would be in the way. `error` is none, or why not.
+// The result of a check against enabled groups: an error and the object in the way; kNone if there is room.
 struct Verdict {
   ErrorId error = ErrorId::kNone;
   ObjectInfo object{};
-  double value = 0;  // what the error says besides, as the value of a feedback
+  double value = 0;  // value of the feedback that reports the error
 };
 
-// With what a mover would collide in its group; none where that does not watch. And what follows for what is reserved.
+// Returns the object that the mover would collide with in its group; none if there is room, or the group is not
+// enabled.
 ObjectInfo AskMove(std::uint32_t mover, const Move& move, const GroupRegistry& g) noexcept;
-// What its group knows of a move that waits in its turn; null: the group does not watch.
+// Returns the group's entry for a move of this mover that waits in its turn; null if the group is not enabled.
 Turn* TurnOf(std::uint32_t mover, GroupRegistry& g) noexcept;
 void TakeMove(std::uint32_t mover, const Move& move, GroupRegistry& g) noexcept;
-// As `movers` says it is now.
+// Updates the mover's reservation from `movers`.
 void AdvanceMover(std::uint32_t mover, GroupRegistry& g) noexcept;
-// Its area where its part brings it.
+// Returns the area of a mover at the position to which its part brings it.
 Area AreaThere(const MoverView& now) noexcept;
-// Whom a part brings to where this area is; whether or not they have a group. `but`: not this one.
+// Returns the mover that a part brings to this area, in a group or not; none if there is no such mover. `but`: a mover
+// that is ignored.
 ObjectInfo WhoComes(std::uint32_t but, std::uint32_t system, const Area& area, const GroupRegistry& g) noexcept;
-// It is set to another place in this coordinate system, if there is room: no mover stands there, in a group or not,
-// none is brought there, and nothing that its group has reserved is in the way.
+// Sets a mover to another pose in this coordinate system, if there is room: no mover is there or being brought there,
+// in a group or not, and nothing reserved in its group is in the way.
 Verdict SetDown(std::uint32_t mover, const Pose& pose, std::uint32_t system, GroupRegistry& g) noexcept;
 
-// Whether a mover may move along these tracks, each of which is in the mover's group if that watches; and it does.
+// Checks that a mover may move along these tracks: each is in the mover's group, if that is enabled, and has room for
+// its movers in its own group, if that is enabled.
 Verdict AskTracks(std::uint32_t mover, std::span<const std::uint32_t> tracks, const GroupRegistry& g) noexcept;
 void TakeTracks(std::span<const std::uint32_t> tracks, GroupRegistry& g) noexcept;
 
-// Into a group and out of it. What comes into a group that watches must rest, and have room there.
+// Add an object to a group and remove it. An object that enters an enabled group must be at rest and have room there.
 Verdict AddMover(std::uint32_t mover, std::uint32_t group, GroupRegistry& g) noexcept;
 Verdict AddTrack(std::uint32_t track, std::uint32_t group, GroupRegistry& g) noexcept;
 Verdict AddEnvironment(std::uint32_t environment, std::uint32_t group, GroupRegistry& g) noexcept;
@@ -104,11 +107,11 @@ Verdict RemoveMover(std::uint32_t mover, GroupRegistry& g) noexcept;
 Verdict RemoveTrack(std::uint32_t track, GroupRegistry& g) noexcept;
 Verdict RemoveEnvironment(std::uint32_t environment, GroupRegistry& g) noexcept;
 
-// From now on the group watches, if all that is in it rests and has room; else the object is who does not.
+// Enables the group, if all its members are at rest and have room; else the verdict names the object that is not.
 Verdict Watch(std::uint32_t group, GroupRegistry& g) noexcept;
 void Unwatch(std::uint32_t group, GroupRegistry& g) noexcept;
 
-// The tracks that are Moving: at the end of a cycle.
+// Updates the reservations of tracks from `moving`, at the end of a cycle.
 void AdvanceTracks(GroupRegistry& g) noexcept;
 
 void describe(Description<GroupReservations>&);

@@ -1,19 +1,19 @@
-// No two movers ever overlap, whatever moves them.
+// The guard: no two movers ever overlap, whatever moves them.
 //
 // The invariant, after every cycle, for any two movers in one coordinate system, free, on tracks, moved from outside,
 // geared, or brought by a part, with or without a group: their courses (course.h) do not overlap by more than kSame; or
-// both are on tracks, and do not overlap in any cycle if both brake from now on. Members of one formation are one
-// body, which is rigid. A course is all that a mover covers until it rests if it brakes with its greatest dynamics,
-// with all angles of a rotation in progress. A mover that a part is to bring has the area where it will be as well,
-// from the command on.
+// both are on tracks, and do not overlap in any cycle if both brake from now on. Members of one formation are one rigid
+// body. A course is all that a mover covers until it rests if it brakes with its maximum dynamics, with all angles of a
+// rotation in progress. A mover that a part is to bring has its area at the destination as well, from the command on.
 //
-// It holds by induction, as that of traffic.h does. A mover that brakes keeps it: the rest of a course is part of it.
-// So at first each mover is taken to brake, and then one after the other, in a fixed order, may take its step if the
-// course from there keeps the invariant with all others as they are then; else it brakes. What needs an area that no
-// braking frees (a rotation, a part with movers) is refused if that is not free, and has it until it is over.
+// It holds by induction, like that of traffic.h. A mover that brakes keeps it: the rest of a course is part of the
+// course. So each mover is first assumed to brake; then one after the other, in a fixed order, may take its step if the
+// course from there keeps the invariant against all others as assumed at that time; else it brakes. A motion that needs
+// an area which braking does not free (a rotation, a part with movers) is refused unless that area is free, and keeps
+// it until its end.
 //
-// The broad phase is a grid, hashed by its squares: no more than the movers near the course are looked at. The narrow
-// phase are separating axes (area.h). All memory is taken when it is made.
+// The broad phase is a grid whose squares are hashed: only movers near the course are tested. The narrow phase uses
+// separating axes (area.h). All memory is allocated by the constructor.
 #pragma once
 
 #include <cstdint>
@@ -27,28 +27,29 @@ class Guard {
  public:
   explicit Guard(std::size_t movers = 0);
 
-  // What of a mover stays as it goes.
+  // Properties of a mover that do not depend on its position.
   struct Figure {
-    Area kind{.count = 0};     // its sides, all angles that it turns by, and how far it is off its track (EachArea)
-    std::uint32_t system = 0;  // the coordinate system that it is in
-    std::uint32_t body = 0;    // movers with the same number, from 1, move as one; 0: it moves alone
-    bool on_track = false;     // traffic moves it
+    Area kind{.count = 0};     // sides, all angles that it turns through, and offsets from its track (EachArea)
+    std::uint32_t system = 0;  // its coordinate system, from 0
+    std::uint32_t body = 0;    // movers with the same number, from 1, move as one body; 0: it moves alone
+    bool on_track = false;     // moved by traffic
   };
   Figure& figure(std::uint32_t mover) noexcept { return figures_[mover]; }
   const Figure& figure(std::uint32_t mover) const noexcept { return figures_[mover]; }
   const Course& course(std::uint32_t mover) const noexcept { return entries_[mover].course; }
 
-  // This is its course from now on, in the coordinate system of its figure.
+  // Sets its course from now on, in the coordinate system of its figure.
   void Put(std::uint32_t mover, const Course& course) noexcept { Set(mover, figures_[mover].system, course); }
-  // Where its part brings it, from the command on until it arrives.
+  // Sets its area at the position to which its part brings it, from the command until the arrival.
   void PutThere(std::uint32_t mover, std::uint32_t system, const Course& course) noexcept {
     Set(count_ + mover, system, course);
   }
   void ClearThere(std::uint32_t mover) noexcept;
 
-  // The mover with the least number whose course, or area where it is brought, this one would overlap; kNobody: none.
-  // Asked of another mover, and whether it is about where that is brought: `skips` before its course is looked at,
-  // `passes` if the courses overlap. Where one returns true, it does not count.
+  // Returns the mover with the least number whose course, or area at the destination of its part, would overlap
+  // `course`; kNobody if there is none. `skips` and `passes` receive a mover, and whether the entry is its area at a
+  // destination; `skips` before the courses are compared, `passes` if they overlap. If one of them returns true, the
+  // entry is ignored.
   template <typename Skips, typename Passes>
   std::uint32_t Find(std::uint32_t mover, std::uint32_t system, const Course& course, const Skips& skips,
                      const Passes& passes) noexcept {
@@ -73,7 +74,7 @@ class Guard {
   }
 
  private:
-  static constexpr std::size_t kSquares = 12;  // that an entry is in; a larger one is near everything
+  static constexpr std::size_t kSquares = 12;  // largest number for an entry; a larger one is near everything
   struct Entry {
     bool present = false;
     std::uint32_t system = 0;
@@ -95,7 +96,7 @@ class Guard {
   void Unlink(std::uint32_t entry) noexcept;
   void Link(std::uint32_t entry, std::size_t head) noexcept;
 
-  // Calls `look` once for each entry whose extent overlaps this one.
+  // Calls `look` once for each entry whose extent overlaps `extent`.
   template <typename Look>
   void EachNear(std::uint32_t system, const Extent& extent, const Look& look) noexcept {
     if (entries_.empty()) return;
@@ -121,11 +122,11 @@ class Guard {
 
   std::uint32_t count_;
   std::vector<Figure> figures_;
-  std::vector<Entry> entries_;  // of movers, then of places where they are brought
-  // Lists of entries by squares, the last one of those that are in too many.
+  std::vector<Entry> entries_;  // of movers, then of their areas at destinations
+  // Lists of entries by square; the last one holds the entries with too many squares.
   std::vector<std::uint32_t> heads_;
   std::vector<std::uint32_t> next_, before_, head_of_;  // by node: kSquares for each entry
-  std::vector<std::uint64_t> seen_;                     // by entry: the question it was last looked at for
+  std::vector<std::uint64_t> seen_;                     // by entry: the query that last saw it
   std::uint64_t asked_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Where a track is nearest to a place.
+// The point of a track nearest to a given point.
 #pragma once
 
 #include "takt/planar/point.h"
@@ -7,13 +7,14 @@
 namespace takt::planar {
 
 struct Nearest {
-  double s = 0;  // mm along the track
+  double s = 0;  // [mm] along the track
   Place place;
-  double distance = 0;  // mm
+  double distance = 0;  // [mm]
 };
 
-// Of places that are equally near the first one along the track. Every cell is looked at twice, for a few nanoseconds;
-// only those that may hold the nearest place are searched, each by a bounded number of halvings. Allocates nothing.
+// Returns the nearest point; of several at equal distance, the first along the track. Every cell is checked twice, for
+// a few nanoseconds; only cells that may contain the nearest point are searched, by a bounded number of halvings. Does
+// not allocate.
 Nearest NearestTo(const Track& track, const Place& place) noexcept;
 
 }  // namespace takt::planar
