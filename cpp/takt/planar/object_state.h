@@ -1,4 +1,4 @@
-// The states that movers, tracks, groups and parts in the plane have, and every legal transition between them (PL-01).
+// States of movers, tracks, groups and parts in the plane, and all legal transitions between them (PL-01).
 #pragma once
 
 #include <array>
@@ -9,14 +9,14 @@
 
 namespace takt::planar {
 
-// In: how an object gets there. Out: how it leaves.
+// In: events that lead to the state. Out: events that lead out of it.
 enum class ObjectState : std::uint8_t {
   kDisabled,      // in: start, disabled, reset after an abort. out: enable, fault
   kEnabling,      // in: enable. out: done, disable, fault
   kEnabled,       // in: enabled, reset after a quick stop. out: disable, fault
   kDisabling,     // in: disable. out: done, enable, fault
-  kErrorPending,  // in: a fault. out: its reaction is over
-  kError,         // in: the reaction is over. out: reset, a further fault
+  kErrorPending,  // in: a fault. out: end of its reaction
+  kError,         // in: end of the reaction. out: reset, a further fault
   kResetting,     // in: reset. out: done; a fault has to wait
 };
 inline constexpr int kObjectStates = 7;

@@ -1,5 +1,5 @@
-// A surface made of parts: sets of stators, each at one of its positions in one of several coordinate systems. Which
-// one changes while the machine runs; two coordinate systems have nothing to do with each other.
+// A surface made of parts: sets of stators, each at one of its positions in one of several coordinate systems. The
+// position changes while the machine runs; coordinate systems are independent of each other.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ namespace takt::planar {
 
 inline constexpr std::uint32_t kNoPart = 0xffffffff;
 
-// Where a part, or what else has coordinates of its own, is: its origin in a coordinate system.
+// Position of a part, or of another object with coordinates of its own: its origin in a coordinate system.
 struct Spot {
-  std::uint32_t system = 0;  // from 0
-  Place origin{};            // mm
+  std::uint32_t system = 0;  // index, from 0
+  Place origin{};            // [mm]
 
   bool operator==(const Spot& other) const noexcept {
     return system == other.system && origin.x == other.origin.x && origin.y == other.origin.y;
@@ -45,68 +45,68 @@ inline Area Shifted(Area area, const Place& by) noexcept {
 struct Part {
   std::string name{};
   Environment shape{};          // in its own coordinates
-  Extent extent{};              // of that
-  std::vector<Spot> positions;  // where it can be
+  Extent extent{};              // of `shape`
+  std::vector<Spot> positions;  // all positions that it can take
 };
 
-// A part as it is now.
+// State of a part.
 struct PartNow {
-  std::uint32_t position = 0;   // where it is, or was last, from 0 ...
-  std::uint32_t commanded = 0;  // ... and where it is to be
-  bool away = false;            // on its way, nobody knows where
+  std::uint32_t position = 0;   // index of the current or last position, from 0
+  std::uint32_t commanded = 0;  // index of the commanded position, from 0
+  bool away = false;            // between positions, or at an unknown one
   bool enabled = false;
-  bool enabling = false;  // or is about to be enabled
-  bool allowed = true;    // it can be enabled
-  bool faulty = false;    // it has an error
+  bool enabling = false;  // about to be enabled
+  bool allowed = true;    // may be enabled
+  bool faulty = false;    // has an error
 };
 
-// A stretch of the border; the surface is to the left of it.
+// A side of the border, with the surface to its left.
 struct Side {
   Place from, to;
 };
 
-// Without parts there is one coordinate system without a border. All memory is taken when it is made.
+// Without parts there is one coordinate system without a border. All memory is allocated by the constructor.
 struct Parts {
   Parts() = default;
-  // Parts that overlap nowhere as they are at first (`now`).
+  // Requires: the parts do not overlap in the state `at_first`.
   Parts(std::vector<std::string> system_names, std::vector<Part> parts, std::vector<PartNow> at_first);
 
   bool none() const noexcept { return all.empty(); }
   const Spot& spot(std::uint32_t part) const noexcept { return all[part].positions[now[part].position]; }
-  // Where it is to be: there what it brings has its place already.
+  // Its commanded position: what it carries has its area there already.
   const Spot& goal(std::uint32_t part) const noexcept { return all[part].positions[now[part].commanded]; }
 
-  std::vector<std::string> systems;  // their names
+  std::vector<std::string> systems;  // names
   std::vector<Part> all;
   std::vector<PartNow> now;
   bool fixed = true;                       // one coordinate system, and no part ever moves
-  std::vector<std::vector<Side>> borders;  // by coordinate system, of the parts that are there
+  std::vector<std::vector<Side>> borders;  // by coordinate system, of the parts in it
 };
 
-// Makes the borders anew, after parts have moved. Fit for the cycle.
+// Computes the borders anew, after parts have moved. Fit for the cycle.
 void MakeBorders(Parts& parts) noexcept;
 
-// Where coordinates with this reference, the name of a part or of a coordinate system, count from; without one: those
-// of the only coordinate system, unless something can move. Nothing: not known, or the part is on its way.
+// Returns the origin of coordinates with this reference, the name of a part or of a coordinate system; if it is empty,
+// that of the only coordinate system, unless something can move. Nothing if the name is unknown, or the part is away.
 std::optional<Spot> Resolve(const Parts& parts, std::string_view reference) noexcept;
 
-// Whether all of an area lies on the parts that are in a coordinate system.
+// Returns true if all of an area lies on the parts in a coordinate system.
 bool Carries(const Parts& parts, std::uint32_t system, const Area& area) noexcept;
 
-// The part under a place; on a border that where it was before. kNoPart: there is none.
+// Returns the part under a point; `before` if that is one, which decides on common borders; kNoPart if there is none.
 std::uint32_t PartAt(const Parts& parts, std::uint32_t system, const Place& place, std::uint32_t before) noexcept;
 
-// Whether an area has something in common with a part, if the part were there.
+// Returns true if an area and a part at `spot` have points in common.
 bool Touches(const Part& part, const Spot& spot, std::uint32_t system, const Area& area) noexcept;
 
-// Whether two parts would overlap if they were there.
+// Returns true if two parts at these positions overlap.
 bool Overlap(const Part& a, const Spot& at_a, const Part& b, const Spot& at_b) noexcept;
 
-// Whether a place in its own coordinates is on the border of a part; on it, borders included.
+// Return true if a point, in the coordinates of the part, is on its border, or on the part including its border.
 bool IsOnBorder(const Part& part, const Place& place) noexcept;
 bool IsOn(const Part& part, const Place& place) noexcept;
 
-// Whether one gets from any stator to any other over sides that they share. Not for the cycle.
+// Returns true if the stators are connected by shared sides. Not for the cycle.
 bool HangTogether(std::span<const Place> stators);
 
 }  // namespace takt::planar

@@ -1,29 +1,29 @@
-// Places in the plane, and how a track runs through one.
+// Points in the plane, and the shape of a track at a point.
 #pragma once
 
 #include "takt/core/describe_fwd.h"
 
 namespace takt::planar {
 
-// mm.
+// [mm]
 struct Place {
   double x = 0;
   double y = 0;
 };
 
-// Of a track, at one place. The direction counts on where the track turns by more than half a turn: it makes no jump
-// along a track, and begins between -pi and pi.
+// A point of a track. The direction is continuous along the track, also over more than half a turn; it begins between
+// -pi and pi.
 struct TrackPoint {
   Place place;
-  double direction = 0;       // rad, counterclockwise from x
-  double curvature = 0;       // 1/mm, above 0 where the track bends to the left
-  double curvature_rate = 0;  // 1/mm², by arc length
+  double direction = 0;       // [rad] counterclockwise from x
+  double curvature = 0;       // [1/mm] > 0 where the track bends to the left
+  double curvature_rate = 0;  // [1/mm²] derivative with respect to arc length
 };
 
-// Nearer than this, two places are the same.
-inline constexpr double kSame = 1e-6;  // mm
+// Two points nearer than this are the same.
+inline constexpr double kSame = 1e-6;  // [mm]
 
-// Whether a track may go on from one of these to the other: in place, direction and curvature.
+// Return true if a track may continue from one point to the other: in position, direction and curvature.
 bool SamePlace(const Place& a, const Place& b) noexcept;
 bool SameDirection(const TrackPoint& a, const TrackPoint& b) noexcept;
 bool SameCurvature(const TrackPoint& a, const TrackPoint& b) noexcept;

@@ -1,4 +1,4 @@
-// A mover on a track: all that is remembered of it from one cycle to the next.
+// A mover on a track: its complete state from one cycle to the next.
 #pragma once
 
 #include <array>
@@ -15,72 +15,74 @@
 namespace takt::planar {
 
 inline constexpr std::uint32_t kNobody = 0xffffffff;
-inline constexpr std::size_t kPassed = 4;  // tracks that a mover remembers having come from
+inline constexpr std::size_t kPassed = 4;  // number of tracks remembered behind a mover
 
-// What a mover on a track is about.
+// What a mover on a track is to do.
 enum class Aim : std::uint8_t {
   kRest,    // come to rest and stay
-  kTarget,  // go to a place on the last track of the route
-  kFollow,  // go along with a demand that comes anew in each cycle
+  kTarget,  // move to a position on the last track of the route
+  kFollow,  // follow a demand that is updated in each cycle
 };
 
-// Why a mover does not go on.
+// Why a mover waits.
 enum class Waits : std::uint8_t {
   kNot,
-  kMover,   // for a mover before it, or at a node
+  kMover,   // for a mover ahead, or at a node
   kRoute,   // its route ends here
-  kMaster,  // for its master, an axis, to come where it may go
+  kMaster,  // for its master, an axis, to reach a position that the mover may take
 };
 
 struct Rider {
-  bool on = false;                              // on a track; else nothing else counts
-  KinematicState at;                            // mm on the first track of the route, and its derivatives
-  Route route;                                  // from where it is
-  std::array<std::uint32_t, kPassed> passed{};  // the tracks before, the last one first
+  bool on = false;                              // on a track; if false, nothing else is valid
+  KinematicState at;                            // [mm] on the first track of the route, and derivatives
+  Route route;                                  // from the current track on
+  std::array<std::uint32_t, kPassed> passed{};  // the tracks before, the latest first
   std::uint32_t passed_count = 0;
-  std::int8_t direction = 1;  // of its way; changes at rest only
+  std::int8_t direction = 1;  // of its motion, 1 or -1; at rest, of the next one
 
   Aim aim = Aim::kRest;
-  bool softly = false;     // kRest: as its pace says; else as hard as it can
-  double target = 0;       // mm on the last track of the route; of a closed loop turns are counted in
-  Gear gear;               // kFollow: whom, and how
-  KinematicState demand;   // kFollow: mm, where its master is at the end of this cycle, over all tracks
-  Pace pace;               // as commanded
-  Brakes brakes;           // its greatest
-  std::uint8_t share = 0;  // of kShares: what it brakes with from where it is, by the bends on its way to rest
-  double top_speed = 0;    // mm/s, its greatest
-  double gap = 0;          // mm to the mover before it, from centre to centre
-  double off = 0;          // mm, so far from its place it may be; everybody's gap to it is as much larger
-  double zone = 0;         // mm around a node in which it is active at the least: its gap, once there is room for that
+  bool softly = false;     // kRest: with its pace; if false, with its maximum dynamics
+  double target = 0;       // [mm] on the last track of the route; on a closed loop with turns
+  Gear gear;               // kFollow: the master and the coupling
+  KinematicState demand;   // kFollow: [mm] master at the end of this cycle, over all tracks
+  Pace pace;               // commanded limits
+  Brakes brakes;           // maximum dynamics
+  std::uint8_t share = 0;  // index into kShares: dynamics for braking from here in the bends ahead
+  double top_speed = 0;    // [mm/s] maximum speed
+  double gap = 0;          // [mm] to the mover ahead, between centres
+  double off = 0;          // [mm] largest displacement from its position; every gap to it grows by that
+  double zone = 0;         // [mm] around nodes, at least, in which it is active: its gap, once there is room for that
 
-  bool planned = false;           // `plan` is good
-  trajectory::Profile plan;       // along the way, 0 at `plan_from`
-  double plan_from = 0;           // mm on the first track
-  double plan_time = 0;           // s since it began
-  bool plan_ends = false;         // it goes all the way to the target
-  bool there = false;             // it rests at its target
-  std::uint32_t calm_cycles = 0;  // so long it does not speed up more, having had to brake
-  double eased = 0;               // mm/s², what following asks for, without the shaking of those before it
-  double origin = 0;              // mm, of all tracks that it has left behind: at + origin goes on over borders
+  bool planned = false;           // `plan` is valid
+  trajectory::Profile plan;       // along the route in its direction, 0 at `plan_from`
+  double plan_from = 0;           // [mm] on the first track
+  double plan_time = 0;           // [s] since the start of the plan
+  bool plan_ends = false;         // the plan reaches the target
+  bool there = false;             // at rest at its target
+  std::uint32_t calm_cycles = 0;  // cycles left in which its acceleration does not grow, after it had to brake
+  double eased = 0;               // [mm/s²] acceleration that following asks for, smoothed
+  double origin = 0;              // [mm] length of all tracks left behind: at + origin is continuous across tracks
 
-  std::uint32_t held_by = kNobody;  // the mover that is across its way: it brakes, and goes on once that is clear
+  std::uint32_t held_by = kNobody;  // the mover across its path, for which it brakes until the path is clear
   Waits waits = Waits::kNot;
   std::uint32_t waits_for = kNobody;
   std::uint64_t waits_since = 0;  // cycle
 };
 
-// What it never exceeds, whatever is commanded.
+// Returns the limits that it never exceeds, whatever is commanded.
 inline Pace MostOf(const Rider& r) noexcept {
   return {{r.top_speed, r.pace.limits.acceleration, r.brakes.deceleration, r.brakes.jerk},
           r.pace.lateral,
           r.pace.vector_acceleration,
           r.pace.vector_jerk};
 }
-// What it brakes with from where it is.
+// Returns the limits with which it brakes from its current position.
 inline Brakes BrakesOf(const Rider& r) noexcept {
   return WithShare(r.brakes, r.pace, r.share);
 }
-// The limits it goes by now: those commanded; but where by their jerk the acceleration that it has would make it faster
+// Returns the limits in force: those commanded, but with its maximum jerk as long as the commanded jerk would let the
+// current acceleration make it faster than commanded (than its speed, if that is higher), or drive it back after
+// braking.
 // than commanded (than it is, if that is more), or drive it back from braking, its greatest jerk, until that is over.
 trajectory::Limits LimitsNow(const Rider& r) noexcept;
 
@@ -88,8 +90,8 @@ inline bool Rests(const KinematicState& x) noexcept {
   return x.velocity == 0 && x.acceleration == 0;
 }
 
-// The tracks that it is to go along, that where it is first; of one that stands and is to stay, that one alone. Empty:
-// it is on none.
+// Returns the tracks that it is to move along, the current one first; only that one if it is at rest and is to stay.
+// Empty if it is on no track.
 Route TrailOf(const Rider& r) noexcept;
 
 void describe(Enumeration<Aim>&);

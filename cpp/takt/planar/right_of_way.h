@@ -1,4 +1,4 @@
-// Who is where in a cycle, and who may go on: the invariant of traffic.h.
+// Positions of the movers in a cycle, and the checks of the invariant of traffic.h.
 #pragma once
 
 #include <algorithm>
@@ -16,73 +16,74 @@
 
 namespace takt::planar {
 
-inline constexpr double kTolerance = 1e-7;  // mm: rounding
+inline constexpr double kTolerance = 1e-7;  // [mm] rounding
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// Nodes within its zone beyond either end of what a mover knows of its way; there is room for so many.
+// Largest number of nodes within its zone beyond either end of the known route of a mover.
 inline constexpr std::size_t kBeyond = 24;
 
-// What is worked out of a mover in each cycle. Places are those on the track where it is when the cycle begins.
+// Data of a mover, computed in each cycle. Positions on the track where it is at the beginning of the cycle.
 struct Now {
   KinematicState next;     // at the end of the cycle
-  Braking braking;         // from there, as it can in the bends on its way
-  Braking hard;            // from there, with its greatest dynamics: it never comes to rest before that
-  std::uint8_t share = 0;  // of kShares, in `braking`; 0: both are the same
-  double rest_before = 0;  // where it would stand if it only braked with its greatest dynamics
+  Braking braking;         // from `next`, with the dynamics that the bends ahead allow
+  Braking hard;            // from `next`, with its maximum dynamics: never at rest before that
+  std::uint8_t share = 0;  // index into kShares, of `braking`; 0: `hard` is the same
+  double rest_before = 0;  // [mm] rest position if it only braked with its maximum dynamics
   std::uint32_t leader = kNobody;
-  double leader_offset = 0;        // from the leader's places to its own
-  bool entered = false;            // in the search for an order
-  bool settled = false;            // `next` is what it is going to do
-  bool taken = false;              // it takes the step it asked for, and does not only brake
-  std::uint32_t across = kNobody;  // the mover that its last step asked for would have overlapped
+  double leader_offset = 0;        // [mm] own position minus the leader's of the same point
+  bool entered = false;            // visited in the search for an order
+  bool settled = false;            // `next` is final
+  bool taken = false;              // it takes the step that it asked for, instead of braking
+  std::uint32_t across = kNobody;  // the mover that the last step it asked for would have overlapped
 };
-// A mover's way through a node.
+// The passage of a mover through a node.
 struct Passage {
   std::uint32_t node = kNoNode;
-  double offset = 0;  // place - offset: its way from the node, < 0 before it
-  // The tracks before and behind it; kNoTrack: it does not come from there, or not go there.
+  double offset = 0;  // [mm] position of the node: the distance past it is position - offset, < 0 before it
+  // The tracks before and after the node; kNoTrack: not known, or none.
   std::uint32_t from = kNoTrack;
   std::uint32_t to = kNoTrack;
-  double range_before = 0;  // collision ranges of these tracks here, mm
+  double range_before = 0;  // [mm] collision ranges of `from` and `to` at the node
   double range_behind = 0;
 
   bool operator==(const Passage&) const = default;
 };
-// A mover that is active at a node.
+// A mover that may be active at a node.
 struct Presence {
   std::uint32_t mover = kNobody;
   Passage passage;
   std::uint32_t next = kNobody;
-  // What is looked at of all that are there, for few of which the rest counts.
-  double place = 0;  // when the cycle begins, from the node
+  // Copies of what is read for all presences; only few of them need more.
+  double place = 0;  // [mm] from the node, at the beginning of the cycle
   double off = 0;    // Rider::off
 };
 
-// The memory of one cycle: what is worked out anew in each.
+// Working memory of one cycle; computed anew in each.
 struct Scene {
   Scene(std::uint32_t movers, std::uint32_t tracks);
 
   std::vector<Now> now;
-  std::vector<std::uint32_t> order;   // movers by track, and along it
-  std::vector<std::uint32_t> begins;  // by track: its first one in `order`; one more at the end
-  std::vector<std::uint32_t> index;   // by mover: where it stands in `order`
-  std::vector<std::uint32_t> heads;   // by node: its first presence
+  std::vector<std::uint32_t> order;   // movers by track, ascending along it
+  std::vector<std::uint32_t> begins;  // by track: index of its first mover in `order`; one more entry at the end
+  std::vector<std::uint32_t> index;   // by mover: its index in `order`
+  std::vector<std::uint32_t> heads;   // by node: index of its first presence
   std::vector<Presence> presences;
   std::uint32_t presence_count = 0;
-  double off = 0;  // mm, so far off its place may somebody be
+  double off = 0;  // [mm] largest displacement of any mover (Rider::off)
   std::vector<std::uint32_t> stack;
 };
 
-// What two movers at a node have to do with one another.
+// The relation of a mover to another one at a node.
 struct Meeting {
   std::uint32_t other = kNobody;
-  double apart = 0;              // from the other's places to own ones
-  double place = 0;              // of the other from here, now
-  bool ahead = false;            // it is further on
-  double off = 0;                // so far from their places both together may be
-  const Passage* its = nullptr;  // the other's way through the node
-  double gap = 0;                // what they have to be apart; 0: their order along the way sees to it
-  double split = 0;              // and if the one behind cannot stop before the node any more
+  double apart = 0;              // [mm] own position minus the other's of the same point
+  double place = 0;              // [mm] of the other from this one, now
+  bool ahead = false;            // the other is farther ahead
+  double off = 0;                // [mm] largest displacements of both, added
+  const Passage* its = nullptr;  // the other's passage through the node
+  double gap = 0;                // [mm] required distance; 0: their order along the route ensures it
+  // [mm] required distance once the rear one cannot stop before the node; 0: no more than before
+  double split = 0;
 };
 
 class RightOfWay {
@@ -95,34 +96,39 @@ class RightOfWay {
   const Now& now(std::uint32_t i) const noexcept { return s_.now[i]; }
   double period_s() const noexcept { return period_s_; }
 
-  // At first all are taken to brake; nobody is at a node.
+  // Starts a cycle: all movers are assumed to brake; finds their order, their leaders and the nodes where they are
+  // active.
   void Begin() noexcept;
-  // Whether this step keeps the invariant with everyone.
+  // Returns true if this step keeps the invariant against all movers.
   bool MayTake(std::uint32_t i, const KinematicState& next, const Braking& braking) const noexcept;
-  // Who would come too near to this one if from here on all braked; kNobody: nobody.
+  // Returns a mover that would come too near to this one if all braked from now on; kNobody if there is none.
   std::uint32_t TooNear(std::uint32_t i) const noexcept;
-  // Whether it may be active so far around nodes: whoever it would have to do with there is far enough away.
+  // Returns true if it may be active within `zone` [mm] of nodes: all movers that this newly involves are far enough
+  // away.
   bool MayWiden(std::uint32_t i, double zone) const noexcept;
-  // Whether one with such a step is active at a node. `off`: how far it and the other may be off their places.
+  // Returns true if a mover with this step is active at a node. `off` [mm]: displacements of it and the other one,
+  // added.
   static bool IsActive(double zone, double off, const KinematicState& next, const Braking& braking, const Passage& p) {
     const double lowest = std::min(next.position, braking.lowest), highest = std::max(next.position, braking.highest);
     if (highest < p.offset) return p.offset - highest < std::max(zone, p.range_before) + off;
     if (lowest > p.offset) return lowest - p.offset < std::max(zone, p.range_behind) + off;
     return true;
   }
-  // Whether the other one is, as it is taken to go.
+  // Returns true if the other mover is active, with the step assumed for it.
   bool IsActive(const Meeting& m) const noexcept {
     const Now& its = s_.now[m.other];
     return IsActive(riders_[m.other].zone, m.off, its.next, its.braking, *m.its);
   }
-  // It takes it, with a braking by this share.
+  // Makes `next` its step, and `braking`, with this share, its braking from there.
   void Take(std::uint32_t i, const KinematicState& next, const Braking& braking, std::size_t share) noexcept;
 
-  // Who is next in this direction, on the track or the rest of the route.
+  // Returns the next mover in this direction, on the track or the rest of the route; kNobody if there is none near
+  // enough to matter. `offset` [mm]: own position minus the leader's of the same point.
   std::uint32_t FindLeader(std::uint32_t i, int direction, double& offset) const noexcept;
   double GapTo(std::uint32_t i, std::uint32_t leader, int direction) const noexcept;
 
-  // Calls `look` for those that have this one before them on their way forwards: who, and from its places to theirs.
+  // Calls look(k, offset) for each mover k with this one next ahead on its route; offset [mm]: k's position minus this
+  // one's of the same point.
   template <typename Look>
   void Followers(std::uint32_t i, const Look& look) const {
     for (std::uint32_t k = 0; k < riders_.size(); ++k) {
@@ -130,14 +136,15 @@ class RightOfWay {
       if (!other.on || k == i) continue;
       std::uint32_t its_leader = s_.now[k].leader;
       double offset = s_.now[k].leader_offset;
-      // One that goes back now still has its way ahead, and who is on it there is nobody's neighbour.
+      // A mover that moves back now still has its route ahead; its leader, found in its direction, is not the next
+      // there.
       if (other.direction < 0) its_leader = other.route.count > 1 ? FindLeader(k, 1, offset) : kNobody;
       if (its_leader == i) look(k, offset);
     }
   }
 
-  // Calls `look` for the nodes on the way, and those beyond what is known of it that are no further than its zone:
-  // there it meets others that are on no track of it.
+  // Calls `look` for the passages through nodes on its route up to the position `reach`, on the tracks behind it, and
+  // beyond the known route within its zone: there it may meet movers whose tracks are not on its route.
   template <typename Look>
   void AlongNodes(const Rider& r, double reach, const Look& look) const {
     const Road& here = network_[r.route.first()];
@@ -165,8 +172,8 @@ class RightOfWay {
       Beyond(r.passed_count > 0 ? r.passed[r.passed_count - 1] : r.route.first(), offset, near, false, look);
   }
 
-  // Calls `look` for those near a node with whom this mover has to do there if both are active. `counts`: of a meeting
-  // without its distances, which cost more, whether it matters.
+  // Calls `look` for the movers near a node that this mover has to keep apart from if both are active there. `counts`
+  // receives a meeting without its distances, which are costly, and returns false if it does not matter.
   template <typename Counts, typename Look>
   void MeetAt(std::uint32_t i, const Passage& own, const Counts& counts, const Look& look) const {
     const Rider& r = riders_[i];
@@ -206,13 +213,13 @@ class RightOfWay {
     const double behind = to != kNoTrack ? network_[to].range_at_start : 0;
     return {node, offset, from, to, before, behind};
   }
-  // The nodes behind the end of a track that is at `offset`, or before its start, as near to that as `way`, the nearest
+  // Calls `look` for the nodes within `way` [mm] beyond the end of a track at `offset`, or before its start, nearest
   // first.
   template <typename Look>
   void Beyond(std::uint32_t track, double offset, double way, bool forward, const Look& look) const {
     struct Reached {
       std::uint32_t track;
-      double way;  // to its far end
+      double way;  // [mm] to its far end
     };
     std::array<Reached, kBeyond> open;
     std::size_t count = 0;
@@ -244,13 +251,14 @@ class RightOfWay {
   }
   void TakeToBrake(std::uint32_t i) noexcept;
   void Sort() noexcept;
-  // Whether another keeps so far ahead of, or behind, a braking if it brakes, as it can in bends or harder.
+  // Return true if the other mover stays at least `required` [mm] ahead of, or behind, a braking if it brakes as well,
+  // both with the dynamics that bends allow and with its maximum dynamics.
   bool HoldsAhead(const Braking& of_behind, std::uint32_t ahead, double apart, double required) const noexcept;
   bool HoldsBehind(std::uint32_t behind, const Braking& of_ahead, double apart, double required) const noexcept;
-  // Whether two keep so far apart if both brake.
+  // Returns true if both movers stay `required` [mm] apart if both brake.
   bool Keeps(const Braking& own, const Meeting& m, double required) const noexcept;
   void EnterNodes(std::uint32_t i, const KinematicState& next, const Braking& braking) noexcept;
-  // The other is on this one's way as far as the places of both differ by `apart`.
+  // Returns true if the other's track is on this one's route, where positions of both differ by `apart`.
   bool IsOnRoute(const Rider& r, const Rider& other, double apart) const noexcept;
 
   Scene& s_;

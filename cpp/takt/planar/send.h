@@ -1,4 +1,4 @@
-// Where a mover on tracks is sent.
+// Destinations of movers on tracks.
 #pragma once
 
 #include <cstdint>
@@ -10,42 +10,43 @@
 namespace takt::planar {
 
 enum class Way : std::uint8_t {
-  kNonModulo,  // to the very place: on a loop turns count; elsewhere forward through the network, or back on its track
-  kPositive,   // forward only
+  kNonModulo,  // to this position: on a loop, turns count; else forwards through the network, or back on the track
+  kPositive,   // forwards only
   kShortestWay,
-  kNegative,  // back only
+  kNegative,  // backwards only
 };
 
-// A place on a loop, turns counted from the one in which `now` is: the next such place that way. To one as near as the
-// tolerance the way is the shortest.
+// Returns the position on a loop, turns counted from the one that `now` is in, that is reached next in this direction;
+// the nearest if it is within the tolerance. kNonModulo: `position` itself.
 double OnLoop(Way way, double position, double modulo_tolerance, double now, double length) noexcept;
 
 struct Destination {
   std::uint32_t track = 0;
-  double position = 0;  // mm along it
+  double position = 0;  // [mm] along it
   Way way = Way::kNonModulo;
-  std::uint32_t additional_turns = 0;  // of a closed loop, positive and negative
-  double modulo_tolerance = 0;         // mm, of a closed loop: so far it may go against its direction
+  std::uint32_t additional_turns = 0;  // of a closed loop; kPositive and kNegative only
+  double modulo_tolerance = 0;         // [mm] of a closed loop: largest distance against the direction
 };
 
-// Why no way leads to a destination. The numbers are values of feedbacks.
+// Why a destination cannot be reached. The numbers are values of feedbacks.
 enum class NoWay : std::uint8_t {
-  kNotLinked = 0,  // from no place where the mover can still turn off do tracks lead there
+  kNotLinked = 0,  // no tracks lead there from where the mover can still turn off
   kDirection = 1,  // tracks lead there, but not in this direction
-  kTooLong = 2,    // over more than kRouteTracks tracks
-  kPartAway = 3,   // over a part of the surface that is elsewhere; found by those who know parts
+  kTooLong = 2,    // only over more than kRouteTracks tracks
+  kPartAway = 3,   // only over a part of the surface that is away; found by callers that know the parts
 };
 
-// False: no way leads there from where the mover can still turn off; it keeps what it had.
+// Sends a mover to a destination. Returns false, and changes nothing, if no route leads there from where it can still
+// turn off.
 bool Send(const Network& network, RouteSearch& search, const Destination& to, Rider& rider) noexcept;
 
-// What is wrong where Send says that there is no way.
+// Returns the reason why Send failed.
 NoWay WhyNoWay(const Network& network, RouteSearch& search, const Destination& to, const Rider& rider) noexcept;
 
-// mm on its first track, where its target is.
+// Returns the position [mm] of its target, counted from the start of its first track.
 double EndOfWay(const Network& network, const Rider& rider) noexcept;
-// Its way to its target, or a part of it, from a place on the first track on, with a speed and acceleration in its
-// direction. At rest the direction is that of the target.
+// Plans its motion to its target, or a first part of it, from a position on the first track, with speed and
+// acceleration in its direction. From rest the direction becomes that of the target.
 void PlanOn(trajectory::Planner& planner, const Network& network, double place, double speed, double acceleration,
             Rider& rider) noexcept;
 // Returns the travel time [s] to the target without other movers: of the first two plans, and TimeOfWay for the rest.
