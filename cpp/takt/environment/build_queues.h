@@ -1,4 +1,4 @@
-// Where the cycle has boundaries made, as it has tracks made (track/build_queues.h).
+// Queues by which the cycle has boundaries built, like track/build_queues.h.
 #pragma once
 
 #include <cstddef>
@@ -14,12 +14,12 @@ namespace takt::environment {
 
 struct BuildRequest {
   std::uint64_t number = 0;
-  std::uint32_t environment = 0;                        // from 0
-  const std::vector<planar::Place>* stators = nullptr;  // they stay as they are until the answer is taken
+  std::uint32_t environment = 0;                        // index, from 0
+  const std::vector<planar::Place>* stators = nullptr;  // unchanged until the answer is taken
 };
 
 struct Delivery {
-  std::uint64_t number = 0;  // of the question
+  std::uint64_t number = 0;  // of the request
   const planar::Environment* surface = nullptr;
 };
 
@@ -30,12 +30,13 @@ struct BuildQueues {
   BuildQueues(const BuildQueues&) = delete;
   BuildQueues& operator=(const BuildQueues&) = delete;
 
-  SpscQueue<BuildRequest> questions;  // one of each environment at a time
+  SpscQueue<BuildRequest> questions;  // one for each environment at a time
   SpscQueue<Delivery> deliveries;
   SpscQueue<const planar::Environment*> retired;
 };
 
-// Outside the cycle, one thread: answers the next question. Frees what is retired.
+// To be called outside the cycle, by one thread: answers the next request, and frees retired objects. Nothing if there
+// is no request.
 struct BuiltBoundary {
   std::uint32_t environment = 0;
   BoundaryMade made;

@@ -1,4 +1,4 @@
-// What people tell an environment.
+// Commands to an environment.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,20 @@
 namespace takt::environment {
 
 struct AddStator {
-  double lower_x = 0, lower_y = 0;  // mm
+  double lower_x = 0, lower_y = 0;  // [mm]
 };
-struct CreateBoundary {};  // of the stators that there are; made outside the cycle
+struct CreateBoundary {};  // of its stators; built outside the cycle
 struct Clear {};
 struct AddToGroup {
   Name group{};
 };
 struct RemoveFromGroup {};
 
-// The answer to a question (build_queues.h); no command of people.
+// Answer to a build request (build_queues.h); not a command of users.
 struct BoundaryMade {
-  std::uint64_t number = 0;  // of the question
+  std::uint64_t number = 0;  // of the request
   planar::StatorProblem problem = planar::StatorProblem::kNone;
-  std::uint32_t stator = 0;  // with which it is, from 1; 0: with none
+  std::uint32_t stator = 0;  // stator with the problem, from 1; 0: none
 };
 
 using Command = std::variant<AddStator, CreateBoundary, Clear, AddToGroup, RemoveFromGroup, BoundaryMade>;

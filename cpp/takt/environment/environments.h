@@ -1,5 +1,5 @@
-// All environments of a machine, stage by stage of the cycle. Nothing here allocates, locks, throws or reads a clock,
-// but for the making and the end of all.
+// All environments of a machine, with one function for each stage of the cycle. Nothing here allocates, locks, throws
+// or reads a clock, except construction and destruction of Environments.
 #pragma once
 
 #include <cstddef>
@@ -19,13 +19,13 @@ namespace takt::environment {
 
 struct State {
   std::uint32_t stator_count = 0;
-  std::uint64_t stator_hash = 0;  // of the stators, which change rarely and are many
+  std::uint64_t stator_hash = 0;  // of the stators, which are many and rarely change
   std::uint32_t border_count = 0;
-  std::uint64_t asked = 0;  // number of the question whose answer is awaited; 0: none
-  Ticket ticket = 0;        // of the command that asked
+  std::uint64_t asked = 0;  // number of the request whose answer is awaited; 0: none
+  Ticket ticket = 0;        // of the command that made the request
 };
 
-// Of what the machine file says, which must have been checked. Index i is environment i of the machine.
+// Requires: the parameters have been checked. Index i is environment i of the machine.
 struct Environments {
   explicit Environments(const std::vector<EnvironmentParams>& params);
   ~Environments();
@@ -33,11 +33,11 @@ struct Environments {
   Environments& operator=(const Environments&) = delete;
 
   std::vector<State> states;
-  std::vector<std::vector<planar::Place>> stators;  // the states have their hashes
+  std::vector<std::vector<planar::Place>> stators;  // the states contain their hashes
   std::vector<Outputs> outputs;
-  std::uint64_t questions = 0;  // so many have been asked
+  std::uint64_t questions = 0;  // number of requests so far
 
-  // What follows from the states.
+  // Derived from the states.
   std::vector<const planar::Environment*> surfaces;  // null: no boundary
 
   BuildQueues desk;
@@ -50,12 +50,12 @@ struct Context {
   FeedbackSink& feedback;
 };
 
-// command: carries it out, has it made, or refuses it.
+// Stage command: carries it out, requests a boundary, or rejects it.
 void Apply(const Context& c, std::size_t environment, Ticket ticket, const Command& command) noexcept;
 
 void Publish(const Context& c) noexcept;
 
-// What a feedback that ends with kStators has as its value, and what that says.
+// Conversion to and from the value of a feedback that ends with kStators.
 double ToValue(planar::StatorProblem problem, std::uint32_t stator) noexcept;
 planar::StatorProblem ProblemOf(double value) noexcept;
 std::uint32_t StatorOf(double value) noexcept;  // from 1; 0: none

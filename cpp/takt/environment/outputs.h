@@ -1,4 +1,4 @@
-// What an environment publishes every cycle.
+// Outputs of an environment in every cycle.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@ namespace takt::environment {
 
 struct Outputs {
   std::uint32_t stator_count = 0;
-  std::uint32_t border_count = 0;  // straight pieces of its boundary; 0: it has none
-  std::uint32_t group = 0;         // number of the group that it is in, from 1; 0: none
+  std::uint32_t border_count = 0;  // straight sides of its boundary; 0: no boundary
+  std::uint32_t group = 0;         // group that it is in, from 1; 0: none
 };
 
 void describe(Description<Outputs>&);

@@ -1,4 +1,4 @@
-// What a machine file says about one environment: the surface that movers float on.
+// Parameters of one environment in the machine file: the surface that movers float on.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace takt::environment {
 
 struct EnvironmentParams {
   std::string name;
-  std::vector<planar::Place> stators;  // their lower left corners; it has a boundary, if there are any
+  std::vector<planar::Place> stators;  // lower left corners; empty: no boundary
 };
 
 void describe(Description<EnvironmentParams>&);

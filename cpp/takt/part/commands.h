@@ -1,4 +1,4 @@
-// What people tell a part.
+// Commands to a part.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 namespace takt::part {
 
 struct ActivatePosition {
-  std::uint32_t index = 1;  // from 1
+  std::uint32_t index = 1;  // of the position, from 1
 };
 struct AllowEnable {};
 struct ForceDisable {};

@@ -1,4 +1,4 @@
-// What a part publishes every cycle.
+// Outputs of a part in every cycle.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ struct Outputs {
   planar::ObjectState state = planar::ObjectState::kDisabled;
   ErrorId error = ErrorId::kNone;
   bool disable_forced = false;
-  std::uint32_t position_index = 0;     // from 1; 0: on its way
-  std::uint32_t commanded_index = 0;    // from 1: where it is to be
-  std::uint32_t coordinate_system = 0;  // number of that it is in, from 1; 0: on its way
-  double x = 0, y = 0;                  // mm, its origin in that
-  std::uint32_t mover_count = 0;        // movers whose middle is on it
+  std::uint32_t position_index = 0;     // from 1; 0: away
+  std::uint32_t commanded_index = 0;    // from 1
+  std::uint32_t coordinate_system = 0;  // from 1; 0: away
+  double x = 0, y = 0;                  // [mm] its origin in the coordinate system
+  std::uint32_t mover_count = 0;        // movers whose centre is on it
 };
 
 void describe(Description<Outputs>&);

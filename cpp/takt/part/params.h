@@ -1,4 +1,4 @@
-// What a machine file says about coordinate systems and the parts in them.
+// Parameters of coordinate systems and of the parts in them in the machine file.
 #pragma once
 
 #include <cstdint>
@@ -16,24 +16,24 @@ struct CoordinateSystemParams {
 };
 
 struct PositionParams {
-  std::string coordinate_system;  // its name
-  double x = 0, y = 0;            // mm, of the part's origin
+  std::string coordinate_system;  // name
+  double x = 0, y = 0;            // [mm] of the part's origin
 };
 
 struct PartParams {
   std::string name;
-  std::uint32_t columns = 1;  // of stators, if they are not given one by one
+  std::uint32_t columns = 1;  // of stators, unless `stators` are given
   std::uint32_t rows = 1;
-  std::vector<planar::Place> stators{};  // mm, their lower left corners in the part's own coordinates
+  std::vector<planar::Place> stators{};  // [mm] lower left corners in the coordinates of the part
   std::vector<PositionParams> positions;
-  std::uint32_t initial_position = 1;  // from 1
-  double travel_time_s = 0;            // s, that a simulated one takes from position to position
+  std::uint32_t initial_position = 1;  // index, from 1
+  double travel_time_s = 0;            // [s] between two positions, of a simulated part
 };
 
-// The lower left corners of its stators.
+// Returns the lower left corners of its stators [mm].
 std::vector<planar::Place> StatorsOf(const PartParams& params);
 
-// All of them; they must have been checked.
+// Makes all parts. Requires: the parameters have been checked.
 planar::Parts Make(const std::vector<CoordinateSystemParams>& systems, const std::vector<PartParams>& parts);
 
 void describe(Description<CoordinateSystemParams>&);

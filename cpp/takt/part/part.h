@@ -1,8 +1,8 @@
-// One part of the surface that movers float on, stage by stage of the cycle. Free functions over plain state; nothing
-// here allocates, locks, throws or reads a clock.
+// One part of the surface that movers float on, with one function for each stage of the cycle. Free functions over
+// plain state; nothing here allocates, locks, throws or reads a clock.
 //
-// It is enabled as long as a mover in its coordinate system is, unless that is forbidden or it has a fault. Where it
-// is, it is told: commanded to another position, it is nowhere until that is reported.
+// It is enabled while a mover in its coordinate system is enabled, unless that is forbidden or it has a fault. Its
+// position is reported to it: after a command to another position it is away until that position is reported.
 #pragma once
 
 #include <cstdint>
@@ -23,35 +23,35 @@ struct Context {
   FeedbackSink& feedback;
 };
 
-// What is reported of it, at the beginning of a cycle.
+// Reported inputs of a part, at the beginning of a cycle.
 struct Inputs {
-  std::uint32_t position = 1;  // index of the position where it is, from 1; 0: none
+  std::uint32_t position = 1;  // index of its position, from 1; 0: at none
   bool fault = false;
 };
 
-// What a simulated part reports after this cycle: it is where it is to be, or nowhere for as long as it takes to get
-// there.
+// Returns the report of a simulated part after this cycle: at its commanded position, or at none during the travel
+// time.
 Inputs Simulate(const Context& c, const State& s) noexcept;
 
-// What keeps it from going to another position.
+// The reason why a part may not leave for another position.
 struct Hindrance {
   ErrorId error = ErrorId::kNone;
-  ObjectInfo object{};  // the mover, track or part
+  ObjectInfo object{};  // the mover, track or part in the way
 };
 
-// command: carries it out or refuses it; reports either way. `hindrance`: of activate_position.
+// Stage command: carries it out or rejects it; reports either way. `hindrance`: of ActivatePosition.
 void Apply(const Context& c, Ticket ticket, const Command& command, const Hindrance& hindrance, State& s) noexcept;
 
-// What it has to know about movers.
+// State of the movers around a part.
 struct Around {
-  bool wanted = false;        // one in its coordinate system is enabled
-  bool reset = false;         // one of those is being reset
-  bool movers_rest = true;    // those on it do
-  bool movers_failed = true;  // and the reaction of those with a fault is over
+  bool wanted = false;        // an enabled mover in its coordinate system needs it
+  bool reset = false;         // a mover in its coordinate system is being reset
+  bool movers_rest = true;    // all movers on it or moving over it are at rest; valid while it is Disabling
+  bool movers_failed = true;  // none of them is still reacting to a fault; valid while it is ErrorPending
 };
-// move: before the movers. Whether it is where it is to be. True: it is somewhere else now than it was.
+// Stage move, before the movers: reads the reported position. Returns true if the position has changed.
 bool Arrive(const Context& c, const Inputs& inputs, State& s) noexcept;
-// Behind that.
+// Stage move, after Arrive: updates the state.
 void Step(const Context& c, const Around& around, State& s) noexcept;
 
 void Fail(const Context& c, ErrorId error, State& s) noexcept;

@@ -1,4 +1,4 @@
-// All memory of a part: plain, so that it can be copied, compared, hashed and replayed.
+// The complete state of a part: plain data that can be copied, compared, hashed and replayed.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,21 @@ namespace takt::part {
 
 struct State {
   planar::ObjectState state = planar::ObjectState::kDisabled;
-  std::uint64_t since = 0;  // cycle in which it became so
-  bool forced = false;      // it must not be enabled
+  std::uint64_t since = 0;  // cycle in which the state was entered
+  bool forced = false;      // must not be enabled
   ErrorId error = ErrorId::kNone;
-  std::uint32_t position = 0;   // where it is, or was last, from 0 ...
-  std::uint32_t commanded = 0;  // ... and where it is to be
-  std::uint64_t went = 0;       // cycle in which it was commanded there
-  bool away = false;            // it is not there
-  Ticket going = 0;             // of activate_position
-  Ticket disabling = 0;         // of force_disable
+  std::uint32_t position = 0;   // index of the current or last position, from 0
+  std::uint32_t commanded = 0;  // index of the commanded position, from 0
+  std::uint64_t went = 0;       // cycle of the command to that position
+  bool away = false;            // reported neither there nor still at the last one
+  Ticket going = 0;             // of ActivatePosition
+  Ticket disabling = 0;         // of ForceDisable
   Ticket resetting = 0;
 };
 
 State MakeState(const PartParams& params);
 
-// As others see it.
+// Returns the state as other objects see it.
 planar::PartNow Show(const State& s) noexcept;
 
 void describe(Description<State>&);

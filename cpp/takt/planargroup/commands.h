@@ -1,4 +1,4 @@
-// What people tell a group of movers. What is in it is told itself to come into it and to leave it.
+// Commands to a group of movers. Members receive the commands to enter and leave it themselves.
 #pragma once
 
 #include <variant>

@@ -1,6 +1,6 @@
-// All groups of movers of a machine, stage by stage of the cycle: whether they watch. What they watch is the ground
-// (planar/group_registry.h), which movers ask. Nothing here allocates, locks, throws or reads a clock, but for the
-// making.
+// All groups of movers of a machine, with one function for each stage of the cycle: their states. Their members and
+// reservations are in planar/group_registry.h, which movers query. Nothing here allocates, locks, throws or reads a
+// clock, except construction.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace takt::planargroup {
 
 struct State {
   planar::ObjectState state = planar::ObjectState::kDisabled;
-  std::uint64_t since = 0;  // cycle in which it became so
+  std::uint64_t since = 0;  // cycle in which the state was entered
   Ticket ticket = 0;        // of the command that changes the state; 0: none
   ErrorId error = ErrorId::kNone;
   bool aborts = false;  // a reset leads to Disabled
@@ -39,18 +39,19 @@ struct Context {
   FeedbackSink& feedback;
 };
 
-// Events that one cycle may report besides those of the commands that come in it.
+// Largest number of events in one cycle, besides those of its commands.
 constexpr std::size_t EventsOf(std::size_t groups) {
   return 2 * groups;
 }
 
-// command: carries it out or refuses it.
+// Stage command: carries it out or rejects it.
 void Apply(const Context& c, std::size_t group, Ticket ticket, const Command& command) noexcept;
 
-// A fault of a group. It does not watch any more.
+// Starts the reaction of a group to a fault; ignored during a reaction or a reset. The group drops its reservations and
+// refuses nothing any more.
 void Fail(const Context& c, std::size_t group, ErrorId error, bool aborts) noexcept;
 
-// move: behind the movers.
+// Stage move: after the movers.
 void Step(const Context& c) noexcept;
 
 void Publish(const Context& c) noexcept;

@@ -1,4 +1,4 @@
-// What a group of movers publishes every cycle.
+// Outputs of a group of movers in every cycle.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct Outputs {
   ErrorId error = ErrorId::kNone;
   std::uint32_t mover_count = 0;
   std::uint32_t track_count = 0;
-  std::uint32_t environment = 0;  // its number, from 1; 0: none
+  std::uint32_t environment = 0;  // from 1; 0: none
 };
 
 void describe(Description<Outputs>&);

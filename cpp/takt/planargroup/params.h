@@ -1,4 +1,4 @@
-// What a machine file says about one group of movers.
+// Parameters of one group of movers in the machine file.
 #pragma once
 
 #include <optional>
@@ -11,10 +11,10 @@ namespace takt::planargroup {
 
 struct PlanarGroupParams {
   std::string name;
-  std::vector<std::string> movers;           // in it from the start
-  std::vector<std::string> tracks;           // likewise
-  std::optional<std::string> environment{};  // likewise
-  bool moves_wait = false;                   // for their area, instead of being refused
+  std::vector<std::string> movers;           // members from the start
+  std::vector<std::string> tracks;           // members from the start
+  std::optional<std::string> environment{};  // member from the start
+  bool moves_wait = false;                   // moves wait for their area instead of being refused
 };
 
 void describe(Description<PlanarGroupParams>&);

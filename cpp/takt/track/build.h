@@ -1,4 +1,4 @@
-// Makes the tracks of a machine file, each after those that it starts from and ends at. Not for the cycle.
+// Builds the tracks of a machine file, each after those that it starts from and ends at. Not for the cycle.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ struct Built {
 };
 
 struct BuildProblem {
-  std::string path;  // which key is wrong, seen from the list of tracks: "[2].elements[0]"
+  std::string path;  // key with the problem, relative to the list of tracks: "[2].elements[0]"
   std::string message;
 };
 
@@ -26,10 +26,10 @@ struct BuildResult {
   std::vector<BuildProblem> problems;
 };
 
-// On these parts as they are now; null: there are none.
+// Builds all tracks, on these parts in their current state; null: no parts.
 BuildResult Build(const std::vector<TrackParams>& params, const planar::Parts* parts = nullptr);
 
-// Number of the part that a track lies on; kNoPart: there is none, or none of this name.
+// Returns the index of the part that a track lies on; kNoPart if there are no parts, or none of this name.
 std::uint32_t PartOf(const TrackParams& params, const planar::Parts& parts);
 
 }  // namespace takt::track

@@ -1,6 +1,6 @@
-// Where the cycle has tracks made. It puts what a track is to be into a queue; whoever works outside the cycle makes
-// the track, hands it over and answers with the command TrackMade. What is not used any more goes back to be freed. A
-// replay takes the answer from the journal and makes the track once more: it depends on nothing else.
+// Queues by which the cycle has tracks built. The cycle requests a track; a thread outside the cycle builds it,
+// delivers it and answers with the command TrackMade. Objects no longer in use return to be freed. A replay takes the
+// answer from the journal and builds the track again: the result depends on nothing else.
 #pragma once
 
 #include <cstddef>
@@ -17,16 +17,16 @@ namespace takt::track {
 
 struct BuildRequest {
   std::uint64_t number = 0;
-  std::uint32_t track = 0;               // from 0
-  std::uint32_t part = planar::kNoPart;  // that it lies on
-  planar::Footprint mover{};             // the largest one
+  std::uint32_t track = 0;               // index, from 0
+  std::uint32_t part = planar::kNoPart;  // part that it lies on
+  planar::Footprint mover{};             // largest mover on it
   Sketch sketch;
 };
 
 struct Delivery {
-  std::uint64_t number = 0;  // of the question
+  std::uint64_t number = 0;  // of the request
   const planar::Track* way = nullptr;
-  planar::TrackArea* area = nullptr;  // what movers on it may cover
+  planar::TrackArea* area = nullptr;  // area that movers on it may cover
 };
 
 struct BuildQueues {
@@ -35,13 +35,14 @@ struct BuildQueues {
   BuildQueues(const BuildQueues&) = delete;
   BuildQueues& operator=(const BuildQueues&) = delete;
 
-  const planar::Parts& parts;            // of which only the shapes are looked at: they never change
+  const planar::Parts& parts;            // only their shapes are read, which never change
   SpscQueue<BuildRequest> questions{2};  // one at a time
   SpscQueue<Delivery> deliveries{8};
   SpscQueue<Delivery> retired;
 };
 
-// Outside the cycle, one thread: answers the next question. Frees what is retired.
+// To be called outside the cycle, by one thread: answers the next request, and frees retired objects. Nothing if there
+// is no request.
 struct BuiltTrack {
   std::uint32_t track = 0;
   TrackMade made;

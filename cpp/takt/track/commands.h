@@ -1,4 +1,4 @@
-// What people tell a track.
+// Commands to a track.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace takt::track {
 
-// These change the geometry. They are taken in the order given, all tracks together, each done when the track has been
-// made anew outside the cycle.
+// Changes of the geometry. Carried out in the order given, for all tracks together; each is done when the track has
+// been built anew outside the cycle.
 struct AppendLine {
-  double start_x = 0, start_y = 0;  // mm
+  double start_x = 0, start_y = 0;  // [mm]
   double end_x = 0, end_y = 0;
-  Name reference{};  // part or coordinate system that the places belong to
+  Name reference{};  // part or coordinate system of the coordinates; empty: the only coordinate system
 };
-struct AppendCircle {  // a whole one if it ends where it starts
+struct AppendCircle {  // a full circle if it ends at its start
   double start_x = 0, start_y = 0;
   double end_x = 0, end_y = 0;
   double center_x = 0, center_y = 0;
@@ -30,35 +30,35 @@ struct AppendPosition {
 };
 struct CloseLoop {};
 struct Clear {};
-struct StartFromTrack {  // at the end of that one
+struct StartFromTrack {  // starts at the end of `track`
   Name track;
-  // Indices of positions of the parts of both, which the geometry is made for; 0: as they are.
+  // Indices, from 1, of the positions of both tracks' parts for which the geometry is made; 0: the current ones.
   std::uint32_t this_position_index = 0;
   std::uint32_t other_position_index = 0;
-  bool only_there = false;  // the link is in force there alone, not wherever the tracks meet
+  bool only_there = false;  // the link holds at these positions only; false: wherever the ends meet
 };
-struct EndAtTrack {  // at the start of that one
+struct EndAtTrack {  // ends at the start of `track`
   Name track;
-  // Indices of positions of the parts of both, which the geometry is made for; 0: as they are.
+  // Indices, from 1, of the positions of both tracks' parts for which the geometry is made; 0: the current ones.
   std::uint32_t this_position_index = 0;
   std::uint32_t other_position_index = 0;
-  bool only_there = false;  // the link is in force there alone, not wherever the tracks meet
+  bool only_there = false;  // the link holds at these positions only; false: wherever the ends meet
 };
 
 struct Enable {};
 struct Disable {};
 struct Reset {};
 
-struct AddToGroup {  // of movers
+struct AddToGroup {  // a group of movers
   Name group;
 };
 struct RemoveFromGroup {};
 
-// The answer to a question (build_queues.h); no command of people.
+// Answer to a build request (build_queues.h); not a command of users.
 struct TrackMade {
-  std::uint64_t number = 0;  // of the question
+  std::uint64_t number = 0;  // of the request
   planar::Problem problem = planar::Problem::kNone;
-  std::uint32_t element = 0;  // where the problem is, from 1; 0: nowhere
+  std::uint32_t element = 0;  // element with the problem, from 1; 0: none
 };
 
 using Command = std::variant<AppendLine, AppendCircle, AppendPosition, CloseLoop, Clear, StartFromTrack, EndAtTrack,

@@ -1,5 +1,5 @@
-// Tracks on a surface made of parts (planar/parts.h): each lies on one of them, its geometry is given in the
-// coordinates of that one and goes with it. Tracks of two parts are linked as long as these touch.
+// Tracks on a surface made of parts (planar/parts.h): each lies on one part; its geometry is given in the coordinates
+// of the part and moves with it. Tracks of two parts are linked while their ends meet.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,25 @@
 
 namespace takt::track {
 
-// Where a track is, or is to be looked at.
+// A part at one of its positions.
 struct Standing {
   std::uint32_t part = planar::kNoPart;
-  std::uint32_t position = 0;  // index of the part's position, from 1; 0: that where it is now
+  std::uint32_t position = 0;  // index of the position, from 1; 0: the current one
 };
 
-// Its part's origin. Nothing: the part is on its way, or has no such position.
+// Returns the origin of the part; nothing if the part is away, or has no such position.
 std::optional<planar::Spot> SpotOf(const planar::Parts& parts, const Standing& standing) noexcept;
 
-// Brings an end of another track into the coordinates of the part where it is to be met: kApart, kNotOnBorder.
+// Transforms an end of another track into the coordinates of `own`'s part. Returns kApart or kNotOnBorder if the tracks
+// cannot meet there.
 planar::Problem Meet(const planar::Parts& parts, const Standing& other, const Standing& own,
                      planar::TrackPoint& point) noexcept;
 
-// Whether two ends, each in the coordinates of its part, are at one place where the parts are to be.
+// Returns true if two ends, each in the coordinates of its part, coincide at the commanded positions of the parts.
 bool DoMeet(const planar::Parts& parts, std::uint32_t part_a, const planar::TrackPoint& a, std::uint32_t part_b,
             const planar::TrackPoint& b) noexcept;
 
-// Whether all of a track lies on its part, to 1 mm. Not for the cycle.
+// Returns true if all of a track lies on its part, to within 1 mm. Not for the cycle.
 bool LiesOn(const planar::Parts& parts, std::uint32_t part, const planar::Track& track);
 
 }  // namespace takt::track

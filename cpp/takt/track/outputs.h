@@ -1,4 +1,4 @@
-// What a track publishes every cycle.
+// Outputs of a track in every cycle.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@ struct Outputs {
   planar::ObjectState state = planar::ObjectState::kDisabled;
   OperationMode operation_mode = OperationMode::kUninitialized;
   ErrorId error = ErrorId::kNone;
-  double length = 0;  // mm; 0: nothing to go along
+  double length = 0;  // [mm] 0: no geometry yet
   bool closed_loop = false;
   std::uint32_t element_count = 0;
   std::uint32_t mover_count = 0;
-  std::uint32_t previous_tracks = 0;    // that end where it starts
-  std::uint32_t subsequent_tracks = 0;  // that start where it ends
-  std::uint32_t group = 0;              // number of the group of movers that it is in, from 1; 0: none
+  std::uint32_t previous_tracks = 0;    // tracks that end where it starts
+  std::uint32_t subsequent_tracks = 0;  // tracks that start where it ends
+  std::uint32_t group = 0;              // group of movers that it is in, from 1; 0: none
 };
 
 void describe(Description<Outputs>&);

@@ -1,24 +1,23 @@
-// Changes of geometry on their way: each is looked at, made outside the cycle (build_queues.h) and taken over, one at a
-// time.
+// Pending changes of geometry: each is checked, built outside the cycle (build_queues.h) and taken over, one at a time.
 #pragma once
 
 #include "takt/track/tracks.h"
 
 namespace takt::track {
 
-// False: no room.
+// Appends an order. Returns false if there is no room.
 bool Put(const Order& order, PendingEdits& works) noexcept;
 bool HasPendingEdit(const PendingEdits& works, std::uint32_t track) noexcept;
 
-// Ends what needs nobody's help, and asks about the next one.
+// Ends orders that need no new geometry, and requests that of the next one that does.
 void StepWorks(const Context& c) noexcept;
 
-// False: nobody waits for this answer, or what was made is not there.
+// Takes over the answer to a request. Returns false if it is not the one awaited, or the track has not been delivered.
 bool TakeAnswer(const Context& c, std::uint32_t track, const TrackMade& made) noexcept;
 
-// Numbers the points where tracks start and end, anew, and what hangs together.
+// Numbers the nodes at the ends of tracks, and the networks, anew.
 void MakeNodes(Tracks& tracks) noexcept;
-// Tracks that hang together get one number.
+// Gives linked tracks the same network number.
 void NameNetworks(Tracks& tracks) noexcept;
 
 }  // namespace takt::track

@@ -1,5 +1,5 @@
-// How near to its ends a mover on a track counts for movers on other tracks that start or end there, too. Not for the
-// cycle.
+// Collision ranges: the distances from the ends of a track within which a mover counts for movers on other tracks that
+// start or end there. Not for the cycle.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,12 @@
 namespace takt::track {
 
 struct CollisionRanges {
-  double at_start = 0;  // mm along the track
+  double at_start = 0;  // [mm] along the track
   double at_end = 0;
 };
 
-// Given, or such that movers further away cannot touch others, however they are turned. 0 for a track without length.
+// Returns the given ranges, or those beyond which movers cannot touch others at any angle. 0 for a track without
+// length.
 CollisionRanges RangesOf(const Tracks& tracks, std::size_t track);
 
 }  // namespace takt::track

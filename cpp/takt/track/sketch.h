@@ -1,4 +1,4 @@
-// What a track is given by, without memory of its own: fit for the cycle and for queues.
+// The definition of a track, without dynamic memory: fit for the cycle and for queues.
 #pragma once
 
 #include <array>
@@ -11,26 +11,26 @@
 
 namespace takt::track {
 
-inline constexpr std::size_t kElements = 64;  // a track is given by at most
+inline constexpr std::size_t kElements = 64;  // largest number of elements of a track
 
 struct Sketch {
   std::array<planar::Element, kElements> elements{};
   std::uint32_t count = 0;
   bool closed = false;
-  std::optional<planar::TrackPoint> from{};  // the end of another track
-  std::optional<planar::TrackPoint> to{};    // the start of another track
+  std::optional<planar::TrackPoint> from{};  // end of another track where it starts
+  std::optional<planar::TrackPoint> to{};    // start of another track where it ends
 };
 
-Sketch ToSketch(const planar::Layout& layout);  // of no more than kElements
+Sketch ToSketch(const planar::Layout& layout);  // Requires: at most kElements
 planar::Layout ToLayout(const Sketch& sketch);
 
-// As planar::MakeTrack, and the track must not cross itself. Not for the cycle.
+// Like planar::MakeTrack; the track must not cross itself, either. Not for the cycle.
 planar::Making MakeWay(const planar::Layout& layout, planar::Track& out);
 
-// What a feedback that ends with kTrackGeometry has as its value, and what that says.
+// Conversion to and from the value of a feedback that ends with kTrackGeometry.
 double ToValue(planar::Problem problem, std::uint32_t element) noexcept;
 planar::Problem ProblemOf(double value) noexcept;
-std::uint32_t ElementOf(double value) noexcept;  // from 1; 0: nowhere
+std::uint32_t ElementOf(double value) noexcept;  // from 1; 0: none
 
 void describe(Description<Sketch>&);
 

@@ -1,4 +1,4 @@
-// All memory of tracks: plain, so that it can be copied, compared, hashed and replayed.
+// The complete state of tracks: plain data that can be copied, compared, hashed and replayed.
 #pragma once
 
 #include <array>
@@ -13,25 +13,25 @@
 namespace takt::track {
 
 inline constexpr std::size_t kLinks = 8;    // at each end
-inline constexpr std::size_t kOrders = 64;  // changes of geometry that wait, of all tracks
+inline constexpr std::size_t kOrders = 64;  // pending changes of geometry, of all tracks
 
-// What a track is doing as a way for movers.
+// Operation mode of a track.
 enum class OperationMode : std::uint8_t {
-  kUninitialized,  // no mover can use it
-  kStanding,       // all movers on it stand and wait
-  kMoving,         // at least one moves along it: none may join or leave
-  kConfiguring,    // at least one joins or leaves: none may move along it
+  kUninitialized,  // not usable by movers
+  kStanding,       // all movers on it are at rest
+  kMoving,         // at least one mover moves along it: none may join or leave
+  kConfiguring,    // at least one mover joins or leaves: none may move along it
 };
 
-// What a fault does.
+// Reaction to a fault.
 enum class ErrorReaction : std::uint8_t {
   kQuickStop,  // a reset leads back to Enabled
   kAbort,      // a reset leads to Disabled
 };
 
 struct Links {
-  std::array<std::uint32_t, kLinks> tracks{};  // numbers of tracks, from 0
-  // Indices of the only positions of their parts where they are linked, from 1; 0: wherever they meet.
+  std::array<std::uint32_t, kLinks> tracks{};  // indices, from 0
+  // Indices, from 1, of the positions of the parts at which alone the link holds; 0: wherever the ends meet.
   std::array<std::uint32_t, kLinks> own_positions{};
   std::array<std::uint32_t, kLinks> other_positions{};
   std::uint32_t count = 0;
@@ -39,41 +39,42 @@ struct Links {
 
 struct State {
   planar::ObjectState state = planar::ObjectState::kDisabled;
-  std::uint64_t since = 0;  // cycle in which it became so
+  std::uint64_t since = 0;  // cycle in which the state was entered
   OperationMode mode = OperationMode::kUninitialized;
   Ticket ticket = 0;  // of the command that changes the state; 0: none
   ErrorId error = ErrorId::kNone;
   ErrorReaction reaction = ErrorReaction::kQuickStop;
-  std::uint64_t sketch_hash = 0;  // of what it is given by (Tracks), which changes rarely and is large
-  Links starts_from;              // at the ends of these tracks
-  Links ends_at;                  // at the starts of these
+  std::uint64_t sketch_hash = 0;  // of its sketch (in Tracks), which is large and rarely changes
+  Links starts_from;              // tracks at whose ends it starts
+  Links ends_at;                  // tracks at whose starts it ends
   bool has_length = false;
-  double length = 0;  // mm
+  double length = 0;  // [mm]
 };
 
 enum class OrderKind : std::uint8_t { kAppend, kCloseLoop, kClear, kStartFrom, kEndAt };
 
-// A change of geometry that waits to be made.
+// A pending change of geometry.
 struct Order {
   Ticket ticket = 0;
   std::uint32_t track = 0;
   OrderKind kind = OrderKind::kAppend;
-  planar::Element element;  // to append
-  std::uint32_t other = 0;  // track to start from or end at
-  // Indices of positions of the parts of both tracks, for which the geometry is made; 0: as they are.
+  planar::Element element;  // kAppend: the element
+  std::uint32_t other = 0;  // kStartFrom, kEndAt: index of the other track
+  // Indices, from 1, of the positions of both tracks' parts for which the geometry is made; 0: the current ones.
   std::uint32_t own_position = 0;
   std::uint32_t other_position = 0;
-  bool only_there = false;  // the link is in force there alone
+  bool only_there = false;  // the link holds at these positions only
 };
 
-// Changes of all tracks, one made after the other.
+// Pending changes of all tracks, carried out one after the other.
 struct PendingEdits {
-  std::array<Order, kOrders> orders{};  // a ring
+  std::array<Order, kOrders> orders{};  // ring buffer
   std::uint32_t first = 0;
   std::uint32_t count = 0;
-  std::uint64_t question = 0;  // number of the last one
-  bool asked = false;          // and the first order waits for its answer
-  planar::TrackPoint point;    // where the track of that question starts or ends by a link: parts may move meanwhile
+  std::uint64_t question = 0;  // number of the last request
+  bool asked = false;          // the first order waits for the answer to it
+  // end of the other track that the request links to, in own coordinates; kept, as parts may move meanwhile
+  planar::TrackPoint point;
 };
 
 void describe(Enumeration<OperationMode>&);

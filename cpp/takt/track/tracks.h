@@ -1,5 +1,5 @@
-// All tracks of a machine, stage by stage of the cycle. Free functions over plain state; nothing here allocates, locks,
-// throws or reads a clock, but for the making and the end of all tracks.
+// All tracks of a machine, with one function for each stage of the cycle. Free functions over plain state; nothing here
+// allocates, locks, throws or reads a clock, except construction and destruction of Tracks.
 #pragma once
 
 #include <cstddef>
@@ -22,17 +22,17 @@
 
 namespace takt::track {
 
-// Of what the machine file says, which must have been checked (build.h). Index i is track i of the machine.
-// What movers do on a track.
+// Use of a track by movers.
 struct Usage {
-  std::uint32_t movers = 0;             // on it, with those that join
-  bool moves = false;                   // along it, or over it on their way
-  bool configures = false;              // joins or leaves
-  std::uint32_t one = planar::kNobody;  // of them: who moves, joins or leaves rather than who stands
+  std::uint32_t movers = 0;             // on it, including those that join
+  bool moves = false;                   // a mover moves along it, or has it on the route of its motion
+  bool configures = false;              // a mover joins or leaves
+  std::uint32_t one = planar::kNobody;  // one of them; one that moves, joins or leaves, if there is any
 };
 
 struct Tracks {
-  // On these parts, which must live as long; null: there are none.
+  // Requires: `params` have been checked (build.h). Index i is track i of the machine. `parts` must outlive this
+  // object; null: no parts.
   explicit Tracks(const std::vector<TrackParams>& params, const planar::Parts* parts = nullptr);
   ~Tracks();
   Tracks(const Tracks&) = delete;
@@ -40,34 +40,35 @@ struct Tracks {
 
   void SetSketch(std::size_t track, const Sketch& sketch) noexcept;
 
-  // Where one is along a track that has a way, in the coordinate system where it is now; and where its part is.
+  // Returns a point of a track in its current coordinate system. Requires: the track has a length. `spot`: the current
+  // origin of its part.
   planar::TrackPoint At(std::size_t track, double s) const noexcept;
   const planar::Spot& spot(std::size_t track) const noexcept;
-  // Where its part is to be: as of there it is linked with others.
+  // Returns the commanded origin of its part, which decides on links with other tracks.
   const planar::Spot& goal(std::size_t track) const noexcept;
 
   std::vector<TrackParams> params;
   const planar::Parts& parts;
   std::vector<std::uint32_t> part_of;  // by track
   std::vector<State> states;
-  std::vector<Sketch> sketches;  // what each is given by; the states have their hashes
+  std::vector<Sketch> sketches;  // by track; the states contain their hashes
   std::vector<Outputs> outputs;
   PendingEdits works;
 
-  // What follows from the states.
-  std::vector<const planar::Track*> ways;  // null: none, then the length is 0
-  std::vector<planar::TrackArea*> areas;   // what movers on it may cover; null: none
-  // Where tracks are linked: ends and starts at one point have one number, below twice that of tracks.
+  // Derived from the states.
+  std::vector<const planar::Track*> ways;  // null: no length
+  std::vector<planar::TrackArea*> areas;   // area that movers on it may cover; null: no length
+  // Linked ends and starts have the same node number, below twice the number of tracks.
   std::vector<std::uint32_t> start_nodes;
   std::vector<std::uint32_t> end_nodes;
-  std::vector<std::uint32_t> starts_at;  // by node: so many tracks
+  std::vector<std::uint32_t> starts_at;  // by node: number of tracks that start there
   std::vector<std::uint32_t> ends_at;
-  std::uint64_t changes = 0;          // of ways and links, counted
-  std::vector<std::uint8_t> reached;  // by track: scratch of a search through links
-  std::vector<Usage> usages;          // of each
+  std::uint64_t changes = 0;          // counts changes of geometry and links
+  std::vector<std::uint8_t> reached;  // by track: scratch memory of a search through links
+  std::vector<Usage> usages;          // by track
 
   BuildQueues desk;
-  bool sent = false;  // the question has found room in the queue
+  bool sent = false;  // the request has been put into the queue
 };
 
 struct Context {
@@ -77,20 +78,20 @@ struct Context {
   FeedbackSink& feedback;
 };
 
-// Events that one cycle may report besides those of the commands that come in it.
+// Largest number of events in one cycle, besides those of its commands.
 constexpr std::size_t EventsOf(std::size_t tracks) {
   return tracks == 0 ? 0 : 2 * tracks + 2 * kOrders;
 }
 
-// command: carries it out, puts it into the works, or refuses it.
+// Stage command: carries it out, appends it to the pending edits, or rejects it.
 void Apply(const Context& c, std::size_t track, Ticket ticket, const Command& command) noexcept;
 
-// A fault of a track: of whatever happens on it.
+// Starts the reaction of a track to a fault; ignored during a reaction or a reset.
 void Fail(const Context& c, std::size_t track, ErrorId error, ErrorReaction reaction) noexcept;
 
 void Use(const Usage& usage, std::size_t track, Tracks& tracks) noexcept;
 
-// move: before the movers.
+// Stage move: before the movers.
 void Step(const Context& c) noexcept;
 
 void Publish(const Context& c) noexcept;
