@@ -12,25 +12,26 @@
 namespace takt::planar {
 namespace {
 
-// All that the mover covers while it turns in its place is a circle through its corners.
+// Returns true if the mover, rotating in place, covers the full circle through its corners.
 bool CoversCircle(const Area& area) {
   if (area.mover.any_angle) return true;
   if (!(area.most_c > area.least_c)) return false;
-  // Its corners are so far apart, seen from its centre: each has to come to where the next one began.
+  // Angle between adjacent corners, seen from the centre: each corner has to reach the start of the next one.
   const double corner = 2 * maths::Atan2(area.mover.height, area.mover.width);
   return (area.most_c - area.least_c) * kDegree >= std::max(corner, std::numbers::pi - corner);
 }
 
-// The hull of an area: that of its places, at each of them all points of what the mover covers while it turns there.
+// The hull of an area: the Minkowski sum of the hull of its places and of the hull of all that the mover covers in
+// place.
 struct Hull {
   std::array<Flat, 7> places;
   int count = 0;
-  double radius = 0;  // around all the rest
-  // Of the mover in its place, without those that mirror them: both corners at the least angle, and at the most.
+  double radius = 0;  // margin around it all
+  // Corners of the mover in place, without their mirror images: two at the least angle, two at the largest.
   std::array<Flat, 4> corners{Flat::Zero(), Flat::Zero(), Flat::Zero(), Flat::Zero()};
-  double far = 0;  // of the corners from the centre
+  double far = 0;  // distance of the corners from the centre
   bool turns = false;
-  // Across the sides of what it covers there; where it turns, also along what leads to its corners.
+  // Normals of its sides at the middle angle; if it rotates, also the directions of its corners.
   std::array<Flat, 6> normals;
   int normal_count = 0;
 };
@@ -64,7 +65,7 @@ Hull HullOf(const Area& area) {
   return hull;
 }
 
-// Where what the mover covers in its place passes this direction with a corner.
+// Returns true if a corner of the rotating mover passes this direction.
 bool CornerPasses(const Hull& hull, const Flat& along) {
   const auto passes = [&](std::size_t from, std::size_t to) {
     return Cross(hull.corners[from], along) * Cross(along, hull.corners[to]) >= 0;
@@ -72,7 +73,7 @@ bool CornerPasses(const Hull& hull, const Flat& along) {
   return hull.turns && (passes(0, 2) || passes(1, 3));
 }
 
-// How far what the mover covers in its place reaches along a unit vector, to both sides.
+// Returns how far the mover in place reaches along a unit vector, to both sides.
 double Reach(const Hull& hull, const Flat& along) {
   if (CornerPasses(hull, along)) return hull.far;
   double most = 0;
@@ -80,7 +81,7 @@ double Reach(const Hull& hull, const Flat& along) {
   return most;
 }
 
-// A point that reaches furthest along a unit vector, without the radius.
+// Returns a point of the hull that is farthest along a unit vector, without the radius.
 Flat Furthest(const Hull& hull, const Flat& along) {
   Flat place = hull.places[0];
   for (int i = 1; i < hull.count; ++i) {
@@ -93,7 +94,7 @@ Flat Furthest(const Hull& hull, const Flat& along) {
   return corner.dot(along) < 0 ? Flat(place - corner) : Flat(place + corner);
 }
 
-// How far b is off a along a unit vector, or against it: the larger of both.
+// Returns the distance of b from a along a unit vector, or against it: the larger of both.
 double Off(const Hull& a, const Hull& b, const Flat& along) {
   const auto span = [&](const Hull& hull) {
     double least = hull.places[0].dot(along), most = least;
@@ -109,14 +110,14 @@ double Off(const Hull& a, const Hull& b, const Flat& along) {
   return std::max(least_b - most_a, least_a - most_b) - Reach(a, along) - Reach(b, along) - a.radius - b.radius;
 }
 
-// Nearest to the origin on the way from one point to another.
+// Returns the point nearest to the origin on the line between two points.
 Flat NearestOn(const Flat& from, const Flat& to) {
   const Flat way = to - from;
   const double squared = way.squaredNorm();
   return squared > 0 ? Flat(from + std::clamp(-from.dot(way) / squared, 0.0, 1.0) * way) : from;
 }
 
-// Looks for an axis along which the hulls are at least so far apart.
+// Searches for an axis along which the hulls are at least `clearance` apart.
 class Axes {
  public:
   Axes(const Hull& a, const Hull& b, double clearance) : a_(a), b_(b), clearance_(clearance) {}
@@ -124,8 +125,8 @@ class Axes {
   bool Separate() const {
     const bool round = a_.radius > 0 || b_.radius > 0 || a_.turns || b_.turns;
     if (round && clearance_ >= 0) return TryCorners();
-    // Those of polygons that do not touch are among the normals of their sides, and the sides of a sum of polygons are
-    // those of its parts.
+    // The separating axis of polygons is among the normals of their sides, and the sides of a sum of polygons are those
+    // of its summands.
     if (Try(Centre(b_) - Centre(a_)) || TryNormals(a_) || TryNormals(b_)) return true;
     return (round || clearance_ > kSame) && TryCorners();
   }
@@ -154,8 +155,8 @@ class Axes {
     return false;
   }
 
-  // Corners that face each other are apart along what leads from one to the other: the way of Gilbert, Johnson and
-  // Keerthi to the shortest one.
+  // Corners that face each other are separated along the line between them: the steps of Gilbert, Johnson and Keerthi
+  // to the shortest one.
   bool TryCorners() const {
     constexpr int kSteps = 10;
     Flat one = Centre(b_) - Centre(a_), other = one;
@@ -181,7 +182,8 @@ class Axes {
   double clearance_;
 };
 
-// How much further than the area its hull reaches: between where a corner ends and the next one began.
+// Returns how far the hull exceeds the area, at most: between the end of one corner's arc and the start of the next
+// one's.
 double SlackOf(const Area& area) {
   if (area.most_c <= area.least_c || CoversCircle(area)) return 0;
   return std::max(area.mover.width, area.mover.height) / 2 * maths::Sin((area.most_c - area.least_c) / 2 * kDegree);
@@ -192,7 +194,7 @@ bool Near(const Area& a, const Hull& hull_a, const Area& b, const Hull& hull_b, 
   const double slack_a = SlackOf(a), slack_b = SlackOf(b);
   if (slack_a + slack_b < kSlack) return true;
   if (slack_b > slack_a) return Near(b, hull_b, a, hull_a, clearance);
-  // Neither all of it is free, nor is it known where it is not: by halves of the angle.
+  // Not separated, but the hulls may exceed the areas by the slack: bisect the angle.
   Area half = a;
   half.most_c = (a.least_c + a.most_c) / 2;
   if (Near(half, HullOf(half), b, hull_b, clearance)) return true;
@@ -209,7 +211,7 @@ Extent ExtentOf(const Area& area) noexcept {
     const Hull hull = HullOf(area);
     x = Reach(hull, Flat::UnitX()) + hull.radius;
     y = Reach(hull, Flat::UnitY()) + hull.radius;
-  } else {  // as well, in less time
+  } else {  // the same, in less time
     const Flat heading = Heading((area.least_c + area.most_c) / 2 * kDegree);
     const Flat along = area.mover.width / 2 * heading, across = area.mover.height / 2 * Left(heading);
     x = std::abs(along.x()) + std::abs(across.x()) + area.margin;

@@ -13,19 +13,19 @@
 namespace takt::planar {
 namespace {
 
-constexpr double kRound = 270;  // deg from which on what an arm sweeps is as good as a circle
+constexpr double kRound = 270;  // [deg] from which on the area swept by an arm is taken as a circle
 constexpr std::size_t kApexes = 4;
 
 struct Turning {
-  double least = 0, most = 0;  // deg
+  double least = 0, most = 0;  // [deg]
 };
 
-// What an arm sweeps, along a direction.
+// Range of what an arm sweeps along a direction.
 struct Between {
   double least = 0, most = 0;
 };
 
-// Of the cosine between two angles.
+// Returns the range of the cosine between two angles.
 Between CosineBetween(double from, double to) {
   const auto passes = [&](double angle) {
     constexpr double kTurn = 2 * std::numbers::pi;
@@ -39,8 +39,8 @@ struct Corners {
   std::array<Place, 4> places{};
 };
 
-// Of a rectangle along a direction around all that the end of the arm comes to while the carrier is at any of these
-// places.
+// Returns the corners of a rectangle along a direction that contains all positions of the arm's end while the carrier
+// is at any of these places.
 Corners BoxOf(const Flat& off, std::span<const Place> places, const Turning& turning, const Flat& along) {
   const double length = off.norm(), angle = maths::Atan2(off.y(), off.x()) - maths::Atan2(along.y(), along.x());
   const auto reach = [&](const Flat& axis, double quarter) {
@@ -59,7 +59,7 @@ Corners BoxOf(const Flat& off, std::span<const Place> places, const Turning& tur
   return {{corner(u.least, w.least), corner(u.most, w.least), corner(u.most, w.most), corner(u.least, w.most)}};
 }
 
-// With the ends of an arc they make a polygon around it.
+// Returns the points that, with the ends of an arc, make a polygon around it.
 Corners ApexesOf(const Flat& off, const Place& place, const Turning& turning) {
   const double step = (turning.most - turning.least) * kDegree / kApexes;
   const double length = off.norm() / maths::Cos(step / 2);

@@ -9,9 +9,9 @@
 namespace takt::planar {
 namespace {
 
-constexpr double kRounding = 1e-15;  // share of a root that a step of its search may leave out
+constexpr double kRounding = 1e-15;  // relative accuracy of a root
 
-// The piece a braking is in at t, and s since it began; null: it stands.
+// Returns the piece of a braking at t, and makes t relative to its start; null: at rest.
 const trajectory::Piece* PieceAt(const Braking& b, double& t) {
   double begin = 0;
   for (std::size_t i = 0; i < b.pieces.size(); ++i) {
@@ -31,7 +31,7 @@ trajectory::Piece From(const Braking& b, double t) {
   return {at.position, at.velocity, at.acceleration, piece->jerk};
 }
 
-// The least value of a piece over so long a time.
+// Returns the least position of a piece during `duration`.
 double LeastOf(const trajectory::Piece& piece, double duration) {
   double least = std::min(piece.position, piece.At(duration).position);
   for (const double t : piece.VelocityZeros()) {
@@ -62,7 +62,7 @@ Braking Brake(const KinematicState& from, const Brakes& brakes) noexcept {
     out.ends_s[i] = time;
     if (!(stretch.duration > 0)) continue;
     const KinematicState end = piece.At(stretch.duration);
-    // Velocity changes its sign once at most, where acceleration is left from before.
+    // The velocity changes its sign at most once, if there is acceleration from before.
     if (at.velocity * end.velocity < 0) {
       for (const double t : piece.VelocityZeros()) {
         if (!(t > 0 && t < stretch.duration)) continue;
@@ -119,7 +119,8 @@ double SpeedBefore(double way, double end, const Brakes& b) noexcept {
   const double half = 0.5 * d * ramp;
   const double v = -half + std::sqrt(std::max(0.0, (end - half) * (end - half) + 2 * d * way));
   if (v - end >= d * ramp) return v;
-  // way = (2 end + j w²) w, v = end + j w². Convex from the root on: Newton from above comes down to it.
+  // way = (2 end + j w²) w, v = end + j w². Convex from the root on: Newton's method from above converges
+  // monotonically.
   double w = std::min(maths::Cbrt(way / b.jerk), end > 0 ? way / (2 * end) : INFINITY);
   for (int i = 0; i < 8; ++i) {
     const double f = (2 * end + b.jerk * w * w) * w - way;

@@ -13,7 +13,7 @@ namespace {
 
 using Controls = std::array<Flat, 6>;
 
-// Control points of the part of a polynomial between two parameters, as a Bezier curve.
+// Returns the Bezier control points of the part of a polynomial between two parameters.
 Controls ControlsOf(const path::VectorPolynomial& place, double from, double to) {
   const path::VectorPolynomial c = PartOf(place, from, to);
   constexpr double kShare[6][6] = {{1, 0, 0, 0, 0, 0},       {1, 0.2, 0, 0, 0, 0},       {1, 0.4, 0.1, 0, 0, 0},
@@ -26,7 +26,7 @@ Controls ControlsOf(const path::VectorPolynomial& place, double from, double to)
   return out;
 }
 
-// All directions lie between those of the control vectors.
+// Returns the range of directions [rad]: all lie between those of the control vectors.
 double Spread(const Controls& controls) {
   const Flat first = controls[1] - controls[0];
   double least = 0, most = 0;
@@ -38,7 +38,7 @@ double Spread(const Controls& controls) {
   return most - least;
 }
 
-// The curve lies in the hull of its control points.
+// Returns the largest distance from the chord [mm]: the curve lies in the hull of its control points.
 double OffChord(const Controls& controls) {
   const Flat chord = controls[5] - controls[0];
   const double squared = chord.squaredNorm();
@@ -51,7 +51,7 @@ double OffChord(const Controls& controls) {
   return most;
 }
 
-// By places close together, and the tops of parabolas through three of them.
+// By dense samples, and the vertices of parabolas through three of them.
 double LargestCurvature(const path::VectorPolynomial& place, double from, double to) {
   constexpr std::size_t kPlaces = 16;
   std::array<double, kPlaces + 1> k{};
@@ -96,7 +96,7 @@ void AppendQuintic(const path::Segment& segment, double u0, double u1, double s0
 }  // namespace
 
 double StrayOf(const Cell& cell, double half, double radius) noexcept {
-  // The curvature of a cell is known to a thousandth.
+  // The curvature of a cell is known to 0.1 %.
   const double turn = std::min(cell.turn, 1.01 * cell.curvature * half);
   return 2 * maths::Sin(turn / 2) * (half + radius);
 }

@@ -14,8 +14,8 @@ namespace {
 // A rectangle with a margin around it.
 struct Box {
   Flat center;
-  Flat along;   // half of it
-  Flat across;  // half of it
+  Flat along;   // half the side
+  Flat across;  // half the side
   double margin = 0;
 
   Flat corner(int i) const { return center + ((i & 1) != 0 ? along : -along) + ((i & 2) != 0 ? across : -across); }
@@ -31,10 +31,10 @@ Box BoxOf(const TrackPoint& point, const Footprint& mover) {
   return {ToFlat(point.place), mover.width / 2 * heading, mover.height / 2 * Left(heading), 0};
 }
 
-// How far `other` is off the box along the two sides of the box; the larger of both.
+// Returns the distance of `other` from the box along the two axes of the box; the larger of both.
 double OffSides(const Box& box, const Box& other) {
   const double length = box.along.norm(), breadth = box.across.norm();
-  if (length == 0 && breadth == 0) return -INFINITY;  // a point has none
+  if (length == 0 && breadth == 0) return -INFINITY;  // a point has no axes
   const Flat forward = length > 0 ? Flat(box.along / length) : Flat(-Left(box.across) / breadth);
   const auto off = [&](const Flat& normal, double half) {
     const double reach = half + std::abs(normal.dot(other.along)) + std::abs(normal.dot(other.across));
@@ -57,14 +57,14 @@ double Separation(const Box& a, const Box& b) {
   const double margins = a.margin + b.margin;
   const double off = std::max(OffSides(a, b), OffSides(b, a));
   if (off <= 0 && off > -INFINITY) return off - margins;
-  // Apart: from a corner of one of them to the other.
+  // Disjoint: the least distance of a corner of one of them from the other.
   double least = INFINITY;
   for (int i = 0; i < 4; ++i) least = std::min({least, FromBox(a.corner(i), b), FromBox(b.corner(i), a)});
   return least - margins;
 }
 
 // Part of a cell, seen from its middle. All that a mover covers on it lies within `stray` of `swept`, which is the
-// mover drawn out along its direction in the middle; and within `spread` of where it is in the middle.
+// mover extended along its direction in the middle; and within `spread` of the mover in the middle.
 struct CellStretch {
   double from = 0;
   double to = 0;
@@ -101,7 +101,7 @@ class ConflictSearch {
   }
 
  private:
-  static constexpr double kFinest = 1e-3;  // mm
+  static constexpr double kFinest = 1e-3;  // [mm]
 
   enum class Occupancy { kFree, kPerhaps, kConflict };
 
@@ -129,7 +129,7 @@ class ConflictSearch {
     return std::max(first, Against(stretch, cell, StretchOf(b_, on_b_, cell, middle, other.to)));
   }
 
-  // The other mover about where it comes nearest to the middle of the stretch.
+  // Returns the other mover approximately where it comes nearest to the middle of the stretch.
   Box Facing(const CellStretch& stretch, const CellStretch& other) const {
     const double half = (other.to - other.from) / 2;
     const double ahead = other.heading.dot(stretch.middle.center - other.middle.center);
@@ -163,16 +163,16 @@ double ClearGap(const Footprint& mover, double turn) noexcept {
 
 double ClearGapAlong(const Track& track, const Footprint& mover, double turned, double from, double to,
                      double least) noexcept {
-  constexpr double kStride = 10, kStep = 1, kFine = 1e-3;  // mm
+  constexpr double kStride = 10, kStep = 1, kFine = 1e-3;  // [mm]
   const double reach = 2 * Radius(mover), most = 3 * reach;
   const auto place = [&](double s) { return TrackPoint{.place = PlaceAt(track, s), .direction = turned}; };
   const auto end = [&](double s) { return track.closed ? s : std::min(s, track.length); };
   for (double s = from; s <= to; s += kStride) {
     const double wanted = std::max(least, kStep);
     if (end(s + wanted) - s < wanted) break;
-    // Of a closed track: where it begins anew it is looked at as bent.
+    // Across the start of a closed track a bend is assumed.
     const double peak = s + wanted <= track.length ? PeakCurvature(track, s, s + wanted) : 1 / reach;
-    // A chord is no shorter than that of a circle (Schur).
+    // Schur: the chord is no shorter than that of a circle.
     const double half = peak * wanted / 2;
     if (half == 0 || (half < std::numbers::pi / 2 && 2 / peak * maths::Sin(half) >= reach)) continue;
     const TrackPoint here = place(s);

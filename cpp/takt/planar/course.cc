@@ -13,23 +13,23 @@
 namespace takt::planar {
 namespace {
 
-// Places of a stretch at most: beyond that the slack grows.
+// Largest number of chords of a stretch: beyond that the slack grows.
 constexpr int kMostStrides = 24;
-// Instants of two courses that are looked at.
+// Largest number of instants at which two courses are compared.
 constexpr int kMostInstants = 64;
 
 double RadiusOf(const Area& kind) {
   return maths::Hypot(kind.mover.width, kind.mover.height) / 2 + kind.margin;
 }
 
-// Around the place on the track of a mover (EachArea).
+// Returns the radius around the position of a mover on its track (EachArea) that contains it.
 double ReachOf(const Area& kind) {
   double off = 0;
   for (std::size_t i = 0; i < kind.count; ++i) off = std::max(off, maths::Hypot(kind.places[i].x, kind.places[i].y));
   return RadiusOf(kind) + off;
 }
 
-// The places of both and, around them, the larger of both.
+// Returns an area around both: the box of their places with the larger mover, angles and margin.
 Area Around(const Area& a, const Area& b) {
   Area out = a;
   Place lower = a.places[0], upper = lower;
@@ -50,8 +50,8 @@ Area Around(const Area& a, const Area& b) {
   return out;
 }
 
-// Of the directions between two, in the frame of a rectangle with these half sides: how far the middle of another
-// point has to be away at most not to lie in it.
+// Returns the distance from which on any point in a direction between `from` and `to` [rad, in the frame of a rectangle
+// with these half sides] lies outside the rectangle.
 double MostReach(double half_width, double half_height, double from, double to) {
   const auto reach = [&](double direction) {
     return std::min(half_width / std::abs(maths::Cos(direction)), half_height / std::abs(maths::Sin(direction)));
@@ -66,7 +66,7 @@ double MostReach(double half_width, double half_height, double from, double to) 
 struct Turned {
   TrackPoint point;
   Footprint mover;
-  double margin = 0;  // mm, for what turns, and for what is off the track
+  double margin = 0;  // [mm] for its rotation, and its displacement from the track
 };
 
 Turned TurnedAt(const Network& network, const BrakingMover& r, double s) {
@@ -84,7 +84,7 @@ Turned TurnedAt(const Network& network, const BrakingMover& r, double s) {
   return out;
 }
 
-// No faster than this, whatever acceleration it has to get rid of first. mm/s
+// Returns an upper bound of the speed [mm/s], with any acceleration at the start.
 double MostSpeed(const Braking& b) {
   double most = 0;
   for (const trajectory::Piece& piece : b.pieces) {
@@ -120,7 +120,7 @@ Interval WayOf(const Network& network, const Rider& r) noexcept {
   if (r.aim == Aim::kTarget && !r.there) {
     const double end = EndOfWay(network, r);
     if (Rests(r.at)) return {std::min(at, end), std::max(at, end)};
-    // It may be past its target before it has turned round.
+    // It may pass its target before it has reversed.
     const Braking braking = Brake(r.at, r.pace.brakes());
     return {std::min({at, end, braking.lowest}), std::max({at, end, braking.highest})};
   }
@@ -163,7 +163,8 @@ bool ApartByOrder(const Network& network, const Rider& behind, const Braking& be
   if (chord >= ReachOf(behind_kind) + ReachOf(ahead_kind)) return true;
   const bool turns = behind_kind.most_c > behind_kind.least_c || ahead_kind.most_c > ahead_kind.least_c;
   if (turns) return false;
-  // What both cover together along and across the one behind, grown on all sides by how far both are off the track.
+  // Half sides of the sum of both rectangles, in the frame of the one behind, enlarged by the displacements of both
+  // from the track.
   const double off = ReachOf(behind_kind) - RadiusOf(behind_kind) + behind_kind.margin + ReachOf(ahead_kind) -
                      RadiusOf(ahead_kind) + ahead_kind.margin;
   const double turned = (ahead_kind.least_c - behind_kind.least_c) * kDegree;

@@ -15,7 +15,7 @@ struct CellPart {
   double to = 0;
   Flat begin;
   Flat end;
-  double off = 0;  // from the straight line between its ends
+  double off = 0;  // from the chord between its ends
   double turn = 0;
 
   double length() const { return to - from; }
@@ -25,7 +25,7 @@ CellPart CellPartOf(const Cell& cell) {
   return {cell.from, cell.to, ToFlat(cell.begin), ToFlat(cell.end), cell.off, cell.turn};
 }
 
-// What turns by no more than `turn` strays from its chord by no more than this.
+// Returns the largest distance from its chord of a curve of this length that turns by at most `turn`.
 double OffOf(double length, double turn) {
   return length / 2 * maths::Sin(std::min(turn, std::numbers::pi / 2));
 }
@@ -50,7 +50,7 @@ std::optional<Crossing> Meet(const Track& track, const CellPart& a, const CellPa
   if (Distance(a, b) > a.off + b.off + kTouch / 2) return {};
   const bool first = a.length() >= b.length();
   if ((first ? a : b).length() < kTouch / 2) return Crossing{(a.from + a.to) / 2, (b.from + b.to) / 2};
-  // The longer one in halves, which turn by no more than its curvature allows.
+  // Bisect the longer one; each half turns by no more than its curvature allows.
   const CellPart& whole = first ? a : b;
   const double s = (whole.from + whole.to) / 2;
   const Flat middle = ToFlat(PlaceAt(track, s));
@@ -71,11 +71,11 @@ std::optional<Crossing> SelfCrossing(const Track& track) noexcept {
   for (const Cell& cell : track.cells) whole += cell.turn;
   for (std::size_t i = 0; i < track.cells.size(); ++i) {
     double turn = track.cells[i].turn;
-    double others = whole;  // the other way round a loop
+    double others = whole;  // along the other side of a loop
     for (std::size_t k = i + 1; k < track.cells.size(); ++k) {
       turn += track.cells[k].turn;
       others -= track.cells[k - 1].turn;
-      // What turns by less than half a turn does not meet itself.
+      // A curve that turns by less than half a turn does not meet itself.
       if (turn < std::numbers::pi) continue;
       if (track.closed && others + track.cells[i].turn < std::numbers::pi) continue;
       if (const auto found = Meet(track, CellPartOf(track.cells[i]), CellPartOf(track.cells[k]))) return found;

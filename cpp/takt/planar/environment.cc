@@ -9,9 +9,9 @@
 namespace takt::planar {
 namespace {
 
-constexpr double kFurthest = 1e6;  // mm
+constexpr double kFurthest = 1e6;  // [mm]
 
-// The plane cut along all sides of stators into cells, which are covered or not.
+// The plane divided along all sides of stators into cells, each covered or not.
 class Cut {
  public:
   explicit Cut(std::span<const Place> stators) : stators_(stators) {
@@ -27,7 +27,7 @@ class Cut {
     owner_.assign(xs_.size() * ys_.size(), kNobody);
   }
 
-  // Which stators overlap, if any do.
+  // Marks the covered cells; returns stators that overlap, if any do.
   Surfacing Cover() {
     for (std::uint32_t s = 0; s < stators_.size(); ++s) {
       const Place& p = stators_[s];
@@ -42,13 +42,13 @@ class Cut {
     return {};
   }
 
-  // Once all is covered.
+  // Returns the outlines. Requires: Cover() has succeeded.
   std::vector<Outline> Trace() {
     std::vector<bool> seen(owner_.size());
     std::vector<Outline> outlines;
     for (std::size_t y = 0; y < ys_.size(); ++y) {
       for (std::size_t x = 0; x < xs_.size(); ++x) {
-        // From left to right, so that each outline begins at a corner.
+        // Eastwards, so that each outline begins at a corner.
         if (Leads({x, y, kEast}) && !seen[y * xs_.size() + x]) outlines.push_back(Follow({x, y, kEast}, seen));
       }
     }
@@ -59,7 +59,7 @@ class Cut {
   static constexpr std::uint32_t kNobody = static_cast<std::uint32_t>(-1);
   enum Way : int { kEast, kNorth, kWest, kSouth };
 
-  // From a crossing of two lines to the next one.
+  // From one grid point to the next one.
   struct Side {
     std::size_t x = 0;
     std::size_t y = 0;
@@ -68,17 +68,17 @@ class Cut {
     bool operator==(const Side&) const = default;
   };
 
-  // Each is behind the line that stands for it, by less than kSame.
+  // Returns the index of the line that stands for this coordinate, at most kSame below it.
   static std::size_t LineOf(const std::vector<double>& lines, double at) {
     return static_cast<std::size_t>(std::ranges::upper_bound(lines, at) - lines.begin()) - 1;
   }
 
-  // The cell to the upper right of a crossing; its row and column may be -1, there is none.
+  // Returns true if the cell to the upper right of a grid point is covered. Row and column may be -1: no cell.
   bool Covered(std::size_t x, std::size_t y) const {
     return x < xs_.size() && y < ys_.size() && owner_[y * xs_.size() + x] != kNobody;
   }
 
-  // Whether the surface lies to the left of it, and nothing to the right.
+  // Returns true if the surface lies to the left of this side, and nothing to its right.
   bool Leads(const Side& s) const {
     const bool upper_right = Covered(s.x, s.y), upper_left = Covered(s.x - 1, s.y);
     const bool lower_right = Covered(s.x, s.y - 1), lower_left = Covered(s.x - 1, s.y - 1);
@@ -94,7 +94,7 @@ class Cut {
     }
   }
 
-  // Where two stators meet in a corner alone it stays with the one it comes from: first to the left.
+  // Where two stators meet in a corner only, the outline stays with the stator that it follows: left first.
   Side Next(Side s) const {
     s.x += s.way == kEast ? 1 : s.way == kWest ? static_cast<std::size_t>(-1) : 0;
     s.y += s.way == kNorth ? 1 : s.way == kSouth ? static_cast<std::size_t>(-1) : 0;
@@ -129,7 +129,7 @@ class Cut {
   std::vector<std::uint32_t> owner_;
 };
 
-// Calls this for all sides; until it says true.
+// Calls `is` for all sides until it returns true.
 bool AnySide(const Environment& environment, const auto& is) {
   for (const Outline& outline : environment.outlines) {
     const Place* from = &outline.corners.back();

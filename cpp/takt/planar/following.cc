@@ -6,32 +6,33 @@
 namespace takt::planar {
 namespace {
 
-// mm: so far before the place where it would get active at a node a mover stops.
+// [mm] A mover stops this far before it would become active at a node.
 constexpr double kBeforeNode = 1e-3;
-// Of the dynamics that follower and leader both have, what following plans with: the rest is for the delay of a cycle.
+// Share of the dynamics common to follower and leader that following uses: the rest covers the delay of a cycle.
 constexpr double kReserve = 0.95;
-// s, in which a mover takes back what it is too fast, and cycles in which it can at the least.
+// Largest time [s], and least number of cycles, in which a mover removes excess speed.
 constexpr double kCalm = 0.1;
 constexpr double kQuick = 5;
-// mm: so much further away than has to be a mover stops, for rounding on its way there.
+// [mm] A mover stops this much farther away than required, for rounding on the way.
 constexpr double kShort = 1e-3;
-// Share of the speed with which two movers get nearer that could still be stopped.
+// Share of the closing speed that could still be stopped.
 constexpr double kClosing = 0.5;
 
-// What following plans with: what both can do, less a reserve.
+// Returns the limits that following uses: those common to both, less a reserve.
 Brakes Common(const Brakes& a, const Brakes& b) {
   return {kReserve * std::min(a.deceleration, b.deceleration), kReserve * std::min(a.jerk, b.jerk)};
 }
 
-// How the way to rest grows with the speed, s.
+// Returns the derivative [s] of the stopping distance with respect to the speed.
 double SlopeOfWayToRest(double speed, const Brakes& b) {
   const double ramp = b.deceleration / b.jerk;
   return speed >= b.deceleration * ramp ? speed / b.deceleration + 0.5 * ramp : 1.5 * std::sqrt(speed / b.jerk);
 }
 
-// The acceleration with which a mover follows a limit. With so much room R left it may have the speed v(R) from which
-// it just gets to rest in it. Held at that speed its stop keeps its distance to the limit; so a chain of movers hands
-// on the stop of the first, and each settles on the speed of the one before it without swinging.
+// Returns the acceleration with which a mover follows a limit. With the distance R left it may have the speed v(R) from
+// which it just comes to rest in it. If it keeps that speed, its stopping point keeps its distance from the limit; so a
+// chain of movers propagates the stop of the first one, and each settles on the speed of the one ahead without
+// oscillation.
 double Follow(const Limit& limit, double speed, double period_s) {
   const Brakes& brakes = limit.brakes;
   const double allowed = SpeedForWay(limit.room - kShort, brakes);
@@ -40,8 +41,8 @@ double Follow(const Limit& limit, double speed, double period_s) {
   const double calm = std::clamp(slope, quick, kCalm);
   const double acceleration = (limit.rate - speed) / std::max(slope, quick) + (allowed - speed) / calm;
   if (acceleration <= 0) return acceleration;
-  // What it speeds up with, a, has to be taken back first, for which it needs more way: speed * a / jerk, and that of
-  // the speed that is gained meanwhile, slope * a² / (2 jerk).
+  // An acceleration a has to be removed first, which takes more distance: speed * a / jerk, and for the speed gained
+  // meanwhile slope * a² / (2 jerk).
   const double jerk = brakes.jerk * calm, linear = 1 + speed / (jerk * std::max(slope, quick));
   return jerk * (std::sqrt(linear * linear + 2 * acceleration / jerk) - linear);
 }
@@ -53,11 +54,11 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
   const Now& now = w.now(i);
   const int direction = r.direction;
   const Brakes own_brakes = WithShare(r.pace.brakes(), r.pace, r.share);
-  // Where its own plan ends.
+  // End of its own plan.
   const bool plans = r.aim == Aim::kTarget && r.planned && r.plan_ends;
   const double end = r.plan_from + direction * r.plan.end().position;
   const auto take = [&](const Limit& one) {
-    // Before one that stands it comes to rest anyhow.
+    // Before a stationary mover it comes to rest by its plan.
     const bool stands = one.by != kNobody && Rests(w.rider(one.by).at) && Rests(w.now(one.by).next);
     if (plans && stands && direction * (end - r.at.position) <= one.room + kTolerance) return;
     const double acceleration = Follow(one, speed, w.period_s());
@@ -66,8 +67,8 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
       limit = one;
     }
   };
-  // One that speeds up could stop further on than one of its speed; until it is there the way is not free. Behind one
-  // that is as fast the gap is enough, and no mover gets nearer that is faster.
+  // An accelerating leader will stop farther ahead than its current speed implies; that distance is not available yet.
+  // Behind an equally fast leader the gap suffices, and no faster mover comes nearer.
   const auto as_fast = [&](Limit one) {
     const Rider& before = w.rider(one.by);
     const double its_speed = direction * before.at.velocity;
@@ -88,10 +89,10 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
       one.rate = direction * (its.hard.rest - its.rest_before) / w.period_s();
       return one;
     }
-    // By its speed and acceleration; its jerk moves the place to and fro, and with it all that follow.
+    // From speed and acceleration; with the jerk the point would fluctuate, and all followers with it.
     one.rate = its_speed + SlopeOfWayToRest(its_speed, before.brakes) * its_acceleration;
-    // Follow goes by the speed alone. What one needs less of its way because it brakes already is room only for one
-    // that brakes as well: if not even for that one, it would brake more than the one before it.
+    // Follow uses the speed alone. The distance that the follower saves because it already brakes is added, at most as
+    // much as the leader saves by braking; otherwise the follower would brake harder than the leader.
     const double spared = WayToRest(its_speed, before.brakes) - direction * (its.rest_before - before.at.position);
     const double own = direction * r.at.acceleration;
     if (spared > 0 && own < 0 && its_acceleration < 0) {
@@ -105,7 +106,7 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
     as_fast(one);
   }
   if (direction < 0) {
-    // Who comes towards it over the start of its track.
+    // Movers that come towards it across the start of its track.
     w.Followers(i, [&](std::uint32_t k, double offset) {
       if (w.rider(k).route.first() != r.route.first()) take(behind(k, -offset, std::max(r.gap, w.rider(k).gap)));
     });
@@ -117,7 +118,7 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
     bool active = false;
     const auto counts = [&](const Meeting& m) {
       active = w.IsActive(r.zone, m.off, now.next, now.braking, p);
-      // Away from it, or before somebody who is there.
+      // If active: the other is behind. If not: the node is behind.
       if (active ? direction * m.place < 0 : way < 0) return false;
       return w.IsActive(m);
     };
@@ -125,12 +126,12 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
       const Now& its = w.now(m.other);
       const double zone = std::max(r.zone, direction > 0 ? p.range_before : p.range_behind) + m.off;
       const double distance = direction * m.place;
-      // `free`: so far it may go whatever the other does.
+      // `free`: distance available whatever the other does.
       const auto keep = [&](double gap, double free) {
         if (gap == 0) return;
         Limit one = behind(m.other, m.apart, gap);
         if (distance < 0) {
-          // It comes behind; it must have room to stop there.
+          // The other is behind and must have room to stop there.
           const double rest = direction * (r.at.position - its.rest_before - m.apart);
           if (rest >= gap - kTolerance) return;
           one.room = -kInfinite;

@@ -13,10 +13,10 @@
 namespace takt::planar {
 namespace {
 
-constexpr double kSamePlace = 1e-3;  // mm: of borders of tracks, counted in two ways
-constexpr double kNear = 10;         // mm: so far ahead it looks at the least
+constexpr double kSamePlace = 1e-3;  // [mm] tolerance of track borders that are counted in two ways
+constexpr double kNear = 10;         // [mm] least preview distance
 
-// The extreme speed that is still reached from here when the acceleration ends.
+// Returns the extreme velocity if the acceleration is removed from here with this jerk.
 double Peak(const KinematicState& x, double jerk) {
   return x.velocity + x.acceleration * std::abs(x.acceleration) / (2 * jerk);
 }
@@ -25,7 +25,7 @@ Start StartOf(const Rider& r, const KinematicState& at, std::int8_t direction) {
   return {&r.route, at.position, direction, direction * at.velocity, direction * at.acceleration};
 }
 
-// Time at which a braking has come so far, in its direction.
+// Returns the time [s] at which a braking has covered `way` in its direction.
 double TimeAt(const Braking& braking, int direction, double from, double way) {
   double low = 0, high = braking.ends_s.back();
   for (int i = 0; i < 40; ++i) {
@@ -35,10 +35,10 @@ double TimeAt(const Braking& braking, int direction, double from, double way) {
   return high;
 }
 
-// A step and the braking behind it.
+// A step and the braking after it.
 struct Stretch {
   trajectory::Piece piece;
-  double duration = 0;  // s
+  double duration = 0;  // [s]
 };
 struct Stretches {
   std::array<Stretch, 4> of;
@@ -50,7 +50,7 @@ struct Stretches {
   std::span<const Stretch> all() const { return {of.data(), count}; }
 };
 
-// What is the largest between two times of a piece. Where the acceleration passes 0 the speed may be larger than at
+// Returns the largest values between two times of a piece. Where the acceleration passes 0 the speed may exceed that at
 // both ends.
 Stress StressOf(const trajectory::Piece& piece, double from, double to) {
   Stress most{0, 0, std::abs(piece.jerk)};
@@ -63,7 +63,7 @@ Stress StressOf(const trajectory::Piece& piece, double from, double to) {
   return most;
 }
 
-// When a stretch that goes one way comes to a place on it.
+// Returns the time [s] at which a stretch without reversal reaches a position.
 template <typename Way>
 double TimeOn(const Stretch& stretch, const Way& way, double place) {
   double low = 0, high = stretch.duration;
@@ -112,7 +112,7 @@ bool KeepsToLimits(const Network& network, const Rider& r, const KinematicState&
   const std::int8_t direction = next.velocity < 0 || (next.velocity == 0 && next.acceleration < 0) ? -1 : 1;
   const double ahead = braking.highest - next.position, behind = next.position - braking.lowest;
   const double until = direction > 0 ? ahead : behind, beyond = direction > 0 ? behind : ahead;
-  // Where it goes back in the end it is slow: it must be slower than everywhere on the way.
+  // If it reverses at the end, it is slow then: that speed must keep all caps on the way back.
   const double back = -direction * Peak(next, jerk);
   if (back > 0) {
     const auto reverse = static_cast<std::int8_t>(-direction);
@@ -131,7 +131,7 @@ bool KeepsToLimits(const Network& network, const Rider& r, const KinematicState&
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < caps.count; ++k) least = std::min(least, caps.of[k].speed);
   if (fastest <= least * kMore) return true;
-  // The speed rises until the acceleration is taken away, and then falls.
+  // The speed rises until the acceleration is removed, and then falls.
   const double peak = std::max(0.0, direction * next.acceleration / jerk);
   double begin = 0;
   for (std::size_t k = 0; k < caps.count; ++k) {
@@ -160,7 +160,7 @@ bool KeepsToVectors(const Network& network, const Rider& r, const KinematicState
     tightest = {0, std::max(tightest.curvature, cap.curvature), std::max(tightest.rate, cap.rate)};
   }
   if (!(tightest.curvature > 0)) return true;
-  // This step, then the braking. Its jerk is the mean one, as its set points show it.
+  // This step, then the braking. The step's jerk is its mean, as the set points show it.
   Stretches all;
   all.Add({r.at.position, r.at.velocity, r.at.acceleration, (next.acceleration - r.at.acceleration) / period_s},
           period_s);
@@ -178,7 +178,7 @@ bool KeepsToVectors(const Network& network, const Rider& r, const KinematicState
       const double enters = caps.of[k].way, leaves = k + 1 < caps.count ? caps.of[k + 1].way : kInfinite;
       if (leaves < std::min(at, to) || enters > std::max(at, to)) continue;
       if (KeepsVectors(caps.of[k].bend(), whole, most)) continue;
-      // Where it turns round it may be in a bend more than once: all of it counts.
+      // If it reverses it may be in a bend more than once: the whole stretch counts.
       const bool one_way = stretch.piece.velocity * stretch.piece.At(stretch.duration).velocity >= 0 && at <= to;
       const double first = one_way ? TimeOn(stretch, way, enters) : 0;
       const double last = one_way ? TimeOn(stretch, way, leaves) : stretch.duration;
@@ -218,11 +218,11 @@ bool MayTake(const Network& network, const Rider& r, const Route& route) noexcep
 
 bool TakeMastersWay(const Network& network, const Rider& master, Rider& r) noexcept {
   if (network[r.route.first()].closed) return true;
-  // Where the tracks of both routes begin, as this mover counts.
+  // Starts of the tracks of both routes, as this mover counts positions.
   std::uint32_t from_own = 0, from_masters = 0;
   double own = r.origin, its = master.origin + r.gear.apart;
   while (its < own - kSamePlace) {
-    if (from_masters + 1 >= master.route.count) return true;  // it is ahead of all that the master is going to do
+    if (from_masters + 1 >= master.route.count) return true;  // it is ahead of the master's whole route
     its += network[master.route.tracks[from_masters++]].length;
   }
   while (own < its - kSamePlace) {

@@ -16,7 +16,7 @@ Verdict Collision(const ObjectInfo& object) noexcept {
   return object ? Verdict{ErrorId::kCollision, object} : Verdict{};
 }
 
-// It stands there, or on a track.
+// Reserves the area of a mover at rest, free or on a track.
 void PutIn(std::uint32_t mover, std::uint32_t group, GroupRegistry& g) noexcept {
   const MoverView& now = g.movers[mover];
   Reservations& r = ReservedBy(group, g);
@@ -25,13 +25,13 @@ void PutIn(std::uint32_t mover, std::uint32_t group, GroupRegistry& g) noexcept 
   if (now.on_track) Link(mover, g.NetworkOf(now.track), r);
 }
 
-// An environment has its number in the machine.
+// Replaces the number of an environment by its number in the machine.
 ObjectInfo Numbered(const ObjectInfo& object, std::uint32_t group, const GroupRegistry& g) noexcept {
   if (object.kind != ObjectKind::kEnvironment) return object;
   return {ObjectKind::kEnvironment, g.EnvironmentOf(group)};
 }
 
-// Of a mover that is settled.
+// Returns the object that a settled mover collides with.
 ObjectInfo AskStanding(std::uint32_t mover, std::uint32_t group, const GroupRegistry& g) noexcept {
   const Reservations& r = g.grounds[group - 1].reserved;
   const Reservation& own = r.movers[mover];
@@ -40,7 +40,7 @@ ObjectInfo AskStanding(std::uint32_t mover, std::uint32_t group, const GroupRegi
       g);
 }
 
-// Who of a group is brought to where this track is, and will not be linked with it.
+// Returns the mover of a group that its part brings to this track, without a link to it.
 ObjectInfo WhoComesTo(std::uint32_t track, std::uint32_t group, const GroupRegistry& g) noexcept {
   if (!g.areas[track]) return {};
   for (std::uint32_t i = 0; i < g.movers.size(); ++i) {
@@ -53,7 +53,8 @@ ObjectInfo WhoComesTo(std::uint32_t track, std::uint32_t group, const GroupRegis
   return {};
 }
 
-// The mover that this area would lie on, whether or not it has a group; none: there is room. `but`: not this one.
+// Returns the mover that this area would overlap, in a group or not; none: there is room. `but`: a mover that is
+// ignored.
 ObjectInfo MoverBelow(std::uint32_t but, std::uint32_t system, const Area& area, const GroupRegistry& g) noexcept {
   for (std::uint32_t i = 0; i < g.movers.size(); ++i) {
     const MoverView& now = g.movers[i];
@@ -210,7 +211,7 @@ Verdict AddMover(std::uint32_t mover, std::uint32_t group, GroupRegistry& g) noe
 Verdict AddTrack(std::uint32_t track, std::uint32_t group, GroupRegistry& g) noexcept {
   if (g.group_of_track[track] == group) return {};
   if (g.group_of_track[track] != 0) return {ErrorId::kOtherPlanarGroup, {}};
-  // While it stands it covers nothing.
+  // A track that is not Moving covers nothing.
   if (g.Watching(group) != 0 && g.moving[track]) return {ErrorId::kObjectMoves, ObjectAt(ObjectKind::kTrack, track)};
   g.group_of_track[track] = group;
   return {};

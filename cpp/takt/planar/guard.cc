@@ -6,9 +6,9 @@
 namespace takt::planar {
 namespace {
 
-constexpr double kSquare = 320;  // mm
+constexpr double kSquare = 320;  // [mm]
 
-// std::floor() is a call where the processor is any x86-64.
+// std::floor() is a library call on baseline x86-64.
 std::int32_t SquareOf(double at) noexcept {
   const double square = at / kSquare;
   const auto down = static_cast<std::int32_t>(square);

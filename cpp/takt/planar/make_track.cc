@@ -1,4 +1,4 @@
-// From what is given to a track: every element gets its begin and end, positions from their neighbours; then the gaps
+// Builds a track from its layout: each element gets its begin and end, positions from their neighbours; then the gaps
 // are filled.
 #include <algorithm>
 #include <cmath>
@@ -15,14 +15,14 @@
 namespace takt::planar {
 namespace {
 
-// An element as it stands in the plane.
+// An element in the plane.
 struct Standing {
-  path::Segment segment;  // not of a position
+  path::Segment segment;  // not for a position
   TrackPoint begin;
   TrackPoint end;
 };
 
-// mm: further away numbers no longer say where a place is.
+// [mm] Positions farther away are not exact enough.
 constexpr double kFarthest = 1e6;
 
 bool Sound(const Place& place) {
@@ -41,7 +41,7 @@ path::Point ToPoint(const Place& p) {
   return {kinematics::Frame(KDL::Vector(p.x, p.y, 0)), {}};
 }
 
-// 0 to 2 pi are the same.
+// Reduces an angle to [-pi, pi].
 double Plain(double angle) {
   return std::remainder(angle, 2 * std::numbers::pi);
 }
@@ -77,19 +77,19 @@ Problem Stand(const Element& element, Standing& out) {
   return Problem::kNone;
 }
 
-constexpr double kStep = 1;          // mm, in which bends are looked at ...
-constexpr double kMostSteps = 16;    // ... or so many in a cell, which turns little
-constexpr double kUneven = 1.2;      // within a bend curvature varies by this factor, which is 1.1 in speed
-constexpr double kUnevenRate = 1.4;  // its rate by this one, which is 1.12 in speed
-constexpr double kStraight = 1e-5;   // 1/mm: what bends less is straight
+constexpr double kStep = 1;          // [mm] sampling step of bends ...
+constexpr double kMostSteps = 16;    // ... or this many steps in a cell, which turns little
+constexpr double kUneven = 1.2;      // largest ratio of curvatures within a bend: 1.1 in speed
+constexpr double kUnevenRate = 1.4;  // largest ratio of their rates: 1.12 in speed
+constexpr double kStraight = 1e-5;   // [1/mm] anything below is straight
 // The rate is sampled three times in a step.
 constexpr double kRateMargin = 1.02;
 // A curvature below this share of the square root of its rate may vary, and a rate below this share of the square of
 // the curvature: the other one bounds the speed there.
 constexpr double kMinor = 0.1;
 
-// What the curvature between two places may come to: where it grows at the first and falls at the second, not more than
-// where the tangents meet.
+// Returns an estimate of the largest curvature between two points: if it grows at the first and falls at the second, at
+// most the intersection of the tangents.
 double MostBetween(const TrackPoint& a, const TrackPoint& b, double way) {
   const double from = std::abs(a.curvature), to = std::abs(b.curvature);
   const double grows = a.curvature < 0 ? -a.curvature_rate : a.curvature_rate;
@@ -99,7 +99,7 @@ double MostBetween(const TrackPoint& a, const TrackPoint& b, double way) {
   return std::max({from, to, from + grows * there});
 }
 
-// The least and the largest of what the steps of a bend have.
+// Range of a quantity over the steps of a bend.
 struct StepRange {
   double least = 0, most = 0;
 
@@ -135,7 +135,7 @@ std::vector<Bend> BendsOf(const Track& track) {
       double most = 0, rate = 0;
       if (!straight) {
         const double half = 0.5 * step;
-        // The first and the last place are ones of this cell, not of its neighbours: the rate may make a jump there.
+        // The first and the last point are of this cell, not of its neighbours: the rate may jump there.
         const TrackPoint begin = At(track, from + step * 1e-9), middle = At(track, from + half);
         const TrackPoint end = At(track, from + step * (1 - 1e-9));
         most = std::max(MostBetween(begin, middle, half), MostBetween(middle, end, half));
@@ -171,7 +171,7 @@ class LayoutBuilder {
   std::size_t count() const { return standing_.size(); }
   bool is_position(std::size_t i) const { return layout_.elements[i].shape == ElementShape::kPosition; }
 
-  // The neighbours of an element; null where the track ends. Of a loop the last one is before the first.
+  // The neighbours of an element; null at the ends of a track. In a loop the last element precedes the first.
   const TrackPoint* Before(std::size_t i) const {
     if (i > 0) return &standing_[i - 1].end;
     if (layout_.closed && count() > 1) return &standing_.back().end;
@@ -190,7 +190,7 @@ class LayoutBuilder {
     return {};
   }
 
-  // As a spline runs through them and the places before and behind.
+  // Positions get the direction and curvature of a spline through them and the neighbouring points.
   Making DirectPositions() {
     std::size_t positions = 0;
     for (std::size_t i = 0; i < count(); ++i) positions += is_position(i) ? 1 : 0;
@@ -203,7 +203,7 @@ class LayoutBuilder {
     return {};
   }
 
-  // Positions that follow one another, from the first of them on.
+  // Consecutive positions, starting with `first`.
   Problem DirectFrom(std::size_t first) {
     std::vector<path::Point> points;
     path::SplineOptions options;
@@ -223,10 +223,10 @@ class LayoutBuilder {
     return DirectBySpline(points, options, before ? 1 : 0, first, run);
   }
 
-  // A loop of nothing else: several times round, of which one in the middle counts.
+  // A loop of positions only: a spline of several rounds, of which the middle one counts.
   Making DirectLoop() {
     if (count() < 2) return {Problem::kEmpty, 0};
-    constexpr std::size_t kEnough = 24;  // so far away nobody knows that the spline has ends
+    constexpr std::size_t kEnough = 24;  // positions from its ends on, at which a spline is independent of them
     const std::size_t rounds = (kEnough + count() - 1) / count();
     std::vector<path::Point> points;
     for (std::size_t i = 0; i <= (2 * rounds + 1) * count(); ++i) {
@@ -235,7 +235,7 @@ class LayoutBuilder {
     return {DirectBySpline(points, {}, rounds * count(), 0, count()), 0};
   }
 
-  // The spline's points from `offset` on are the positions from `first` on.
+  // The points of the spline from `offset` on are the positions from `first` on.
   Problem DirectBySpline(const std::vector<path::Point>& points, const path::SplineOptions& options, std::size_t offset,
                          std::size_t first, std::size_t run) {
     std::vector<path::Segment> spline;

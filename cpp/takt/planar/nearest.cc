@@ -10,9 +10,9 @@
 namespace takt::planar {
 namespace {
 
-// mm: nearer by less is as near.
+// [mm] Distances that differ by less are equal.
 constexpr double kAsNear = 1e-9;
-// mm along the track.
+// [mm] along the track.
 constexpr double kSameValley = 0.1;
 
 double DistanceToLine(const Flat& begin, const Flat& end, const Flat& point) {
@@ -22,7 +22,7 @@ double DistanceToLine(const Flat& begin, const Flat& end, const Flat& point) {
   return (begin + share * way - point).norm();
 }
 
-// The best so far.
+// The search, with the best point so far.
 class NearestSearch {
  public:
   NearestSearch(const Track& track, const Flat& point, double bound) : track_(track), point_(point), bound_(bound) {}
@@ -48,7 +48,7 @@ class NearestSearch {
   static constexpr int kHalvings = 10;
   static constexpr int kMostSteps = 60;
 
-  // What changes its sign where the distance has an extreme; and its derivative.
+  // Half the derivative of the squared distance with respect to the parameter, and its derivative.
   struct Slope {
     Bent at;
     double value = 0;
@@ -62,7 +62,7 @@ class NearestSearch {
     return out;
   }
 
-  // What is a little nearer only counts if it belongs to the same valley: else the first one does.
+  // A slightly nearer point counts only within the same minimum; else the first minimum is kept.
   void Take(double s, const Flat& place) {
     const double distance = (place - point_).norm();
     const double margin = s - best_.s < kSameValley ? 0 : kAsNear;
@@ -94,14 +94,15 @@ class NearestSearch {
     Take(s, path::PlaceAt(segment, s - start).value.head<2>());
   }
 
-  // Halves until there can be but one extreme.
+  // Bisects until there is at most one extremum.
   void Between(const path::VectorPolynomial& place, double u0, const Slope& begin, double u1, const Slope& end,
                int halvings) {
     if (begin.value >= 0) At(place, u0);
     if (end.value <= 0) At(place, u1);
     const double half = (u1 - u0) / 2;
     const Slope middle = Off(place, u0 + half);
-    // No place is further from the middle than this, nor is the derivative more different.
+    // No point is farther from the middle than `reach`; `change` is assumed to stay near its values at the three
+    // points.
     const double speed = std::max({begin.at.first.norm(), middle.at.first.norm(), end.at.first.norm()});
     const double reach = 1.2 * speed * half;
     const double distance = (middle.at.value - point_).norm();
@@ -116,7 +117,7 @@ class NearestSearch {
     Between(place, u0 + half, middle, u1, end, halvings - 1);
   }
 
-  // Newton's steps within bounds.
+  // Newton's method within bounds.
   void Solve(const path::VectorPolynomial& place, double low, double high, double u) {
     for (int i = 0; i < kMostSteps; ++i) {
       const Slope p = Off(place, u);

@@ -11,21 +11,21 @@
 namespace takt::planar {
 namespace {
 
-constexpr double kStride = 0.5 * kRangeSlack;  // mm
+constexpr double kStride = 0.5 * kRangeSlack;  // [mm]
 constexpr double kUnreached = std::numeric_limits<double>::infinity();
 
 void Name(std::uint32_t Road::*of, std::uint32_t track, std::uint32_t node, Network& network) noexcept {
   Road& road = network.roads[track];
   if (road.*of == node) return;
   road.*of = node;
-  // Everything that meets there gets the same name.
+  // All ends that meet there get the same number.
   const bool end = of == &Road::end_node;
   for (const std::uint32_t other : (end ? road.behind : road.before).all()) {
     Name(end ? &Road::start_node : &Road::end_node, other, node, network);
   }
 }
 
-// Those that start, or end, where this track does, itself among them.
+// Returns the tracks that start, or end, where this track does, including itself.
 std::span<const std::uint32_t> Alike(const Network& network, std::uint32_t track, bool at_end) noexcept {
   const Road& road = network[track];
   const Links& others = at_end ? road.behind : road.before;
@@ -42,11 +42,11 @@ double Lead(const Network& network, std::uint32_t ahead, std::uint32_t behind, b
   return (at_end ? road.leads_at_end : road.leads_at_start)[static_cast<std::size_t>(found - alike.begin())];
 }
 
-// Places within the range of a track; each stands for those up to half a stride around it.
+// Samples of a track within its range; each represents positions up to half a stride from it.
 struct Strip {
   std::array<Place, 1024> places;
   std::size_t count = 0;
-  double stride = 0;  // mm
+  double stride = 0;  // [mm]
 
   Strip(const Road& road, bool at_end) noexcept {
     const double range = std::min(road.length, at_end ? road.range_at_end : road.range_at_start);
@@ -61,7 +61,8 @@ struct Strip {
   }
 };
 
-// Of all places on both tracks where movers touch: how much further from where the tracks meet that on `far` is.
+// Returns the largest difference [mm], over all positions on both tracks at which movers touch, of the distances from
+// the common point: that on `far` minus that on `near`.
 double MostApart(const Road& near, const Road& far, bool at_end) noexcept {
   const Strip ours(near, at_end), theirs(far, at_end);
   const double slack = 0.5 * (ours.stride + theirs.stride);
@@ -69,7 +70,7 @@ double MostApart(const Road& near, const Road& far, bool at_end) noexcept {
   double most = 0;
   for (std::size_t i = 0; i < ours.count; ++i) {
     const double s = ours.stride * static_cast<double>(i) - slack;
-    // From far away inwards: movers that are apart are so up to there.
+    // From the far end inwards: movers that are apart stay so while one of them moves by less than that.
     for (std::size_t k = theirs.count; k-- > 0;) {
       const double t = theirs.stride * static_cast<double>(k);
       if (t - s <= most) break;
@@ -115,8 +116,8 @@ void SetRanges(std::uint32_t track, Network& network) noexcept {
   Road& road = network.roads[track];
   road.range_at_start = road.range_at_end = 0;
   if (!road.track) return;
-  // From the end on, as long as there is anything near. Between two places looked at it is no nearer than at these,
-  // less the way there.
+  // From the end on, as long as anything is near. Between two samples the distance is at least that at the samples,
+  // less the distance to them.
   const auto range = [&](const Road& of, bool at_end) {
     const Track& other = *of.track;
     const double reach = 0.5 * (road.reach + of.reach);
@@ -131,7 +132,7 @@ void SetRanges(std::uint32_t track, Network& network) noexcept {
       } else if (s > near + 5 * reach) {
         break;
       } else {
-        s += kStride * std::floor(free / kStride);  // as far as it cannot get near
+        s += kStride * std::floor(free / kStride);  // skips positions that cannot be near
       }
     }
     return near;
@@ -157,7 +158,7 @@ void SetLeads(std::uint32_t track, Network& network) noexcept {
     for (std::size_t i = 0; i < alike.size(); ++i) {
       const Road& other = network[alike[i]];
       if (alike[i] == track || !road.track || !other.track) continue;
-      // On the way to where they end the one ahead is the nearer one.
+      // Towards a common end the mover ahead is the one nearer to it.
       leads[i] = at_end ? MostApart(road, other, true) : MostApart(other, road, false);
     }
   }

@@ -6,16 +6,16 @@
 namespace takt::planar {
 namespace {
 
-// How far two stretches of a line have each other in common.
+// Returns the length of the overlap of two intervals; < 0: the distance between them.
 double Common(double from_a, double to_a, double from_b, double to_b) noexcept {
   return std::min(to_a, to_b) - std::max(from_a, from_b);
 }
 
-// A side as a stretch of the line it lies on.
+// A side as an interval on an axis-parallel line.
 struct Edge {
   bool along_x = false;
-  double line = 0;  // the coordinate that does not change
-  double from = 0;  // the other, upwards
+  double line = 0;  // the constant coordinate
+  double from = 0;  // the other coordinate, ascending
   double to = 0;
 };
 
@@ -26,7 +26,7 @@ Edge EdgeOf(const Side& s) noexcept {
   return {along_x, along_x ? s.from.y : s.from.x, std::min(from, to), std::max(from, to)};
 }
 
-// Calls this for all sides of a part where it is.
+// Calls `what` for all sides of a part at this origin.
 void AllSides(const Part& part, const Place& origin, const auto& what) noexcept {
   for (const Outline& outline : part.shape.outlines) {
     const Place* from = &outline.corners.back();
@@ -60,7 +60,7 @@ bool IsThere(const Parts& parts, std::uint32_t part, std::uint32_t system) noexc
   return !parts.now[part].away && parts.spot(part).system == system;
 }
 
-// What is left of a side of one part where others are beside it.
+// Appends the stretches of a side that have no other part beside them.
 void KeepFree(const Parts& parts, std::uint32_t part, std::uint32_t system, const Side& side,
               std::vector<Side>& out) noexcept {
   const Edge own = EdgeOf(side);
@@ -74,7 +74,7 @@ void KeepFree(const Parts& parts, std::uint32_t part, std::uint32_t system, cons
   const Extent stretch = ExtentOf(side);
   double at = own.from;
   while (at < own.to - kSame) {
-    double from = own.to, to = own.to;  // the next stretch beside another part
+    double from = own.to, to = own.to;  // next stretch beside another part
     for (std::uint32_t k = 0; k < parts.all.size(); ++k) {
       if (k == part || !IsThere(parts, k, system)) continue;
       if (Apart(stretch, Shifted(parts.all[k].extent, parts.spot(k).origin), kSame)) continue;
@@ -91,7 +91,7 @@ void KeepFree(const Parts& parts, std::uint32_t part, std::uint32_t system, cons
   }
 }
 
-// On the surface or on its border. Outlines have few sides where stators are many.
+// Returns true if a point is on the surface or on its border. Outlines have fewer sides than there are stators.
 bool InStators(const Part& part, const Place& place) noexcept {
   bool inside = false, on_border = false;
   AllSides(part, {}, [&](const Side& side) {
@@ -112,7 +112,7 @@ Parts::Parts(std::vector<std::string> system_names, std::vector<Part> of_parts, 
     for (const Outline& outline : part.shape.outlines) sides += outline.corners.size();
   }
   fixed = fixed && systems.size() <= 1;
-  // Of the sides on one line those of one direction do not overlap, so no more than this many pieces are left.
+  // Sides of the same direction on one line do not overlap, so at most this many pieces remain.
   for (std::vector<Side>& border : borders) border.reserve(3 * sides);
   MakeBorders(*this);
 }

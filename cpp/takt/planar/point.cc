@@ -10,8 +10,8 @@
 namespace takt::planar {
 namespace {
 
-constexpr double kSameDirection = 1e-9;          // rad
-constexpr double kSameCurvature = 1e-9;          // 1/mm
+constexpr double kSameDirection = 1e-9;          // [rad]
+constexpr double kSameCurvature = 1e-9;          // [1/mm]
 constexpr double kSameCurvatureRelative = 1e-7;  // of the larger one
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace takt::planar {
 namespace {
 
-// Two that touch are too near.
+// Contact counts as too near.
 constexpr double kClearance = kSame;
 
 Area AreaOf(const Reservation& mover, const Move& move) noexcept {
@@ -29,8 +29,9 @@ Area AreaOf(const Reservation& mover, const Move& move) noexcept {
   return area;
 }
 
-// Whether a mover that came from one place to another has got onto the straight way to its target, and goes along it.
-// Sent back the way it came, it is on it all the time, but goes the other way at first.
+// Returns true if a mover that moved from `before` to `now` has reached the line from `over` to its target and moves
+// towards the target. A mover sent back the way it came is on that line all the time, but moves away from the target at
+// first.
 bool HasTurned(const Flat& before, const Flat& now, const Place& over, const Place& target) {
   const Flat line = ToFlat(target) - ToFlat(over), off = now - ToFlat(over);
   if ((now - before).dot(line) <= 0) return false;
@@ -47,13 +48,13 @@ bool Meets(const Area& area, const Extent& extent, const Reservation& own, const
   return !Apart(extent, other.extent, kClearance) && Near(area, AreaOf(other), kClearance);
 }
 
-// However they are turned.
+// Returns true if they overlap whatever their angles are.
 bool LieOnEachOther(const Reservation& one, const Reservation& other) noexcept {
   const double inner = std::min(one.mover.width, one.mover.height) + std::min(other.mover.width, other.mover.height);
   return (ToFlat(one.pose.place) - ToFlat(other.pose.place)).norm() < 0.5 * inner;
 }
 
-// The stretches hang together.
+// The stretches are connected: with no border crossed, one of them decides for all.
 bool Carries(const Environment& environment, const TrackArea& track, const Place& origin) noexcept {
   for (std::size_t i = 0; i < track.stretches.size(); ++i) {
     if (Crosses(environment, Shifted(track.stretches[i], origin), Shifted(track.extents[i], origin))) return false;
@@ -71,7 +72,7 @@ const TrackArea* Moving(std::size_t track, std::uint32_t level, const StaticObst
   return counts ? around.tracks[track] : nullptr;
 }
 
-// An area in the coordinate system of a track.
+// Transforms an area into the coordinates of a track.
 bool Near(const Area& area, const Extent& extent, std::size_t track, const StaticObstacles& around) noexcept {
   const Place by = Place{} - SpotOf(track, around).origin;
   return planar::Near(Shifted(area, by), Shifted(extent, by), *around.tracks[track], kClearance);

@@ -11,7 +11,7 @@ trajectory::Limits LimitsNow(const Rider& r) noexcept {
   trajectory::Limits limits = r.pace.limits;
   const double speed = r.at.velocity + r.at.acceleration * std::abs(r.at.acceleration) / (2 * limits.jerk);
   const bool too_fast = std::abs(speed) > std::max(limits.velocity, std::abs(r.at.velocity)) * (1 + 1e-9);
-  // Only one that goes along with a master turns round on the way, and with no more than it may speed up with.
+  // Only a mover that follows a master reverses without a stop, with at most its limit of acceleration.
   const bool turns = speed * r.at.velocity < 0 && std::abs(speed) > 1e-6;
   const bool may_turn = r.aim == Aim::kFollow && std::abs(r.at.acceleration) <= limits.acceleration;
   if (too_fast || (turns && !may_turn)) limits.jerk = std::max(limits.jerk, r.brakes.jerk);

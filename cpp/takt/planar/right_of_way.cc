@@ -3,27 +3,26 @@
 namespace takt::planar {
 namespace {
 
-// mm: rounding. What is nearer than the gap by less than this is not.
-// mm: as exactly as a place is found that is to be just at the gap.
+// [mm] accuracy of a position that is to be exactly at the gap.
 constexpr double kJustThere = 1e-6;
-// Passages through nodes near which a mover can be at once, at those of its route, where it begins, those it has
-// passed, and beyond; when a cycle begins, and as it goes on.
+// Largest number of passages near which a mover can be in one cycle: at the nodes of its route, its start, the tracks
+// passed, and beyond; at the beginning of the cycle and after its step.
 constexpr std::size_t kPresences = 2 * (kRouteTracks + 1 + kPassed + 2 * kBeyond);
 
-// It goes back before it rests.
+// Returns true if the mover reverses before it rests.
 bool TurnsRound(const Braking& b) {
   const double start = b.pieces[0].position;
   const bool up = b.lowest == start && b.highest == b.rest, down = b.highest == start && b.lowest == b.rest;
   return b.lowest < b.highest && !up && !down;
 }
 
-// How far apart two have to stay: what is less already must not get less.
+// Returns the distance to keep: if it is less already, it must not decrease.
 double Required(double gap, double apart_now) {
   return std::min(gap - kTolerance, apart_now);
 }
 
 bool Holds(const Braking& of_behind, const Braking& of_ahead, double apart, double required) {
-  // Mostly there is room enough.
+  // In most cases the extremes suffice.
   if (of_ahead.lowest + apart - of_behind.highest >= required) return true;
   return LeastDistance(of_behind, of_ahead, apart) >= required;
 }
@@ -81,7 +80,7 @@ void RightOfWay::Sort() noexcept {
     if (r.on) ++s_.begins[r.route.first() + 1];
   }
   for (std::size_t i = 1; i < s_.begins.size(); ++i) s_.begins[i] += s_.begins[i - 1];
-  // Filled from their begins on, which are put back behind that.
+  // Filling advances the begins, which are restored afterwards.
   for (std::uint32_t i = 0; i < riders_.size(); ++i) {
     if (riders_[i].on) s_.order[s_.begins[riders_[i].route.first()]++] = i;
   }
@@ -141,7 +140,7 @@ bool RightOfWay::Keeps(const Braking& own, const Meeting& m, double required) co
   return m.ahead ? HoldsAhead(own, m.other, m.apart, required) : HoldsBehind(m.other, own, -m.apart, required);
 }
 
-// Whoever may be active with somebody.
+// Enters a mover at all nodes where it may be active together with another one.
 void RightOfWay::EnterNodes(std::uint32_t i, const KinematicState& next, const Braking& braking) noexcept {
   const Rider& r = riders_[i];
   const double zone = std::max(r.zone, r.gap), off = r.off + s_.off;
@@ -174,7 +173,7 @@ double RightOfWay::GapTo(std::uint32_t i, std::uint32_t leader, int direction) c
 bool RightOfWay::MayTake(std::uint32_t i, const KinematicState& next, const Braking& braking) const noexcept {
   const Rider& r = riders_[i];
   const Now& now = s_.now[i];
-  // Who turns round goes both ways.
+  // A mover that reverses moves both ways.
   const bool turns = TurnsRound(braking) || TurnsRound(now.braking);
   const bool forward = turns || braking.highest > now.braking.highest || next.position > now.next.position;
   const bool back = turns || braking.lowest < now.braking.lowest || next.position < now.next.position;
@@ -227,7 +226,7 @@ bool RightOfWay::MayTake(std::uint32_t i, const KinematicState& next, const Brak
       return (anew || (m.ahead ? forward : back)) && IsActive(m);
     };
     MeetAt(i, p, counts, [&](const Meeting& m) {
-      // Two that were not active have kept away by other means, and have to have all of it now.
+      // Movers that were not active were kept apart by other means, and need the full distance from now on.
       double required = anew ? m.gap - kTolerance : Required(m.gap, std::abs(m.place));
       const double furthest = m.ahead ? braking.highest : s_.now[m.other].braking.highest + m.apart;
       if (furthest > p.offset + kTolerance) required = std::max(required, m.split - kTolerance);
@@ -258,7 +257,7 @@ std::uint32_t RightOfWay::TooNear(std::uint32_t i) const noexcept {
   const Rider& r = riders_[i];
   const Now& now = s_.now[i];
   std::uint32_t who = kNobody;
-  // Places of the other count `apart` more here.
+  // `apart`: own position minus the other's of the same point.
   const auto look = [&](std::uint32_t other, double apart, bool ahead, double gap) {
     const Braking& own = now.braking;
     const double required = gap - kJustThere;

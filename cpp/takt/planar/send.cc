@@ -11,7 +11,7 @@ double OnLoop(const Destination& to, const Rider& r, double rest, double length)
   const double now = r.at.position;
   double target = OnLoop(to.way, to.position, to.modulo_tolerance, now, length);
   if (to.way == Way::kNonModulo || to.way == Way::kShortestWay) return target;
-  // Near enough to go the shortest way, unless there are turns to make.
+  // Near enough for the shortest way, unless there are turns to make.
   if (to.additional_turns == 0 && std::abs(target - now) <= std::max(to.modulo_tolerance, kSame)) return target;
   const double sense = to.way == Way::kPositive ? 1 : -1;
   target += sense * length * to.additional_turns;
@@ -43,7 +43,7 @@ bool Send(const Network& network, RouteSearch& search, const Destination& to, Ri
     route.count = 1;
     target = OnLoop(to, r, rest, here.length);
   } else {
-    // Tracks that it gets onto whatever happens stay.
+    // Tracks that it cannot avoid any more stay.
     std::uint32_t kept = 1;
     double end = here.length;
     while (kept < route.count && end <= rest) end += network[route.tracks[kept++]].length;
@@ -96,7 +96,7 @@ void PlanOn(trajectory::Planner& planner, const Network& network, double place, 
   const Planned made = PlanWay(planner, network, start, way, r.pace, MostOf(r), r.plan, r.plan_ends);
   r.plan_from = place;
   r.plan_time = 0;
-  // A geared mover that only brakes for a curve looks again in each cycle.
+  // A geared mover that only brakes for a curve plans anew in each cycle.
   r.planned = made == Planned::kWay || (made == Planned::kStop && r.aim != Aim::kFollow);
 }
 

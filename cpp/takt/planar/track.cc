@@ -24,7 +24,7 @@ TrackPoint OnGiven(const Piece& piece, double s) {
   const path::Segment& segment = piece.segment;
   const Place place = ToPlace(path::PlaceAt(segment, s).value.head<2>());
   if (segment.shape == path::Shape::kLine) return {place, piece.direction, 0, 0};
-  // Counterclockwise if a quarter turn on from the radius is to its left.
+  // Counterclockwise if the tangent is to the left of the radius.
   const bool left = Cross(ToFlat(segment.place[1]), ToFlat(segment.place[2])) > 0;
   const double curvature = left ? segment.rate : -segment.rate;
   return {place, piece.direction + curvature * s, curvature, 0};
@@ -32,7 +32,7 @@ TrackPoint OnGiven(const Piece& piece, double s) {
 
 struct OnPiece {
   const Piece& piece;
-  double s;  // mm from its beginning
+  double s;  // [mm] from the start of the piece
 };
 
 OnPiece PieceAt(const Track& track, double s) {
@@ -60,7 +60,7 @@ double Within(const Track& track, double s) noexcept {
   if (!track.closed) return s > 0 ? track.length : 0;
   s = std::fmod(s, track.length);
   if (s < 0) s += track.length;
-  return s >= 0 ? s : 0;  // of what is no number
+  return s >= 0 ? s : 0;  // NaN becomes 0
 }
 
 TrackPoint At(const Track& track, double s) noexcept {

@@ -9,7 +9,7 @@
 namespace takt::planar {
 namespace {
 
-// The mover drawn out along its direction in the middle, and around it how far it strays from that.
+// The mover extended along its direction in the middle of the stretch, with its deviation from that as the margin.
 Area Stretch(const Track& track, const Footprint& mover, const Cell& cell, double from, double to) {
   const double half = (to - from) / 2;
   const TrackPoint middle = At(track, from + half);

@@ -12,28 +12,28 @@
 namespace takt::planar {
 namespace {
 
-// Cycles in which a mover that had to brake against its wish speeds up no more than it did: it would soon have to
-// again.
+// Cycles in which the acceleration of a mover does not grow after it had to brake against its wish: it would soon have
+// to brake again.
 constexpr std::uint32_t kCalmCycles = 20;
-// Shares of a change in what following asks for that count in one cycle.
+// Share per cycle with which the smoothed acceleration of following rises and falls towards its target.
 constexpr double kEaseUp = 0.15;
 constexpr double kEaseDown = 0.7;
-// Standing is slower than this, mm/s, and nearer than this to where it has to stop, mm.
+// A mover is stationary below this speed [mm/s], and at its limit within this distance [mm].
 constexpr double kStands = 0.1;
 constexpr double kAtLimit = 0.01;
-// A geared mover is in step where it is so near to where it should be, mm, and as fast, mm/s.
+// A geared mover is in step within this error [mm] and this difference of speeds [mm/s].
 constexpr double kInStep = 1e-6;
 constexpr double kInStepSpeed = 1e-3;
-// mm: further than anything is planned on a loop.
+// [mm] farther than any plan on a loop.
 constexpr double kFarAhead = 1e5;
 
-// Returns whether two movers on tracks keep apart while both brake because one is behind the other along the track.
+// Returns true if two movers on tracks stay apart while both brake because one is behind the other along the track.
 bool KeepInOrder(const Scene& scene, const Network& network, std::uint32_t i, const BrakingMover& own, std::uint32_t k,
                  const BrakingMover& its) {
   const auto in_order = [&](const BrakingMover& behind, const BrakingMover& ahead, double apart) {
     return ApartByOrder(network, behind.rider, behind.braking, behind.kind, ahead.braking, ahead.kind, apart);
   };
-  // `ahead` is the next one in the direction of `of`.
+  // `ahead` is the next mover in the direction of `of`.
   const auto follows = [&](const Now& now, const BrakingMover& of, const BrakingMover& ahead) {
     const double apart = now.leader_offset;
     return of.rider.direction > 0 ? in_order(of, ahead, apart) : in_order(ahead, of, -apart);
@@ -60,7 +60,7 @@ class Traffic::Step_ {
   void Run() {
     t_.refused_ = 0;
     for (Rider& r : riders_) {
-      // A master may turn round on the way.
+      // With its master a mover may reverse while moving.
       if (r.on && r.aim != Aim::kTarget && r.at.velocity != 0) r.direction = r.at.velocity < 0 ? -1 : 1;
     }
     w_.Begin();
@@ -68,7 +68,7 @@ class Traffic::Step_ {
       Rider& r = riders_[i];
       if (r.on && (r.gap < r.zone || (r.gap > r.zone && w_.MayWiden(i, r.gap)))) r.zone = r.gap;
     }
-    // Those in front first: who follows sees what the one before it does in this cycle.
+    // Leaders first: a follower uses the step that its leader takes in this cycle.
     for (std::uint32_t i = 0; i < riders_.size(); ++i) SettleInOrder(i);
     for (std::uint32_t i = 0; i < riders_.size(); ++i) {
       if (riders_[i].on && riders_[i].aim == Aim::kFollow) NoteStep(i);
@@ -99,14 +99,15 @@ class Traffic::Step_ {
     }
   }
 
-  // The master that has to be settled before this one. One that has this one before it has to see what that does.
+  // Returns the master that has to be settled before this mover; none if this mover is the master's leader, whose step
+  // the master has to know.
   std::uint32_t MasterBefore(std::uint32_t i) const {
     const Rider& r = riders_[i];
     if (r.aim != Aim::kFollow || r.gear.master == kNobody) return kNobody;
     return s_.now[r.gear.master].leader == i ? kNobody : r.gear.master;
   }
 
-  // Where a master will be at the end of the cycle, as far as is known, over all tracks.
+  // Returns the predicted state of a master at the end of the cycle, over all tracks.
   KinematicState Foresee(std::uint32_t master) const {
     const Rider& m = riders_[master];
     KinematicState at = s_.now[master].next;
@@ -123,7 +124,7 @@ class Traffic::Step_ {
     return at;
   }
 
-  // Where it is to be at the end of the cycle, on its first track.
+  // Returns its demanded state at the end of the cycle, on its first track.
   KinematicState DemandOn(Rider& r) const {
     if (r.gear.master != kNobody) r.demand = Foresee(r.gear.master);
     KinematicState demand = r.demand;
@@ -131,19 +132,19 @@ class Traffic::Step_ {
     return demand;
   }
 
-  // Of its route in its direction, on the last track.
+  // Returns the end of its route in its direction, as a position on the last track [mm].
   double EndOf(const Rider& r) const {
     double end = network_[r.route.last()].length;
     for (const std::uint32_t track : r.route.all()) end -= r.direction < 0 ? network_[track].length : 0;
     return end;
   }
 
-  // What a geared mover wishes to do; where its way ends it goes to that end instead.
+  // Returns the wish of a geared mover; if its route ends it moves to that end instead.
   KinematicState WishAlong(Rider& r, const KinematicState& demand, bool& exact) {
     KinematicState wish = GoAlong(planner_, r, demand, period(), exact);
     const bool ahead = r.direction * wish.velocity > 0 && r.direction * r.at.velocity >= 0;
     if (!exact && ahead && CurvesAhead(network_, r)) {
-      // No faster than to the end of its way.
+      // Bounded by the motion to the end of its route.
       r.target = network_[r.route.last()].closed ? r.at.position + r.direction * kFarAhead : EndOf(r);
       const KinematicState alone = Wish(r);
       if (r.direction * (wish.velocity - alone.velocity) > 0) return alone;
@@ -152,7 +153,7 @@ class Traffic::Step_ {
     const int out = RunsOut(network_, r, wish);
     if (out == 0) return wish;
     exact = false;
-    // As long as its place is on its way, it lets that come.
+    // While its demand is on its route, it waits for it.
     if (demand.position >= -kTolerance && RunsOut(network_, r, demand) == 0) {
       return Brake(r.at, RunsOut(network_, r, r.at) == 0 ? r.pace.brakes() : r.brakes).At(period());
     }
@@ -167,26 +168,26 @@ class Traffic::Step_ {
     return Wish(r);
   }
 
-  // Its master's place is where it may not go: that has to come.
+  // Returns true if it is at rest and waits for its master to reach a position that it may take.
   static bool AwaitsMaster(const Rider& r, const KinematicState& demand) {
     const bool may = r.gear.was_in_step || r.gear.sense * (demand.position - r.at.position) >= -kTolerance;
     return Rests(r.at) && !may;
   }
 
-  // It gets into step from behind and may not come back, so it must not pass its master's place.
+  // Returns true if it approaches the master's position from behind; it may not move back, so it must not pass.
   bool ComesFromBehind(const Rider& r, const KinematicState& demand) const {
     return !r.gear.was_in_step && r.gear.sense == r.direction && RoomTo(r, demand) > 0;
   }
   double RoomTo(const Rider& r, const KinematicState& demand) const {
     return r.direction * (demand.position - period() * demand.velocity - r.at.position);
   }
-  // It would pass it if both braked from here on as this one can.
+  // Returns true if it would pass that position if both braked from here with its commanded dynamics.
   static bool Passes(const Rider& r, const KinematicState& next, const KinematicState& demand) {
     const Braking own = Brake(next, r.pace.brakes()), its = Brake(demand, r.pace.brakes());
     return r.direction > 0 ? LeastDistance(own, its, 0) < -kTolerance : LeastDistance(its, own, 0) < -kTolerance;
   }
 
-  // How far from its master's place it is at the end of the cycle.
+  // Updates its error at the end of the cycle, and whether it is in step.
   void NoteStep(std::uint32_t i) {
     Rider& r = riders_[i];
     const KinematicState demand = DemandOn(r);
@@ -201,7 +202,7 @@ class Traffic::Step_ {
     PlanOn(planner_, network_, place, speed, acceleration, r);
   }
 
-  // Where its own plan has it at the end of the cycle.
+  // Returns its state at the end of the cycle by its own plan.
   KinematicState Wish(Rider& r) {
     if (!r.planned) Plan(r, r.at.position, r.direction * r.at.velocity, r.direction * r.at.acceleration);
     double time = r.plan_time + period();
@@ -215,22 +216,23 @@ class Traffic::Step_ {
     return {r.plan_from + r.direction * way.position, r.direction * way.velocity, r.direction * way.acceleration};
   }
 
-  // Whether this braking reverses the motion before it rests.
+  // Returns true if this braking reverses the motion before it rests.
   static bool Reverses(const KinematicState& from, const Braking& braking) {
     return (from.velocity > 0 ? braking.highest - braking.rest : braking.rest - braking.lowest) > kTolerance;
   }
 
-  // With the largest share of its brakes that keeps the vectors within their maxima in the bends on its way to rest.
+  // Takes a step with the largest share of its dynamics for braking that keeps the vectors within their maxima in the
+  // bends ahead. Returns false if the step is not admissible.
   bool TryToTake(std::uint32_t i, const KinematicState& next) {
     held_by_guard_ = false;
     const Rider& r = riders_[i];
-    const bool on_plan = r.aim == Aim::kTarget && r.planned && r.plan_ends;  // which rests at the target without that
+    const bool on_plan = r.aim == Aim::kTarget && r.planned && r.plan_ends;  // rests at the target without that braking
     for (std::size_t share = 0; share < kShares.size(); ++share) {
       const Brakes brakes = WithShare(r.brakes, r.pace, share);
       const Braking braking = Brake(next, brakes);
       if (share > 0 && !on_plan && Reverses(next, braking)) return false;
       if (!KeepsToVectors(network_, r, next, braking, period())) continue;
-      // A smaller share would only make it come to rest later.
+      // A smaller share would only make it rest later.
       if (!KeepsToLimits(network_, r, next, braking, brakes.jerk) || !w_.MayTake(i, next, braking)) return false;
       held_by_guard_ = guard_ != nullptr && !PassesGuard(i, next, braking);
       if (held_by_guard_) return false;
@@ -246,7 +248,7 @@ class Traffic::Step_ {
     return false;
   }
   bool Take(std::uint32_t i, const KinematicState& next) { return TryToTake(i, next) || Refuse(i); }
-  // The first of these steps, one for each share of its dynamics, that it may take; in bends a smaller share may do.
+  // Takes the first admissible step of those for each share of its dynamics; in bends a smaller share may suffice.
   template <typename StepWithShare>
   bool TakeWithShare(std::uint32_t i, const StepWithShare& step) {
     const std::size_t shares = std::isfinite(riders_[i].pace.vector_jerk) ? kShares.size() : 1;
@@ -258,7 +260,7 @@ class Traffic::Step_ {
   }
 
   const Area& KindOf(std::uint32_t i) const { return guard_->figure(i).kind; }
-  // What it covers on its way between two positions.
+  // Returns the course between two positions on its route.
   Course CourseOf(std::uint32_t i, double from, double to) const {
     return CourseOn(network_, riders_[i], from, to, KindOf(i));
   }
@@ -266,7 +268,7 @@ class Traffic::Step_ {
 
   bool IsOnTrack(std::uint32_t k) const { return riders_[k].on && guard_->figure(k).on_track; }
 
-  // Whether the guard lets it take this step; then its course is that.
+  // Returns true if the guard admits this step; then it becomes the mover's course.
   bool PassesGuard(std::uint32_t i, const KinematicState& next, const Braking& braking) {
     const Course course = CourseOf(i, std::min({riders_[i].at.position, next.position, braking.lowest}),
                                    std::max({riders_[i].at.position, next.position, braking.highest}));
@@ -289,7 +291,7 @@ class Traffic::Step_ {
     return false;
   }
 
-  // The mover across its way, as far as it has to see ahead to go on at its pace; kNobody: it is clear.
+  // Returns the mover across its path within the distance that it needs to keep its pace; kNobody: the path is clear.
   std::uint32_t Across(std::uint32_t i) {
     const Rider& r = riders_[i];
     double ahead = WayToRest(r.pace.limits.velocity, r.pace.brakes());
@@ -300,7 +302,7 @@ class Traffic::Step_ {
         [&](std::uint32_t k, bool brought) { return !brought && IsInOrder(i, k); }, Guard::None);
   }
 
-  // It brakes for a mover across its way, or waits for it.
+  // Returns true if it brakes for a mover across its path, or waits for it.
   bool Holds(std::uint32_t i) {
     Rider& r = riders_[i];
     if (guard_ == nullptr || r.held_by == kNobody) return false;
@@ -312,7 +314,7 @@ class Traffic::Step_ {
   }
 
   void WaitFor(Rider& r, Waits why, std::uint32_t whom) {
-    if (r.aim == Aim::kRest) {  // it has nowhere to go
+    if (r.aim == Aim::kRest) {  // no motion to continue
       why = Waits::kNot;
       whom = kNobody;
     }
@@ -322,32 +324,32 @@ class Traffic::Step_ {
     r.waits_for = whom;
   }
 
-  // What following asks for, `most`, without what those before it do in single cycles: that is not handed on, or it
-  // would grow along a chain of movers.
+  // Returns the smoothed acceleration of following, `most`: fluctuations of the movers ahead in single cycles are not
+  // passed on, as they would grow along a chain.
   static double Eased(const Rider& r, double most) {
     const double wanted = std::clamp(most, -2 * r.pace.limits.deceleration, 2 * r.pace.limits.acceleration);
     return r.eased + (wanted < r.eased ? kEaseDown : kEaseUp) * (wanted - r.eased);
   }
-  // After it had to brake it speeds up no more than it did.
+  // After it had to brake its acceleration does not grow.
   static double Calmed(const Rider& r, double most) {
     return r.calm_cycles > 0 ? std::min(most, std::max(0.0, r.direction * r.at.acceleration)) : most;
   }
-  // The range of accelerations that it can have at the end of the cycle. What it has may have to be taken away quicker
-  // than it was told to change it.
+  // Returns the range of accelerations possible at the end of the cycle. The current one may be removed faster than the
+  // commanded jerk allows.
   trajectory::Profile::Range Reachable(const Rider& r, std::size_t share) const {
     const double before = r.direction * r.at.acceleration;
     const double change = WithShare(r.pace.limits, r.pace, share).jerk * period();
     const double away = WithShare(LimitsNow(r), r.pace, share).jerk * period();
     return {before - (before > 0 ? away : change), before + (before < 0 ? away : change)};
   }
-  // At the end of the cycle, with this acceleration or one as near to it as can be.
+  // Returns the state at the end of the cycle with this acceleration, or the nearest possible one.
   KinematicState StepWith(const Rider& r, double acceleration, std::size_t share = 0) const {
     const double before = r.direction * r.at.acceleration, speed = r.direction * r.at.velocity;
     const trajectory::Limits limits = WithShare(r.pace.limits, r.pace, share);
     const auto [lowest, highest] = Reachable(r, share);
     double next = std::clamp(acceleration, lowest, highest);
-    // What is braked with must be gone when it stands, or it would run back: at the end of the cycle, with a tenth of
-    // the jerk to spare.
+    // The deceleration must be removed when the mover comes to rest, or it would reverse: at the end of the cycle, with
+    // a reserve of a tenth of the jerk.
     const double jerk_then = 0.9 * limits.jerk, half = 0.5 * jerk_then * period();
     const double left = std::max(0.0, speed + 0.5 * period() * before);
     const double gone = std::sqrt(half * half + 2 * jerk_then * left) - half;
@@ -358,25 +360,25 @@ class Traffic::Step_ {
     return trajectory::Piece{r.at.position, r.at.velocity, r.at.acceleration, r.direction * jerk}.At(period());
   }
 
-  // The rest of its way, however short, is within this room.
+  // Returns true if the rest of its motion, however short, fits into this distance.
   bool Reaches(const Rider& r, double room) const {
     return std::abs(EndOfWay(network_, r) - r.at.position) <= room + kTolerance;
   }
 
-  // Braking as it was told to, at the end of the cycle.
+  // Returns the state at the end of the cycle when braking as commanded.
   KinematicState Halting(const Rider& r, std::size_t share) const {
     return Brake(r.at, WithShare(Brakes{r.pace.limits.deceleration, LimitsNow(r).jerk}, r.pace, share)).At(period());
   }
 
-  // One that was held back, and still is, needs no plan of its own as long as nothing else is near that it would slow
-  // down for. False: it needs one.
+  // A mover that was held back, and still is, needs no plan of its own while nothing else ahead would slow it down.
+  // Returns false if it needs one.
   bool StaysBehind(std::uint32_t i) {
     Rider& r = riders_[i];
     if (r.aim != Aim::kTarget || r.planned || std::abs(r.at.velocity) < kStands) return false;
     Limit limit;
     double most = kInfinite;
     LimitBy(w_, i, r.direction * r.at.velocity, limit, most);
-    // With a plan it might be known that it comes to rest before that one.
+    // A plan might show that it comes to rest before that mover.
     if (limit.by == kNobody || Rests(riders_[limit.by].at)) return false;
     const double eased = Eased(r, most);
     most = Calmed(r, eased);
@@ -384,7 +386,8 @@ class Traffic::Step_ {
     if (most >= Reachable(r, 0).max || r.direction * step.velocity <= 0 || !RunsFree(network_, r, step)) return false;
     r.eased = eased;
     if (r.calm_cycles > 0) --r.calm_cycles;
-    TakeWithShare(i, [&](std::size_t share) { return std::optional(StepWith(r, most, share)); });  // or it brakes
+    // if none is admissible, it brakes
+    TakeWithShare(i, [&](std::size_t share) { return std::optional(StepWith(r, most, share)); });
     WaitFor(r, Waits::kNot, kNobody);
     return true;
   }
@@ -399,7 +402,7 @@ class Traffic::Step_ {
       return WaitFor(r, Waits::kNot, kNobody);
     }
     if (Holds(i)) return;
-    // Who stands and waits has nothing to plan until there is room, or room enough for the rest of its way.
+    // A stationary mover that waits needs no plan until there is room, or enough room for the rest of its motion.
     if (r.aim == Aim::kTarget && r.waits == Waits::kMover && !r.planned && Rests(r.at)) {
       Limit limit;
       double most = kInfinite;
@@ -407,16 +410,16 @@ class Traffic::Step_ {
       if (limit.room < kAtLimit && !Reaches(r, limit.room)) return WaitFor(r, Waits::kMover, limit.by);
     }
     if (StaysBehind(i)) return;
-    bool exact = false;  // a geared mover is where it should be
+    bool exact = false;  // a geared mover is at its demand
     KinematicState demand;
     if (r.aim == Aim::kFollow) demand = DemandOn(r);
-    // Who is held back stays so until there is room: else it would swing between both.
+    // A mover that is held back stays so until there is room: otherwise it would oscillate.
     const bool was_free = r.aim == Aim::kFollow || r.planned || Rests(r.at);
     const std::int8_t went = r.direction;
     const KinematicState wish = halts ? Halting(r, 0) : r.aim == Aim::kTarget ? Wish(r) : WishAlong(r, demand, exact);
     const bool follows = r.aim == Aim::kFollow;
     if (follows && Rests(r.at) && wish.velocity * r.direction < 0) r.direction = wish.velocity < 0 ? -1 : 1;
-    // Who turns has somebody else before it now; a new way may have, too.
+    // After a reversal, and maybe with a new route, its leader is another one.
     const bool anew = r.direction != went || (r.aim == Aim::kTarget && now.leader == kNobody);
     if (anew) now.leader = w_.FindLeader(i, r.direction, now.leader_offset);
     const int direction = r.direction;
@@ -431,14 +434,14 @@ class Traffic::Step_ {
     const bool comes = follows && !exact && ComesFromBehind(r, demand);
     if (follows) {
       most = std::max(most, CloseUp(w_, i, limit));
-      // To a master that stands it comes to rest anyhow.
+      // Before a stationary demand it comes to rest by itself.
       if (Rests(demand) && direction * (demand.position - r.at.position) <= limit.room + kTolerance) most = kInfinite;
       if (comes) most = std::min(most, ComeUp(r, RoomTo(r, demand), demand, r.pace.brakes(), period()));
     }
     // With constant jerk neither faster than wished at the end of the cycle, nor with more acceleration.
     const double mean = (direction * wish.velocity - speed) / period();
     const double as_fast = 2 * mean - before;
-    // A wish that is small may begin and end without acceleration; on the way to the master that would be no way at
+    // A small wish may begin and end without acceleration; with that bound, a follower of a master would not move at
     // all.
     const double least_end = direction * wish.acceleration;
     const double fastest = r.pace.limits.velocity - direction * wish.velocity;
@@ -458,7 +461,7 @@ class Traffic::Step_ {
     }
     r.planned = false;
     const bool stands = std::abs(r.at.velocity) < kStands;
-    // Slower than it wishes, as fast as it may behind the other.
+    // Slower than wished, as fast as the limit admits.
     const auto slower = [&](std::size_t share) -> std::optional<KinematicState> {
       const KinematicState step = StepWith(r, std::min(most, wished), share);
       const bool goes = direction * step.velocity > 0 && !(stands && limit.room < kAtLimit);
@@ -473,7 +476,7 @@ class Traffic::Step_ {
     WaitFor(r, by != kNobody ? Waits::kMover : Waits::kRoute, by);
   }
 
-  // The end of the cycle: places are those on the track where the mover is now.
+  // The end of the cycle: positions become those on the track where the mover is now.
   void GoOn(std::uint32_t i) {
     Rider& r = riders_[i];
     const Now& now = s_.now[i];
@@ -516,7 +519,7 @@ class Traffic::Step_ {
   const Network& network_;
   std::span<Rider> riders_;
   Guard* guard_;
-  bool held_by_guard_ = false;  // the step that was tried last
+  bool held_by_guard_ = false;  // the last step was refused by the guard
 };
 
 Traffic::Traffic(const TrafficSettings& settings) : scene_(settings.movers, settings.tracks) {}

@@ -16,22 +16,22 @@ namespace {
 
 using path::VectorPolynomial;
 
-// rad, and of the chord: what lies on a line so nearly does not bend at all.
+// [rad], and in units of the chord: below this, both sides lie on one straight line.
 constexpr double kNoBend = 1e-12;
-// rad: where the next piece lies so nearly behind the one before, or runs so nearly the other way.
+// [rad] Angle from which on the next piece counts as behind the one before, or as running against it.
 constexpr double kBehind = 170 * kDegree;
-// rad, to both sides of the direction in the middle.
+// [rad] Largest turn to each side of the direction in the middle.
 constexpr double kMostTurn = 171 * kDegree;
 
-// Both sides of a gap as seen along the line between them, whose length becomes 1.
+// Both sides of a gap in the frame of the chord between them, scaled to length 1.
 struct Gap {
-  double begin_angle = 0;  // from that line to the direction of the first side, rad
+  double begin_angle = 0;  // [rad] from the chord to the direction of the first side
   double end_angle = 0;
-  double begin_bend = 0;  // curvature
+  double begin_bend = 0;  // curvature, scaled
   double end_bend = 0;
 };
 
-// Over a parameter from 0 to 1, with derivatives of these lengths at its ends.
+// Returns the curve, over a parameter from 0 to 1, with derivatives of these lengths at its ends.
 VectorPolynomial CurveOf(const Gap& gap, double begin_length, double end_length) {
   const auto side = [](double place, double angle, double bend, double length) -> path::Derivatives<path::Vector> {
     const Flat first = length * Heading(angle);
@@ -41,7 +41,7 @@ VectorPolynomial CurveOf(const Gap& gap, double begin_length, double end_length)
                              side(1, gap.end_angle, gap.end_bend, end_length));
 }
 
-// What is to be small; by the middle rule.
+// Returns the quantity to be minimised, by the midpoint rule.
 double BendOf(const VectorPolynomial& curve) {
   constexpr int kPlaces = 64;
   constexpr double kRateShare = 0.01;
@@ -59,8 +59,8 @@ double BendOf(const VectorPolynomial& curve) {
   return root * std::sqrt(root) * std::sqrt(bend + kRateShare * length * length * rate);
 }
 
-// The lengths of the derivatives that bend least, by their logarithms: the best of a grid, then Newton's steps on
-// differences.
+// Finds the lengths of the derivatives for the least bending, in logarithms: the best of a grid, then Newton's method
+// with finite differences.
 class TransitionSearch {
  public:
   explicit TransitionSearch(const Gap& gap) : gap_(gap) {
@@ -94,7 +94,7 @@ class TransitionSearch {
     return true;
   }
 
-  // No further than `reach`; the answer is how far the next step may go.
+  // Takes a step no longer than `reach`; returns the bound of the next one.
   double Improve(double reach) {
     const double h = kDifference;
     const auto at = [&](double x, double y) { return Value(best_ + Flat(x, y)); };
@@ -103,14 +103,14 @@ class TransitionSearch {
     const Flat slope((right - left) / (2 * h), (up - down) / (2 * h));
     Eigen::Matrix2d bend;
     bend << (right - 2 * least_ + left) / (h * h), mixed, mixed, (up - 2 * least_ + down) / (h * h);
-    // Where it bends down along one of its axes one goes on as if it bent up: that leads on in a valley, too.
+    // Negative curvature along an axis is treated as positive: that makes progress in a valley, too.
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
     axes.computeDirect(bend);
     const Eigen::Matrix2d& turn = axes.eigenvectors();
     const Flat bends = axes.eigenvalues().cwiseAbs().cwiseMax(kFlat);
     Flat step = -(turn * (turn.transpose() * slope).cwiseQuotient(bends));
     const bool valley = axes.eigenvalues().minCoeff() > 0;
-    // At the bottom rounding decides what is less: the last steps are taken as they are.
+    // At the minimum, rounding dominates the differences: the last steps are taken unchecked.
     if (valley && step.norm() < kDifference / 10) {
       best_ += step;
       least_ = Value(best_);
@@ -125,7 +125,7 @@ class TransitionSearch {
   double least_ = INFINITY;
 };
 
-// In the plane, at its true size.
+// Transforms the curve into the plane, at true size.
 VectorPolynomial Put(const VectorPolynomial& curve, const Flat& from, const Flat& chord) {
   VectorPolynomial out{};
   for (std::size_t i = 0; i < curve.size(); ++i) {
@@ -135,7 +135,7 @@ VectorPolynomial Put(const VectorPolynomial& curve, const Flat& from, const Flat
   return out;
 }
 
-// Largest curvature; infinite where the curve turns too far, no number where it has a cusp.
+// Returns the largest curvature; infinite if the curve turns too far, NaN if it has a cusp.
 double Peak(const VectorPolynomial& curve) {
   constexpr int kPlaces = 512;
   double peak = 0;
@@ -156,7 +156,7 @@ double Peak(const VectorPolynomial& curve) {
   return std::max(most - middle, middle - least) < kMostTurn ? peak : INFINITY;
 }
 
-// How well its length is known: cells against their halves.
+// Returns the error of the length: cells against their halves.
 double LengthError(const path::Segment& segment) {
   double error = 0;
   double from = 0, length = 0;

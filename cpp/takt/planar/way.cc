@@ -8,12 +8,12 @@
 namespace takt::planar {
 namespace {
 
-constexpr double kSlight = 1e-9;  // share of a speed, or mm
+constexpr double kSlight = 1e-9;  // share of a speed, or [mm]
 
-// Of squares: rounding.
+// Tolerance of squares: rounding.
 constexpr double kWithin = 1 + 1e-9;
 
-// The largest square of a jerk's length that a bend may make, and its derivative by the speed.
+// Upper bound of the squared length of the jerk in a bend, and its derivative with respect to the speed.
 struct JerkSquare {
   double value = 0;
   double slope = 0;
@@ -42,7 +42,7 @@ Brakes WithShare(Brakes brakes, const Pace& pace, std::size_t share) noexcept {
 }
 
 bool KeepsVectors(const Bend& bend, const Stress& stress, const Pace& pace) noexcept {
-  if (!(bend.curvature > 0)) return true;  // along the way alone it keeps its limits anyhow
+  if (!(bend.curvature > 0)) return true;  // the limits along the route suffice
   const double across = bend.curvature * stress.speed * stress.speed;
   const double most = pace.vector_acceleration * pace.vector_acceleration;
   if (stress.acceleration * stress.acceleration + across * across > most * kWithin) return false;
@@ -56,7 +56,7 @@ double SpeedIn(const Bend& bend, const Pace& pace) noexcept {
   const double room = std::sqrt(1 - least.acceleration * least.acceleration) * pace.vector_acceleration;
   most = std::min(most, std::sqrt(std::min(pace.lateral, room) / bend.curvature));
   if (!std::isfinite(pace.vector_jerk)) return most;
-  // The square grows with the speed, ever faster: Newton's steps from above come down to the root.
+  // The square grows convexly with the speed: Newton's method from above converges monotonically.
   constexpr int kMostSteps = 12;
   const double allowed = pace.vector_jerk * pace.vector_jerk;
   const Stress stress{most, least.acceleration * pace.vector_acceleration, least.jerk * pace.vector_jerk};
@@ -70,7 +70,7 @@ double SpeedIn(const Bend& bend, const Pace& pace) noexcept {
 
 namespace {
 
-// The number of the bend that s lies in; at a border, that on the far side.
+// Returns the index of the bend that contains s; at a border, the one ahead in this direction.
 std::size_t BendAt(const Road& road, double s, std::int8_t direction) {
   const std::vector<Bend>& bends = road.track->bends;
   const auto behind = std::ranges::upper_bound(bends, s, {}, &Bend::from);
@@ -80,7 +80,8 @@ std::size_t BendAt(const Road& road, double s, std::int8_t direction) {
   return i;
 }
 
-// Calls look(way, bend) for the bends along one track from s on; `gone`: the way to there. Returns the way to its end.
+// Calls look(way, bend) for the bends along one track from s on; `gone`: the distance to s. Returns the distance to the
+// end of the track.
 template <typename Look>
 double AlongTrack(const Road& road, double s, double gone, double until, const Look& look) {
   const std::vector<Bend>& bends = road.track->bends;
@@ -103,7 +104,7 @@ double BackAlongTrack(const Road& road, double s, double gone, double until, con
   return gone + s;
 }
 
-// The same from a start on, to the end of its route; of a closed track to its end. Returns the way to there.
+// The same from a start to the end of its route; on a closed track to its end. Returns the distance covered.
 template <typename Look>
 double Along(const Network& network, const Start& start, double until, const Look& look) {
   const Road& road = network[start.route->first()];
@@ -121,7 +122,7 @@ void Caps::Add(double way, double speed, const Bend& bend) noexcept {
   if (cut) return;
   if (count > 0) {
     Cap& last = of[count - 1];
-    const bool passed = way <= last.way + kSlight;  // or too short to be seen
+    const bool passed = way <= last.way + kSlight;  // or too short to matter
     if (passed && count == 1 && way <= 0) {
       last = {last.way, speed, bend.curvature, bend.rate};
       return;
@@ -144,7 +145,7 @@ Caps CapsAhead(const Network& network, const Start& start, double until, const P
   Caps caps;
   const auto add = [&](double way, const Bend& bend) { caps.Add(way, SpeedIn(bend, pace), bend); };
   double gone = Along(network, start, until, add);
-  // A whole turn that adds no cap is like all turns behind it: long ways round a circle have few caps.
+  // A whole turn that adds no cap is like all turns after it: long motions round a circle have few caps.
   const Road& road = network[start.route->first()];
   std::size_t before = 0;
   while (road.closed && gone < until && !caps.cut && caps.count != before) {
@@ -164,14 +165,14 @@ bool IsStraight(const Network& network, const Start& start, double until) noexce
 
 namespace {
 
-// A place that is to be passed no faster than this, without acceleration.
+// A position to be passed no faster than this, without acceleration.
 struct Gate {
   double way = 0;
   double speed = 0;
 };
 
-// What is the largest between two times of a motion. The speed is largest at their borders, and where the motion turns
-// from faster to slower.
+// Returns the largest values between two times of a motion. The speed is largest at the ends, or where the acceleration
+// changes from positive to negative.
 Stress StressOf(const trajectory::Profile& plan, double begin, double end) {
   Stress most;
   most.speed = std::max({0.0, plan.At(begin).velocity, plan.At(end).velocity});
@@ -193,7 +194,7 @@ Stress StressOf(const trajectory::Profile& plan, double begin, double end) {
   return most;
 }
 
-// Whether a motion keeps to the caps up to its end, and its vectors within their maxima.
+// Returns true if a motion keeps the caps up to its end, and its vectors within their maxima.
 bool Keeps(const trajectory::Profile& plan, const Caps& caps, const Pace& pace) {
   const Stress all = StressOf(plan, 0, plan.duration());
   double least = std::numeric_limits<double>::infinity();
@@ -203,12 +204,12 @@ bool Keeps(const trajectory::Profile& plan, const Caps& caps, const Pace& pace) 
     least = std::min(least, cap.speed);
     tightest = {0, std::max(tightest.curvature, cap.curvature), std::max(tightest.rate, cap.rate)};
   }
-  // What it began with too fast it may keep.
+  // Rounding. Besides, the motion may keep a speed above the first cap that it starts with.
   const double allowance = 1e-9 * all.speed;
   if (all.speed <= least + allowance && KeepsVectors(tightest, all, pace)) return true;
   double begin = 0;
   for (std::size_t i = 0; i < caps.count && caps.of[i].way < plan.end().position; ++i) {
-    if (caps.cut && i + 1 == caps.count) return true;  // what comes is not known
+    if (caps.cut && i + 1 == caps.count) return true;  // the caps beyond are not known
     const double border = i + 1 < caps.count ? caps.of[i + 1].way : plan.end().position;
     const double end = border < plan.end().position ? plan.TimeAt(border, begin) : plan.duration();
     if (!(end >= begin)) return false;
@@ -220,14 +221,14 @@ bool Keeps(const trajectory::Profile& plan, const Caps& caps, const Pace& pace) 
   return true;
 }
 
-// One that is faster than it was told to be must still not take a curve too fast.
+// Returns true if a mover that is faster than commanded still keeps its maxima in curves.
 bool KeepsMost(const Network& network, const Start& start, const trajectory::Profile& plan, const Pace& pace,
                const Pace& most) {
   if (plan.VelocityRange().max <= pace.limits.velocity * (1 + kSlight)) return true;
   return Keeps(plan, CapsAhead(network, start, plan.PositionRange().max, most), most);
 }
 
-// Braking as it was told to it gets no faster than that, or than it is, and does not go back.
+// Returns true if braking as commanded gets no faster than commanded, or than the current speed, and does not reverse.
 bool StopsWithin(const Network& network, const Start& start, const trajectory::Profile& stop, const Pace& pace,
                  const Pace& most) {
   const trajectory::Profile::Range range = stop.VelocityRange();
@@ -235,7 +236,7 @@ bool StopsWithin(const Network& network, const Start& start, const trajectory::P
   return Keeps(stop, CapsAhead(network, start, stop.PositionRange().max, most), most);
 }
 
-// The largest share that a mover may use throughout a stretch.
+// Returns the largest share that a mover may use throughout a stretch.
 std::size_t ShareIn(const Cap& cap, const Pace& pace) {
   for (std::size_t share = 0; share + 1 < kShares.size(); ++share) {
     const trajectory::Limits limits = WithShare(pace.limits, pace, share);
@@ -245,7 +246,7 @@ std::size_t ShareIn(const Cap& cap, const Pace& pace) {
   return kShares.size() - 1;
 }
 
-// False: there is no such plan.
+// Returns false if there is no such plan.
 bool TryWay(trajectory::Planner& planner, const Network& network, const Start& start, double way, const Pace& pace,
             const Pace& most, trajectory::Profile& out, bool& ends) {
   if (!(way >= 0)) return false;
@@ -254,11 +255,11 @@ bool TryWay(trajectory::Planner& planner, const Network& network, const Start& s
   const Caps caps = CapsAhead(network, start, way, pace);
 
   std::array<Gate, kCaps + 1> gates{};
-  const std::size_t count = caps.count;  // gate k is where cap k + 1 begins, the last one the end
+  const std::size_t count = caps.count;  // gate k is at the start of cap k + 1, the last one at the end
   for (std::size_t k = 0; k + 1 < count; ++k) {
     gates[k] = {caps.of[k + 1].way, std::min(caps.of[k].speed, caps.of[k + 1].speed)};
   }
-  // What comes behind the last cap that there is room for is not known: it must be able to stop there, but does not.
+  // Beyond the last cap that fits in nothing is known: the mover must be able to stop there, but does not.
   gates[count - 1] = {caps.cut ? caps.of[count - 1].way : way, 0};
   for (std::size_t k = count - 1; k-- > 0;) {
     const double room = gates[k + 1].way - gates[k].way;
@@ -267,13 +268,13 @@ bool TryWay(trajectory::Planner& planner, const Network& network, const Start& s
   }
 
   const double v = start.speed;
-  // With less than all of its dynamics only as far as the bend goes in which it is.
+  // Less than its full dynamics only up to the end of the bend that it is in.
   const auto straight = std::ranges::find_if(caps.all(), [](const Cap& cap) { return !cap.bends(); });
   const auto bends = static_cast<std::size_t>(straight - caps.all().begin());
   const bool bounded = std::isfinite(pace.vector_jerk);
   for (std::size_t k = caps.cut ? count - 1 : count; k-- > 0;) {
     const Gate& gate = gates[k];
-    // Not to be reached that fast.
+    // That speed cannot be reached by then.
     if (gate.speed * gate.speed > v * v + 2 * pace.limits.acceleration * gate.way + kSlight && k > 0) continue;
     if (gate.way <= 0 && k + 1 < count) break;
     for (std::size_t share = 0; share < (bounded && k < bends ? kShares.size() : 1); ++share) {
@@ -283,7 +284,7 @@ bool TryWay(trajectory::Planner& planner, const Network& network, const Start& s
       limits.velocity = std::max(limits.velocity, gate.speed);
       trajectory::Profile plan;
       if (planner.ToPosition(from, gate.way, gate.speed, limits, plan).failed()) continue;
-      // It would have to run back: too near to stop, or too near to get so fast.
+      // It would have to reverse: too near to stop, or too near to get so fast.
       const trajectory::Profile::Range range = plan.PositionRange();
       const bool on = range.min >= -1e-6 && range.max <= gate.way + 1e-6 && plan.VelocityRange().min >= -1e-9;
       if (on && Keeps(plan, caps, pace) && KeepsMost(network, start, plan, pace, most)) {
@@ -293,7 +294,7 @@ bool TryWay(trajectory::Planner& planner, const Network& network, const Start& s
       }
     }
   }
-  // Up to the first gate as fast as may be, or slower from here on.
+  // To the first gate at the highest possible speed, or slower from here on.
   for (std::size_t share = 0; share < (bounded && caps.of[0].bends() ? kShares.size() : 1); ++share) {
     const double cap = caps.of[0].speed;
     const Gate& gate = gates[0];
@@ -310,7 +311,7 @@ bool TryWay(trajectory::Planner& planner, const Network& network, const Start& s
         out = plan;
         found = true;
       }
-      // Too fast to get there slower, or too slow to get there faster.
+      // Too fast to arrive slower, or too slow to arrive faster.
       const bool faster = on || (planned && plan.PositionRange().max > gate.way + 1e-6 && v > speed);
       (faster ? low : high) = speed;
     }
@@ -328,7 +329,7 @@ Planned PlanWay(trajectory::Planner& planner, const Network& network, const Star
   ends = false;
   const KinematicState from{0, start.speed, start.acceleration};
   if (planner.Stop(from, pace.limits, out).ok() && StopsWithin(network, start, out, pace, most)) return Planned::kStop;
-  // What would make it too fast is taken away; else it goes on, no faster than it is.
+  // An acceleration that would make it too fast is removed; otherwise it continues, no faster than it is.
   const double peak = start.speed + start.acceleration * start.acceleration / (2 * pace.limits.jerk);
   const bool speeds_up = start.acceleration > 0 && peak > std::max(pace.limits.velocity, start.speed) * (1 + kSlight);
   Pace hard = most;
@@ -341,13 +342,13 @@ Planned PlanWay(trajectory::Planner& planner, const Network& network, const Star
 
 namespace {
 
-// Returns the time [s] that the jerk limit adds to a change of speed.
+// Returns the delay [s] of a change of speed by the jerk limit.
 double AddedByJerk(double change, double acceleration, double jerk) {
   const double ramp = acceleration / jerk;
   return change > acceleration * ramp ? ramp : 2 * std::sqrt(change / jerk) - change / acceleration;
 }
 
-// The time of a sequence of speeds, with what the jerk limit adds to each stretch that only rises or only falls.
+// The time of a sequence of speeds, with the delay by the jerk limit for each stretch that only rises or only falls.
 class SpeedTimes {
  public:
   SpeedTimes(const trajectory::Limits& limits, double speed) : limits_(limits), turned_at_(speed), speed_(speed) {}
@@ -366,7 +367,7 @@ class SpeedTimes {
   void Turn() {
     const double change = std::abs(speed_ - turned_at_);
     const double acceleration = speed_ > turned_at_ ? limits_.acceleration : limits_.deceleration;
-    // The slower ramp covers distance, too, which is left out at the higher speed.
+    // The slower ramp covers distance as well, which is saved at the higher speed.
     const double share = change / (2 * std::max({speed_, turned_at_, 1e-9}));
     time_ += AddedByJerk(change, acceleration, limits_.jerk) * share;
     turned_at_ = speed_;
@@ -390,7 +391,7 @@ double TimeOfWay(const Network& network, const Start& start, double way, const P
     from.s -= LeaveBehind(network, from.s, route);
     const Caps caps = CapsAhead(network, from, remaining, pace);
     const bool ends = !caps.cut;
-    // If there are more caps than Caps has room for: up to the last one, and on from there.
+    // More caps than fit into Caps: up to the last one, and on from there.
     const std::size_t count = ends ? caps.count : caps.count - 1;
     const double known = ends ? remaining : caps.of[count].way;
     const auto length = [&](std::size_t k) { return (k + 1 < count ? caps.of[k + 1].way : known) - caps.of[k].way; };
