@@ -29,7 +29,7 @@ std::optional<BuiltBoundary> Make(BuildQueues& desk) {
       answer.made.stator = static_cast<std::uint32_t>(surfacing.stator + 1);
     }
   } else if (desk.deliveries.TryPush({question.number, surface.get()})) {
-    static_cast<void>(surface.release());  // the cycle has it
+    static_cast<void>(surface.release());  // now owned by the cycle
   }
   return answer;
 }

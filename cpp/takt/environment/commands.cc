@@ -6,7 +6,7 @@ namespace takt::environment {
 
 namespace {
 
-constexpr Range kPlaces = between(-1e6, 1e6);  // mm
+constexpr Range kPlaces = between(-1e6, 1e6);  // [mm]
 
 }  // namespace
 

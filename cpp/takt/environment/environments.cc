@@ -25,7 +25,7 @@ void Add(const planar::Place& stator, std::size_t environment, Environments& e) 
   s.stator_hash = HashOf(stator, s.stator_hash);
 }
 
-// One command for one environment.
+// One command to one environment.
 struct Applier {
   const Context& c;
   std::uint32_t environment;
@@ -45,7 +45,7 @@ struct Applier {
     if (verdict.error == ErrorId::kNone) return DoneAtOnce();
     Report(FeedbackState::kError, verdict.error, 0, verdict.object);
   }
-  // Nothing stands on it, and nobody is reading it.
+  // Returns true if no enabled group uses it and no request reads its stators.
   bool MayChange() const {
     return s.asked == 0 && c.grounds.Watching(c.grounds.group_of_environment[environment]) == 0;
   }
@@ -85,7 +85,7 @@ struct Applier {
     if (good) {
       const planar::Environment* surface = Fetch(made.number);
       if (!surface) return Refuse(ErrorId::kState);
-      // Meanwhile movers may have come to rely on the old one.
+      // Its group may have been enabled with the old boundary meanwhile.
       if (c.grounds.Watching(c.grounds.group_of_environment[environment]) != 0) {
         c.environments.desk.retired.TryPush(surface);
         error = ErrorId::kEnvironmentUsed;
@@ -106,7 +106,7 @@ struct Applier {
     c.grounds.surfaces[environment] = surface;
     s.border_count = surface ? BordersOf(*surface) : 0;
   }
-  // What was made for this question. What was made for others waits for their answers.
+  // Returns the surface for this request, and retires the others before it; null if it is not there.
   const planar::Environment* Fetch(std::uint64_t number) const {
     Delivery delivery;
     while (c.environments.desk.deliveries.TryPop(delivery)) {

@@ -35,7 +35,7 @@ struct Applier {
     c.feedback.Report({ticket, c.cycle.count, state, false, error, 0, object});
   }
   void Refuse(ErrorId error, const ObjectInfo& object = {}) const { Report(FeedbackState::kError, error, object); }
-  // It goes on, and who had its place is aborted; or it is done at once.
+  // Makes the command active; the one before it, in the same slot, is aborted.
   void GoOn(Ticket& place) const {
     End(c, FeedbackState::kAborted, ErrorId::kNone, place);
     place = ticket;
@@ -77,7 +77,7 @@ struct Applier {
 };
 
 void Change(const Context& c, const Around& around, State& s) {
-  if (s.since >= c.cycle.count) return;  // each state lasts a cycle at least
+  if (s.since >= c.cycle.count) return;  // each state lasts at least one cycle
   const bool wanted = around.wanted && !s.forced;
   switch (s.state) {
     case ObjectState::kDisabled:
@@ -144,7 +144,7 @@ bool Arrive(const Context& c, const Inputs& inputs, State& s) noexcept {
     Done(c, s.going);
   }
   s.away = !arrived && !(goes && reported == s.position + 1);
-  // Going, it may be nowhere for a while; but nowhere else.
+  // On the way it may be at no position; any other report is a fault.
   if (s.away && !(goes && reported == 0)) Fail(c, ErrorId::kPartPosition, s);
   if (inputs.fault) Fail(c, ErrorId::kPartFault, s);
   return s.position != before;

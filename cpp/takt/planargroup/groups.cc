@@ -20,7 +20,7 @@ void Finish(const Context& c, State& s, FeedbackState end) {
   s.ticket = 0;
 }
 
-// It watches from now on, or cannot.
+// Enables the group, or ends the command with the reason why that is not possible.
 void Begin(const Context& c, std::uint32_t number, State& s) {
   const planar::Verdict verdict = planar::Watch(number, c.grounds);
   if (verdict.error == ErrorId::kNone) {
@@ -35,7 +35,7 @@ void Begin(const Context& c, std::uint32_t number, State& s) {
 }
 
 void StepOne(const Context& c, std::uint32_t number, State& s) {
-  if (s.since >= c.cycle.count) return;  // each state lasts a cycle at least
+  if (s.since >= c.cycle.count) return;  // each state lasts at least one cycle
   switch (s.state) {
     case ObjectState::kEnabling:
       Begin(c, number, s);
@@ -63,7 +63,7 @@ void StepOne(const Context& c, std::uint32_t number, State& s) {
   }
 }
 
-// One command for one group.
+// One command to one group.
 struct Applier {
   const Context& c;
   std::uint32_t number;  // from 1
@@ -77,7 +77,7 @@ struct Applier {
     Report(FeedbackState::kActive);
     Report(FeedbackState::kDone);
   }
-  // The command of the state that is left is aborted, or that of the same kind takes its place.
+  // Enters a state. The pending command is aborted, also if it is of the same kind.
   void Become(ObjectState state) const {
     Finish(c, s, FeedbackState::kAborted);
     if (s.state != state) Enter(c, state, s);

@@ -46,7 +46,7 @@ class Builder {
   }
   bool Fail(const std::string& path, Problem problem) { return Fail(path, std::string(planar::Text(problem))); }
 
-  // False: it cannot be made; then a problem says why.
+  // Returns false if the track cannot be built; then a problem says why.
   bool Visit(std::size_t i) {
     if (marks_[i] == Mark::kDone || marks_[i] == Mark::kFailed) return marks_[i] == Mark::kDone;
     marks_[i] = Mark::kOpen;
@@ -57,7 +57,8 @@ class Builder {
     return made;
   }
 
-  // No more tracks start, or end, at one point than a network can link there; wherever the parts are.
+  // Checks that no more tracks start, or end, at one point than a network can link there, at any positions of the
+  // parts.
   void CountAtPoints() {
     std::vector<std::size_t> points(2 * params_.size());  // starts, then ends
     for (std::size_t k = 0; k < points.size(); ++k) points[k] = k;
@@ -85,13 +86,13 @@ class Builder {
     }
   }
 
-  // The key of a link: those with positions of parts stand behind the others, in a list of their own.
+  // Returns the key of a link: those with positions of parts follow the others, in a list of their own.
   static std::string KeyOf(const std::string& list, std::size_t names, std::size_t k) {
     return k < names ? list + Index(k) : list + "_positions" + Index(k - names) + ".track";
   }
 
-  // The tracks that the lists name; each is made first. A problem with one of them is told there and not here.
-  // How they end, or start, in the coordinates of the track's part.
+  // Builds the listed tracks, and appends their ends, or starts, in the coordinates of the track's part. Returns false
+  // if there is a problem; those of the listed tracks themselves are reported with them, not here.
   bool Others(const std::string& path, const std::vector<std::string>& names, const std::vector<LinkParams>& more,
               std::uint32_t part, bool ends, std::vector<planar::TrackPoint>& out) {
     const std::vector<LinkParams> links = LinksOf(names, more);
@@ -184,7 +185,7 @@ class Builder {
     return text.data();
   }
 
-  // The key that a problem is reported at.
+  // Returns the key at which a problem is reported.
   static std::string PlaceOf(const planar::Making& making, const TrackParams& p) {
     switch (making.problem) {
       case Problem::kEmpty:
@@ -203,7 +204,7 @@ class Builder {
   const planar::Parts& parts_;
   std::vector<std::string_view> names_;
   std::vector<Mark> marks_;
-  std::vector<std::size_t> open_;  // from the one first asked for to the one at hand
+  std::vector<std::size_t> open_;  // from the track first requested to the current one
   BuildResult result_;
 };
 

@@ -37,7 +37,7 @@ std::optional<BuiltTrack> Make(BuildQueues& desk) {
   } else {
     auto area = std::make_unique<planar::TrackArea>(planar::MakeTrackArea(*way, question.mover, 0));
     if (desk.deliveries.TryPush({question.number, way.get(), area.get()})) {
-      static_cast<void>(way.release());  // the cycle has both
+      static_cast<void>(way.release());  // now owned by the cycle
       static_cast<void>(area.release());
     }
   }

@@ -36,8 +36,7 @@ bool DoMeet(const planar::Parts& parts, std::uint32_t part_a, const planar::Trac
 
 bool LiesOn(const planar::Parts& parts, std::uint32_t part, const planar::Track& track) {
   if (part == planar::kNoPart) return true;
-  constexpr double kStride =
-      5;  // mm: where a track bends as it may at most, it goes off less than 1 mm between two places
+  constexpr double kStride = 5;  // [mm] at the least radius a track deviates less than 2 mm between two samples
   const auto strides = static_cast<int>(std::ceil(track.length / kStride));
   for (int i = 0; i <= strides; ++i) {
     if (!planar::IsOn(parts.all[part], planar::At(track, track.length * i / strides).place)) return false;

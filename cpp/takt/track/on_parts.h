@@ -30,7 +30,7 @@ planar::Problem Meet(const planar::Parts& parts, const Standing& other, const St
 bool DoMeet(const planar::Parts& parts, std::uint32_t part_a, const planar::TrackPoint& a, std::uint32_t part_b,
             const planar::TrackPoint& b) noexcept;
 
-// Returns true if all of a track lies on its part, to within 1 mm. Not for the cycle.
+// Returns true if all of a track lies on its part, to within 2 mm. Not for the cycle.
 bool LiesOn(const planar::Parts& parts, std::uint32_t part, const planar::Track& track);
 
 }  // namespace takt::track

@@ -28,13 +28,13 @@ bool Holds(const Links& links, std::uint32_t track, std::uint32_t own, std::uint
   return false;
 }
 
-// Others start from it or end at it.
+// Returns true if other tracks start from it or end at it.
 bool IsInUse(const Tracks& t, std::uint32_t track) {
   return std::ranges::any_of(t.states,
                              [&](const State& s) { return Holds(s.starts_from, track) || Holds(s.ends_at, track); });
 }
 
-// Whether links lead from one track to another one, over any number of others.
+// Returns true if links lead from one track to another one, directly or over other tracks.
 bool LeadsTo(Tracks& t, std::uint32_t from, std::uint32_t to) {
   std::ranges::fill(t.reached, std::uint8_t{0});
   t.reached[from] = 1;
@@ -54,25 +54,25 @@ bool LeadsTo(Tracks& t, std::uint32_t from, std::uint32_t to) {
   return t.reached[to] != 0;
 }
 
-// More tracks would start or end there than a network can link at one point.
+// Returns true if more tracks would start or end there than a network can link at one point.
 bool IsCrowded(const Tracks& t, std::uint32_t a, std::uint32_t b) {
   const auto too_many = [&](const std::vector<std::uint32_t>& at) { return a != b && at[a] + at[b] > planar::kLinks; };
   return too_many(t.starts_at) || too_many(t.ends_at);
 }
 
-// What is known of an order before anything is made.
+// Result of the check of an order, before anything is built.
 struct Look {
   Problem problem = Problem::kNone;
-  bool makes = false;          // the track has to be made anew
-  planar::TrackPoint point{};  // where it is to start or end
+  bool makes = false;          // the track has to be built anew
+  planar::TrackPoint point{};  // start or end of the track by the link
 };
 
-// With this order the track need not have a length.
+// Returns true if the track need not have a length after this order.
 bool MayBeEmpty(OrderKind kind) {
   return kind != OrderKind::kCloseLoop && kind != OrderKind::kEndAt;
 }
 
-// Indices of the positions of the parts of both tracks where a link is in force; 0: wherever they meet.
+// Returns the indices of the positions of both tracks' parts at which the link holds; 0: wherever the ends meet.
 std::pair<std::uint32_t, std::uint32_t> PositionsOf(const Order& order) {
   return order.only_there ? std::pair(order.own_position, order.other_position) : std::pair(0u, 0u);
 }
@@ -98,7 +98,7 @@ Look LookAtLink(const Tracks& t, const Order& order) {
                       {t.part_of[order.track], order.own_position}, look.point);
   if (look.problem != Problem::kNone) return look;
   if (starts && (own || sketch.from || sketch.count > 0)) {
-    // It has a start: it can only be the same one.
+    // It has a start already: the link must lead to that.
     const bool same = own ? Same(planar::At(*own, 0), look.point) : sketch.from && Same(*sketch.from, look.point);
     return {same ? Problem::kNone : Problem::kNotItsStart};
   }
@@ -128,7 +128,7 @@ Look LookAt(Tracks& t, const Order& order) {
   return look;
 }
 
-// What the track is given by with this order; a link leads to `point`, in the coordinates of the track's part.
+// Returns the sketch after this order; `point`: the point that a link leads to, in the coordinates of the track's part.
 Sketch With(const Order& order, const planar::TrackPoint& point, Sketch sketch) {
   switch (order.kind) {
     case OrderKind::kAppend:
@@ -192,7 +192,7 @@ void End(const Context& c, Problem problem, std::uint32_t element) {
   --w.count;
 }
 
-// What was made for this question; what was made for others is retired. Without a way: it is not there.
+// Returns the delivery for this request, and retires the others before it; one without a track if it is not there.
 Delivery Fetch(BuildQueues& desk, std::uint64_t number) {
   Delivery delivery;
   while (desk.deliveries.TryPop(delivery)) {
@@ -202,7 +202,7 @@ Delivery Fetch(BuildQueues& desk, std::uint64_t number) {
   return {};
 }
 
-// Whether it could be sent changes nothing in the state: a replay may have nobody to ask.
+// Whether sending succeeds is not part of the state: a replay may have no builder.
 void Send(Tracks& t) {
   if (t.sent) return;
   const Order& order = t.works.orders[t.works.first];
@@ -211,13 +211,13 @@ void Send(Tracks& t) {
                                      LargestOn(t.params[order.track]), With(order, t.works.point, sketch)});
 }
 
-// Where a track starts or ends, in the coordinates of its part; one that has no length yet where it is to start.
+// Returns the start or the end of a track, in the coordinates of its part; without a length, its linked start.
 planar::TrackPoint EndOf(const Tracks& t, std::uint32_t track, bool start) {
   if (const planar::Track* way = t.ways[track]) return planar::At(*way, start ? 0 : way->length);
   return t.sketches[track].from.value_or(planar::TrackPoint{});
 }
 
-// Whether a link is in force with the parts of both where they are to be.
+// Returns true if a link holds at the commanded positions of both parts.
 bool IsInForce(const Tracks& t, std::uint32_t track, const Links& links, std::uint32_t k, bool starts) {
   const auto there = [&](std::uint32_t of, std::uint32_t position) {
     const std::uint32_t part = t.part_of[of];

@@ -9,13 +9,13 @@ namespace takt::track {
 
 namespace {
 
-constexpr double kResolution = 1;  // mm
+constexpr double kResolution = 1;  // [mm]
 
 planar::Footprint MoverOn(const TrackParams& params) {
   return {params.mover_width, params.mover_height, true};
 }
 
-// A track in the coordinates of the part of another; nothing: they are not in one coordinate system.
+// Returns a track in the coordinates of the part of another one; nothing if they are in different coordinate systems.
 std::optional<planar::Track> SeenFrom(const Tracks& t, std::size_t other, std::size_t track) {
   const planar::Spot& from = t.goal(other);
   const planar::Spot& to = t.goal(track);

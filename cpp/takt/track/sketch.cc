@@ -10,7 +10,7 @@ namespace takt::track {
 
 namespace {
 
-constexpr double kPerElement = 1000;  // above all numbers of problems
+constexpr double kPerElement = 1000;  // greater than all numbers of problems
 
 }  // namespace
 
@@ -33,7 +33,7 @@ planar::Making MakeWay(const planar::Layout& layout, planar::Track& out) {
   planar::Track track;
   const planar::Making making = planar::MakeTrack(layout, track);
   if (making.problem != planar::Problem::kNone) return making;
-  // It may end where it starts, as a whole circle does before its loop is closed.
+  // It may end at its start, like a full circle before its loop is closed.
   track.closed = layout.closed || planar::SamePlace(At(track, 0).place, At(track, track.length).place);
   if (planar::SelfCrossing(track)) return {planar::Problem::kCrosses, layout.elements.size()};
   track.closed = layout.closed;

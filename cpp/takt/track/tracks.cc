@@ -28,7 +28,7 @@ void Finish(const Context& c, State& s, FeedbackState end) {
   s.ticket = 0;
 }
 
-// Enabling ends here, well or not: without a length there is nothing to enable.
+// Ends enabling: with success, or with an error if the track has no length.
 void EndEnabling(const Context& c, State& s) {
   if (s.has_length) {
     Enter(c, ObjectState::kEnabled, s);
@@ -42,7 +42,7 @@ void EndEnabling(const Context& c, State& s) {
 }
 
 void StepOne(const Context& c, std::uint32_t track, State& s) {
-  if (s.since >= c.cycle.count) return;  // each state lasts a cycle at least
+  if (s.since >= c.cycle.count) return;  // each state lasts at least one cycle
   switch (s.state) {
     case ObjectState::kEnabling:
       if (!HasPendingEdit(c.tracks.works, track)) EndEnabling(c, s);
@@ -70,7 +70,7 @@ void StepOne(const Context& c, std::uint32_t track, State& s) {
   }
 }
 
-// One command for one track.
+// One command to one track.
 struct Applier {
   const Context& c;
   std::uint32_t track;
@@ -92,7 +92,7 @@ struct Applier {
     Report(FeedbackState::kActive);
     Report(FeedbackState::kDone);
   }
-  // The command of the state that is left is aborted, or that of the same kind takes its place.
+  // Enters a state. The pending command is aborted, also if it is of the same kind.
   void Become(ObjectState state) const {
     Finish(c, s, FeedbackState::kAborted);
     if (s.state != state) Enter(c, state, s);
@@ -107,7 +107,7 @@ struct Applier {
     order.track = track;
     if (!Put(order, c.tracks.works)) Refuse(planar::Problem::kBusy);
   }
-  // Of places with a reference the element in the coordinates of the track's part.
+  // Appends an element; its coordinates, of this reference, become those of the track's part.
   void Append(const Name& reference, planar::Element element) const {
     const planar::Parts& parts = c.tracks.parts;
     const std::uint32_t part = c.tracks.part_of[track];
