@@ -29,7 +29,7 @@ class Rig {
     Hear();
     return ticket;
   }
-  // True: it has arrived.
+  // Returns true if it has arrived.
   bool Step() {
     const ObjectState before = state.state;
     const bool arrived = Arrive(context(), inputs, state);
@@ -100,7 +100,7 @@ TEST(PartStates, ArriveWhenThatIsReported) {
   EXPECT_FALSE(Show(rig.state).away);
   EXPECT_EQ(rig.Of(going).state, FeedbackState::kDone);
   EXPECT_EQ(rig.state.error, ErrorId::kNone);
-  // Elsewhere than where it was sent from or to.
+  // Neither the position that it was sent from nor that it was sent to.
   const Ticket lost = rig.Give(ActivatePosition{.index = 1});
   rig.inputs.position = 2;
   rig.Step();
@@ -116,13 +116,13 @@ TEST(PartStates, RefuseWhatIsHindered) {
   EXPECT_FALSE(Show(rig.state).away);
   EXPECT_EQ(rig.Of(rig.Give(ActivatePosition{.index = 4})).error, ErrorId::kParameter);
   EXPECT_EQ(rig.Of(rig.Give(ActivatePosition{.index = 0})).error, ErrorId::kParameter);
-  // Where it is it may stay, whoever is in the way.
+  // At its own position it may stay, whatever is in the way.
   EXPECT_EQ(rig.Of(rig.Give(ActivatePosition{.index = 1}, {ErrorId::kPartMover, {ObjectKind::kMover, 7}})).state,
             FeedbackState::kDone);
 }
 
-// Each change of state is one of the table, and all of the table happen but those of a part that a quick stop would
-// leave enabled: its faults always lead to Disabled.
+// Each change of state is one of the table, and all of the table occur except those of a quick stop that would leave a
+// part enabled: its faults always lead to Disabled.
 TEST(PartStates, RandomWalk) {
   Rig rig;
   std::mt19937 random(5);
@@ -158,7 +158,7 @@ TEST(PartStates, RandomWalk) {
     const ObjectState at = rig.state.state;
     rig.Step();
     EXPECT_TRUE(at == rig.state.state || planar::IsLegal(at, rig.state.state) ||
-                // A fault in the cycle that would have brought something else.
+                // A fault in the cycle that would have led elsewhere.
                 rig.state.state == ObjectState::kErrorPending);
     const planar::PartNow now = Show(rig.state);
     EXPECT_EQ(now.enabled, rig.state.state == ObjectState::kEnabled);

@@ -1,5 +1,5 @@
-// PL-30: what movers cover on their ways, and whether they come near each other: by hand, against FCL, and against
-// trying places and angles.
+// PL-30: the areas that movers sweep, and whether they come near each other: by hand, against FCL, and against sampled
+// positions and angles.
 #include "takt/planar/area.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ using testing::Standing;
 Area Straight(const Place& from, const Place& to, const Footprint& mover) {
   return {.places = {from, to}, .count = 2, .mover = mover};
 }
-// Where from on they are no longer near.
+// Returns the clearance from which on they count as near.
 double Between(const Area& a, const Area& b) {
   double near = 2000, apart = -2000;
   while (near - apart > 1e-7) {
@@ -37,17 +37,17 @@ double Between(const Area& a, const Area& b) {
   return near;
 }
 
-// PL-30: a square of 100 mm drawn out straight along X and along the diagonal.
+// PL-30: a square of 100 mm swept straight along X and along the diagonal.
 TEST(Areas, AreRectanglesDrawnOut) {
   const Footprint square{100, 100};
   const Area along = Straight({0, 0}, {300, 0}, square);
   EXPECT_NEAR(Between(along, Standing({400, 20}, square)), 0, 1e-6);
   EXPECT_NEAR(Between(along, Standing({150, -130}, square)), 30, 1e-6);
   EXPECT_NEAR(Between(along, Standing({-120, 0}, square)), 20, 1e-6);
-  // As deep as the way out is long.
+  // The depth is the displacement that separates them.
   EXPECT_NEAR(Between(along, Standing({150, 90}, square)), -10, 1e-6);
   EXPECT_NEAR(Between(along, Standing({150, 150}, square, 45)), 100 - std::sqrt(2) * 50, 1e-6);
-  // One side of it leads from (50, -50) to (350, 250).
+  // One side of it runs from (50, -50) to (350, 250).
   EXPECT_NEAR(Between(Straight({0, 0}, {300, 300}, square), Standing({300, 0}, square)), 100 / std::sqrt(2), 1e-6);
   const Extent extent = ExtentOf(along);
   EXPECT_NEAR(extent.lower.x, -50, 1e-9);
@@ -56,8 +56,8 @@ TEST(Areas, AreRectanglesDrawnOut) {
   EXPECT_NEAR(extent.upper.y, 50, 1e-9);
 }
 
-// PL-30: turning by a quarter, or at any angle, a square covers a circle through its corners, a rectangle of 60 by 80
-// mm from 180° - 2 atan(60 / 80) on. Two circles are as far apart as they are, whatever the direction.
+// PL-30: rotating by a quarter, or at any angle, a square covers the circle through its corners, a rectangle of 60 by
+// 80 mm from 180° - 2 atan(60 / 80) on. The distance of two circles is independent of the direction.
 TEST(Areas, AreCircles) {
   Area a = Standing({0, 0}, {100, 100});
   a.most_c = 90;
@@ -81,8 +81,8 @@ TEST(Areas, AreCircles) {
   EXPECT_NEAR(Between(Standing({0, 0}, {100, 100}), Standing({130, 40}, {60, 80, true})), 30, 1e-6);
 }
 
-// PL-30: a square of 100 mm that turns from 0° to 20° reaches 50 mm / cos(10°) in the direction of 100°, between the
-// corners; the hull of all it covers would reach to 57.9 mm. Something small stands there.
+// PL-30: a square of 100 mm that rotates from 0° to 20° reaches 50 mm / cos(10°) in the direction of 100°, between the
+// corners; the hull of all it covers would reach 57.9 mm. A small mover fits there.
 TEST(Areas, AreTight) {
   Area turning = Standing({0, 0}, {100, 100});
   turning.most_c = 20;
@@ -91,7 +91,7 @@ TEST(Areas, AreTight) {
   const auto at = [&](double distance) { return Standing(Ahead({}, 100 * kPi / 180, distance), {small, small}, 100); };
   EXPECT_TRUE(Near(turning, at(edge - small), 0));
   EXPECT_FALSE(Near(turning, at(edge + kSlack + small), 0));
-  // A corner goes round from 45° to 65°.
+  // A corner moves from 45° to 65°.
   const double corner = 50 * std::sqrt(2);
   const auto beyond = [&](double direction) {
     return Standing(Ahead({}, direction * kPi / 180, corner + 1), {small, small}, direction);
@@ -102,7 +102,8 @@ TEST(Areas, AreTight) {
   }
 }
 
-// PL-30: what does not turn is as FCL says, wherever FCL can know: pairs of areas, pushed to where they nearly touch.
+// PL-30: without rotation the results are those of FCL, where that can decide: pairs of areas, moved until they nearly
+// touch.
 TEST(Areas, AreThoseOfFcl) {
   Random random(31);
   int together = 0, apart = 0;
@@ -111,7 +112,7 @@ TEST(Areas, AreThoseOfFcl) {
     a.most_c = a.least_c;
     b.most_c = b.least_c;
     if (random.Coin()) {
-      // So that the gap is small.
+      // To keep the gap small.
       const double want = random.Between(-1, 1) * (random.Coin() ? 1 : 0.001);
       for (int k = 0; k < 3; ++k) {
         const double gap = Between(a, b) - want;
@@ -132,8 +133,8 @@ TEST(Areas, AreThoseOfFcl) {
   EXPECT_GT(apart, Trials(300));
 }
 
-// PL-30: what is called apart never comes near, at any place and any angle; what is called near comes that near at
-// some, or nearly.
+// PL-30: areas reported as apart never come near, at any position and angle; those reported as near come that near at
+// one of them, or nearly.
 TEST(Areas, AreAllAndNoMore) {
   Random random(32);
   int near = 0, apart = 0;
@@ -141,7 +142,7 @@ TEST(Areas, AreAllAndNoMore) {
   for (int i = 0; i < Trials(400); ++i) {
     const Area a = RandomArea(random);
     Area b = RandomArea(random);
-    // Mostly where it is not clear at a glance.
+    // Mostly cases that are not obvious.
     const Place push = Ahead({}, random.Between(-3, 3), random.Between(0, 600));
     for (Place& p : b.places) p = {p.x + push.x, p.y + push.y};
     const double said = Between(a, b);
@@ -163,10 +164,10 @@ TEST(Areas, AreAllAndNoMore) {
   }
   EXPECT_GT(near, Trials(80));
   EXPECT_GT(apart, Trials(80));
-  EXPECT_GT(most, 0.05);  // so the bound is looked at
+  EXPECT_GT(most, 0.05);  // so the bound is exercised
 }
 
-// PL-30: nothing sticks out of an area's sides along X and Y, and no room is left there.
+// PL-30: the extent of an area contains it tightly.
 TEST(Areas, ReachToTheirSides) {
   Random random(33);
   for (int i = 0; i < Trials(500); ++i) {
@@ -181,7 +182,7 @@ TEST(Areas, ReachToTheirSides) {
          {std::pair{extent.upper.x, seen.upper.x}, std::pair{extent.upper.y, seen.upper.y},
           std::pair{-extent.lower.x, -seen.lower.x}, std::pair{-extent.lower.y, -seen.lower.y}}) {
       EXPECT_GE(is, should - 1e-9);
-      EXPECT_LE(is, should + 0.2);  // of 64 angles
+      EXPECT_LE(is, should + 0.2);  // with 64 angles
     }
   }
 }

@@ -90,7 +90,7 @@ double DistanceByAngles(const Area& a, const Area& b) {
   const double reach_a = std::hypot(a.mover.width, a.mover.height) / 2;
   const double reach_b = std::hypot(b.mover.width, b.mover.height) / 2;
   double best = INFINITY;
-  // Branch and bound: from the middle of two spans no corner moves further than its angle times its radius.
+  // Branch and bound: from the middle of two ranges of angles no corner moves farther than its angle times its radius.
   const auto search = [&](const auto& again, const Span& on_a, const Span& on_b) -> void {
     const double at_a = (on_a.least + on_a.most) / 2, at_b = (on_b.least + on_b.most) / 2;
     const double distance = Distance(HullAt(a, at_a, at_a), HullAt(b, at_b, at_b));

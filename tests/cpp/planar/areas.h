@@ -1,4 +1,4 @@
-// Areas looked at from outside: as polygons, one for each angle.
+// A reference for areas: polygons, one for each angle.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace takt::planar::testing {
 
-// Of stators, by their lower left corners.
+// Makes a surface of stators, given by their lower left corners.
 Environment Surface(const std::vector<Place>& stators);
 
 inline Area Standing(const Place& place, const Footprint& mover, double c = 0) {
@@ -18,18 +18,18 @@ inline Area Standing(const Place& place, const Footprint& mover, double c = 0) {
 
 // Convex, counterclockwise.
 using Polygon = std::vector<Place>;
-// What the mover covers turned by these angles, anywhere in its places.
+// Returns what the mover covers at these angles, anywhere in its places.
 Polygon HullAt(const Area& area, double least_c, double most_c);
-// 0: they overlap.
+// Returns the distance of two polygons; 0 if they overlap.
 double Distance(const Polygon& a, const Polygon& b);
 bool IsIn(const Polygon& polygon, const Place& place);
 
-// How near they come, by trying angles: 0 if they overlap; never less than it is, and more by less than 0.05 mm. Areas
-// without margins.
+// Returns the distance of two areas by sampling angles; 0 if they overlap. Never less than the true distance, and
+// larger by less than 0.05 mm. For areas without margins.
 double DistanceByAngles(const Area& a, const Area& b);
 
 TrackPoint AsPoint(const Pose& pose);
-// Anywhere within 400 mm; half of them turn.
+// A random area within 400 mm; half of them rotate.
 Area RandomArea(Random& random);
 Place RandomPlaceOf(const Area& area, Random& random);
 

@@ -1,4 +1,4 @@
-// PL-73: what a mover covers that another one carries with it.
+// PL-73: areas of a mover attached to a carrier.
 #include "takt/planar/arm.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ Place RandomPlace(Chance& chance, double most) {
   return {chance.between(-most, most), chance.between(-most, most)};
 }
 
-// Somewhere in the hull of some places.
+// Returns a random point in the hull of some places.
 Place Within(std::span<const Place> places, Chance& chance) {
   double sum = 0;
   Place place;
@@ -39,7 +39,7 @@ Place Within(std::span<const Place> places, Chance& chance) {
   return sum > 0 ? Place{place.x / sum, place.y / sum} : places.front();
 }
 
-// The place is in the hull: the arm's end is nowhere else, so a mover of no size there touches it.
+// Returns true if a point is in the hull: a mover of no size there touches it.
 bool Covers(const Area& area, const Pose& pose) {
   Area places = area;
   places.mover = {};
@@ -58,7 +58,7 @@ TEST(Arms, StandWhereTheCarrierHasThem) {
   EXPECT_NEAR(end.c, 100, 1e-9);
 }
 
-// A carrier that does not turn takes it along just as it goes itself.
+// A carrier without rotation: the attached mover moves like the carrier.
 TEST(Arms, GoStraightWithTheCarrier) {
   const Arm arm{{0, 100}, 0, {50, 50}};
   const Area area = AreaOf(arm, {.places = {Place{0, 0}, Place{400, 0}}, .count = 2, .least_c = 90, .most_c = 90});
@@ -67,7 +67,7 @@ TEST(Arms, GoStraightWithTheCarrier) {
   EXPECT_NEAR(area.places[1].y, 0, 1e-9);
 }
 
-// A quarter turn where it stands: the hull of the arc, and no more than 2 % of the arm beyond it.
+// A quarter turn in place: the hull of the arc, and no more than 2 % of the arm beyond it.
 TEST(Arms, SweepAnArc) {
   const Arm arm{{300, 0}, 0, {}};
   const Area area = AreaOf(arm, {.places = {}, .count = 1, .least_c = 0, .most_c = 90});
@@ -83,7 +83,7 @@ TEST(Arms, SweepAnArc) {
   EXPECT_FALSE(Covers(area, {{100, 100}, 45}));
 }
 
-// Wherever the carrier is within its area, its arm is within that of the arm; and likewise on a move.
+// For any pose of the carrier within its area, its arm is within the area of the arm; likewise on a move.
 TEST(Arms, PropertyCoverAllThatTheyComeTo) {
   for (unsigned seed = 0; seed < 2000; ++seed) {
     Chance chance(seed);

@@ -1,4 +1,4 @@
-// Movers on tracks that go on into one another: PL-23, PL-24, PL-26. And where they are sent on loops: PL-12.
+// Movers on linked tracks: PL-23, PL-24, PL-26. Destinations on loops: PL-12.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ using testing::Watcher;
 
 const Pace kEasyPace = testing::PaceOf(1000, 8000, 200000);
 
-// A way along y = 0 cut into tracks of these lengths.
+// Tracks along y = 0, one after the other, of these lengths.
 std::vector<Layout> Cut(const std::vector<double>& lengths) {
   std::vector<Layout> layouts;
   double x = 0;
@@ -25,7 +25,7 @@ std::vector<Layout> Cut(const std::vector<double>& lengths) {
   return layouts;
 }
 
-// The gap reaches over tracks that are shorter, also to one that has only been put there.
+// The gap holds across tracks that are shorter, also to a mover that has only been put there.
 TEST(Borders, TheGapReachesOverShortTracks) {  // PL-24
   for (const double shorter : {5.0, 20.0, 60.0, 150.0}) {
     for (const int between : {1, 2, 5}) {
@@ -38,16 +38,16 @@ TEST(Borders, TheGapReachesOverShortTracks) {  // PL-24
       for (const double gap : {120.0, 300.0}) {
         TrackNetworkState streets(layouts, 2);
         streets.Put(0, 0, 100, kEasyPace, 120);
-        streets.Put(1, last, 5, kEasyPace, gap);  // the larger one counts
+        streets.Put(1, last, 5, kEasyPace, gap);  // the larger gap counts
         streets.Send(0, 0, 1500);
         const bool free = way + 5 >= gap;
         EXPECT_EQ(streets.Run(5), free) << way;
         if (!free) {
-          // Or where it would get near enough to the end of its way.
+          // Or before it would get too near at the end of its route.
           EXPECT_NEAR(streets[0].at.position, std::max(1505 + way - gap, 1500.0 - 120), 0.05);
           EXPECT_EQ(streets[0].waits_for, 1U);
         }
-        // Back it comes no nearer, either; and ahead it makes room.
+        // It comes no nearer on the way back, either; and when it moves ahead it makes room.
         streets.Send(1, last, 0);
         EXPECT_EQ(streets.Run(3), way >= gap);
         const double apart = 1500 - streets[0].at.position + way + streets[1].at.position;
@@ -60,7 +60,7 @@ TEST(Borders, TheGapReachesOverShortTracks) {  // PL-24
   }
 }
 
-// One that has come over many short tracks is still in the way of one that comes from the side where those begin.
+// A mover that has passed many short tracks still blocks a mover from the branch where those begin.
 TEST(Borders, TheGapReachesBackOverShortTracks) {  // PL-24
   for (const std::uint32_t over : {3U, 5U, 6U, 8U, 12U}) {
     std::vector<Layout> layouts = Cut({1000, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 1000});
@@ -85,7 +85,7 @@ TEST(Borders, TheGapReachesBackOverShortTracks) {  // PL-24
   }
 }
 
-// Face to face over a border between tracks.
+// Head-on across a border between tracks.
 TEST(Borders, FaceToFaceIsADeadlock) {  // PL-26
   for (const int later : {1300, 1500, 1700}) {
     for (const double from : {300.0, 400.0}) {
@@ -110,7 +110,7 @@ Layout Ring() {
   return {.elements = {testing::Line({200, 600}, {500, 600}), testing::Line({500, 900}, {200, 900})}, .closed = true};
 }
 
-// How far it goes, with its sign.
+// Returns the distance travelled, with its sign.
 double Went(TrackNetworkState& streets, const Destination& to) {
   const double before = streets[0].at.position + streets[0].origin;
   EXPECT_TRUE(streets.Send(0, to));
@@ -118,7 +118,7 @@ double Went(TrackNetworkState& streets, const Destination& to) {
   return streets[0].at.position + streets[0].origin - before;
 }
 
-// Turns come on top wherever the mover stands, also at its target, or within the tolerance of it.
+// Turns are added wherever the mover is, also at its target, or within the tolerance of it.
 TEST(Borders, TurnsOfALoopAreMade) {  // PL-12
   TrackNetworkState streets({Ring()}, 1);
   const double length = streets.track(0).length;
@@ -133,7 +133,7 @@ TEST(Borders, TurnsOfALoopAreMade) {  // PL-12
       EXPECT_NEAR(Went(streets, to(100, Way::kNegative)), -all, 1e-6);
       EXPECT_NEAR(Went(streets, to(400, Way::kPositive)), 300 + all, 1e-6);
       EXPECT_NEAR(Went(streets, to(100, Way::kNegative)), -300 - all, 1e-6);
-      // A little against its direction, where that is tolerated; else all the way round.
+      // A little against its direction, within the tolerance; else all the way round.
       const double slightly = tolerance > 0 ? -0.5 : length - 0.5;
       EXPECT_NEAR(Went(streets, to(99.5, Way::kPositive)), slightly + all, 1e-6) << turns << " " << tolerance;
     }

@@ -1,4 +1,4 @@
-// PL-20, PL-23: tracks put together step by step, and linked to others.
+// PL-20, PL-23: tracks built step by step, and links to others.
 #include "takt/planar/builder.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ using testing::EndOf;
 using testing::kPi;
 using testing::StartOf;
 
-// PL-23, the manual's example of a network: four tracks, three of which start where the first ends.
+// PL-23, the manual's example of a network: four tracks, three of which start at the end of the first.
 TEST(Builders, LinkTheExamplesNetwork) {
   TrackBuilder one, two, three, four;
   EXPECT_EQ(one.AppendLine({250, 120}, {650, 120}), Problem::kNone);
@@ -27,7 +27,7 @@ TEST(Builders, LinkTheExamplesNetwork) {
   EXPECT_EQ(three.AppendLine({200, 500}, {120, 500}), Problem::kNone);
   EXPECT_EQ(four.StartFrom(end), Problem::kNone);
   EXPECT_EQ(four.AppendLine({200, 550}, {200, 750}), Problem::kNone);
-  // Straight on; and two equal curves, one of them left of it, the other right.
+  // One straight on; and two equal curves, to the left and to the right of it.
   EXPECT_NEAR(three.track()->length, 130, 1e-9);
   EXPECT_NEAR(four.track()->pieces[0].segment.length, two.track()->pieces[0].segment.length, 1e-9);
   EXPECT_NEAR(two.track()->pieces[2].segment.length, two.track()->pieces[0].segment.length, 1e-9);
@@ -36,7 +36,7 @@ TEST(Builders, LinkTheExamplesNetwork) {
   EXPECT_LT(Distance(At(*two.track(), two.track()->pieces[1].start).place, {200, 450}), 1e-9);
 }
 
-// PL-33, the manual's example of two parts: two tracks of the same shape are equally long, though one of them begins
+// PL-33, the manual's example of two parts: two tracks of the same shape have equal lengths, though one of them begins
 // with transitions where the other has lines.
 TEST(Builders, MakeEqualWaysEquallyLong) {
   TrackBuilder three, two;
@@ -51,7 +51,7 @@ TEST(Builders, MakeEqualWaysEquallyLong) {
   EXPECT_NEAR(two.track()->length, three.track()->length, 1e-9);
 }
 
-// PL-20: what cannot be appended changes nothing.
+// PL-20: an element that cannot be appended changes nothing.
 TEST(Builders, RefuseWhatCannotBe) {
   TrackBuilder builder;
   EXPECT_EQ(builder.track(), nullptr);
@@ -78,7 +78,7 @@ TEST(Builders, RefuseWhatCannotBe) {
   EXPECT_NEAR(builder.track()->length, 50, 1e-9);
 }
 
-// PL-23: a track starts and ends at one place; there any number of others may be met.
+// PL-23: a track has one start and one end; any number of other tracks may be linked there.
 TEST(Builders, LinkAtOnePlaceOnly) {
   TrackBuilder builder;
   const TrackPoint from{{0, 0}, 0}, to{{300, 100}, 0};
@@ -87,7 +87,7 @@ TEST(Builders, LinkAtOnePlaceOnly) {
   EXPECT_EQ(builder.EndAt(to), Problem::kNone);
   EXPECT_EQ(builder.AppendLine({400, 0}, {500, 0}), Problem::kEnded);
   EXPECT_EQ(builder.CloseLoop(), Problem::kLinked);
-  // The same places again, as another track has them; the direction as it counts there.
+  // The same points again, as other tracks have them; the direction may differ by whole turns.
   EXPECT_EQ(builder.StartFrom({{0, 0}, 2 * kPi}), Problem::kNone);
   EXPECT_EQ(builder.EndAt(to), Problem::kNone);
   EXPECT_EQ(builder.StartFrom({{0, 1}, 0}), Problem::kNotItsStart);
@@ -95,7 +95,7 @@ TEST(Builders, LinkAtOnePlaceOnly) {
   EXPECT_EQ(builder.StartFrom({{0, 0}, 0, 0.01}), Problem::kNotItsStart);
   EXPECT_EQ(builder.EndAt({{300, 100}, 0, 0.01}), Problem::kNotItsEnd);
   EXPECT_EQ(builder.EndAt(from), Problem::kNotItsEnd);
-  // A track that lies there already is linked as it is.
+  // A track that is there already is linked unchanged.
   TrackBuilder lying;
   EXPECT_EQ(lying.AppendLine({0, 0}, {300, 0}), Problem::kNone);
   EXPECT_EQ(lying.StartFrom(from), Problem::kNone);

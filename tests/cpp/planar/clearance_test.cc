@@ -1,4 +1,4 @@
-// PL-24: where movers on two tracks come too near: by hand, and against trying all pairs of places.
+// PL-24: ranges in which movers on two tracks come too near: by hand, and against sampling all pairs of positions.
 #include "takt/planar/clearance.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using testing::Make;
 using testing::Random;
 using testing::RandomTrack;
 
-// PL-24: two squares of 100 mm: side by side, corner to corner, turned by 45°, in one another.
+// PL-24: two squares of 100 mm: side by side, corner to corner, turned by 45°, overlapping.
 TEST(Separations, AreThoseOfRectangles) {
   const Footprint square{100, 100};
   const TrackPoint here{{0, 0}, 0};
@@ -35,7 +35,7 @@ TEST(Separations, AreThoseOfRectangles) {
   EXPECT_NEAR(Separation(here, square, {{130, 0}, 0}, round), 30, 1e-12);
 }
 
-// PL-24: random rectangles: as far apart as their borders, sampled.
+// PL-24: random rectangles: the distance of their sampled borders.
 TEST(Separations, AreDistancesOfBorders) {
   Random random(21);
   for (int i = 0; i < Trials(300); ++i) {
@@ -64,7 +64,7 @@ TEST(Separations, AreDistancesOfBorders) {
       EXPECT_NEAR(least, said, 3);
       EXPECT_GE(least, said - 1e-9);
     } else {
-      // Moved by so much in some direction they touch, and by less in none.
+      // Moved by the depth they touch in some direction, and by less in none.
       double move = INFINITY;
       for (int k = 0; k < 720; ++k) {
         TrackPoint moved = b;
@@ -78,8 +78,8 @@ TEST(Separations, AreDistancesOfBorders) {
   }
 }
 
-// PL-24: lines that run side by side 115 mm apart from 200 mm on: movers of 113 mm with 5 mm between them meet where
-// one of them has its centre within 113 + sqrt(5² - 2²) mm of the other line.
+// PL-24: lines that run side by side 115 mm apart from 200 mm on: movers of 113 mm with 5 mm between them conflict
+// where the centre of one is within 113 + sqrt(5² - 2²) mm of the other line.
 TEST(Conflicts, AreThoseOfLines) {
   const Footprint mover{113, 113};
   const Track a = Make({.elements = {Line({0, 0}, {1000, 0})}});
@@ -105,9 +105,9 @@ TEST(Conflicts, AreThoseOfLines) {
   }
 }
 
-// PL-24: two tracks that start from the end of one, at a right angle to each other: near the switch they conflict, from
-// some place on they do not; as far on both, as they mirror each other. For movers that may turn the manual's rule
-// holds: as far as a track lies within twice their radius of the other one.
+// PL-24: two tracks that start from the end of one, at a right angle to each other: near the switch they conflict,
+// beyond a certain position they do not; equally far on both, as they mirror each other. For movers at any angle the
+// manual's rule holds: as far as a track is within twice their radius of the other one.
 TEST(Conflicts, ReachFromASwitch) {
   const TrackPoint start{{0, 0}, 0};
   const Track left = Make({.elements = {Line({100, 100}, {100, 600})}, .from = start});
@@ -124,7 +124,7 @@ TEST(Conflicts, ReachFromASwitch) {
   EXPECT_GT(shorter, 113);
 }
 
-// PL-24: no place with a conflict is left out, and none is named where movers keep well apart.
+// PL-24: no position with a conflict is left out, and none is included where movers keep well apart.
 TEST(Conflicts, AreAllAndNoMore) {
   Random random(22);
   int conflicts = 0, free = 0;
@@ -136,7 +136,7 @@ TEST(Conflicts, AreAllAndNoMore) {
     const double resolution = random.Between(0.2, 3);
     const auto ranges = Conflicts(a, on_a, b, on_b, clearance, resolution);
     for (std::size_t k = 1; k < ranges.size(); ++k) EXPECT_LT(ranges[k - 1].to, ranges[k].from);
-    // The most that a corner of the other mover moves from a sample to where it is nearest.
+    // The most that a corner of the other mover moves between a sample and its nearest position.
     const double sampling = 0.25 * (1 + std::hypot(on_b.width, on_b.height) / 2 * PeakCurvature(b, 0, b.length));
     std::vector<TrackPoint> others;
     const int count = static_cast<int>(b.length) * 2;

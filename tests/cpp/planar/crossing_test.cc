@@ -18,7 +18,7 @@ using testing::Make;
 using testing::Random;
 using testing::RandomTrack;
 
-// A bow over a line: through (100, 0) and again, coming down.
+// An arc over a line: through (100, 0) and, descending, once more.
 TEST(Crossings, AreFoundByHand) {
   const Track bow = Make({.elements = {Line({0, 0}, {200, 0}), Arc({300, 100}, {100, 100}, {200, 100}, false),
                                        Line({100, 60}, {100, -100})}});
@@ -35,14 +35,14 @@ TEST(Crossings, AreNotWhereATrackGoesOn) {
   EXPECT_TRUE(SelfCrossing(Make({.elements = {circle}})));  // its ends touch
   const Track stadium = Make({.elements = {Line({0, 0}, {300, 0}), Line({300, 200}, {0, 200})}, .closed = true});
   EXPECT_FALSE(SelfCrossing(stadium));
-  // Twice round, spiralling inwards.
+  // A spiral inwards, of two turns.
   const Track spiral =
       Make({.elements = {Arc({200, 0}, {-200, 0}, {0, 0}, false), Arc({-150, -50}, {150, -50}, {0, -50}, false),
                          Arc({120, 0}, {-120, 0}, {0, 0}, false)}});
   EXPECT_FALSE(SelfCrossing(spiral));
 }
 
-// PL-23: as many pieces of straight line say, and only where the track is at one place twice.
+// PL-23: crossings are found whenever straight pieces cross, and only where the track passes a point twice.
 TEST(Crossings, AreThoseOfPolylines) {
   Random random(31);
   int crossing = 0;

@@ -1,4 +1,4 @@
-// PL-31: the surface of stators and its border: by hand, and against looking at places one by one.
+// PL-31: the surface of stators and its border: by hand, and against sampling points.
 #include "takt/planar/environment.h"
 
 #include <gtest/gtest.h>
@@ -67,12 +67,12 @@ TEST(Environments, HaveABorder) {
   EXPECT_FALSE(Carries(e, StandingAt(corner - 0.01, 240, 45)));
 }
 
-// PL-31: the manual's program 6.7.2: on one stator about the origin a mover cannot get to (100, 100).
+// PL-31: the manual's program 6.7.2: on one stator about the origin a mover cannot reach (100, 100).
 TEST(Environments, EndWhereStatorsEnd) {
   const Environment e = Surface({{-120, -120}});
   EXPECT_TRUE(Carries(e, StandingAt(0, 0)));
   EXPECT_FALSE(Carries(e, StandingAt(100, 100)));
-  // It can turn there: a circle of 109.6 mm.
+  // It can rotate there: a circle of 109.6 mm.
   Area turning = StandingAt(0, 0);
   turning.most_c = 90;
   EXPECT_TRUE(Carries(e, turning));
@@ -80,7 +80,7 @@ TEST(Environments, EndWhereStatorsEnd) {
   EXPECT_FALSE(Carries(e, turning));
 }
 
-// PL-31: the surface is to the left of its outline: outer ones go counterclockwise, holes clockwise.
+// PL-31: the surface is to the left of its outlines: outer ones are counterclockwise, holes clockwise.
 TEST(Environments, HaveHolesAndIslands) {
   const Environment e = Surface(Grid({"###..##",  //
                                       "#.#...#",  //
@@ -96,19 +96,19 @@ TEST(Environments, HaveHolesAndIslands) {
   EXPECT_FALSE(Carries(e, StandingAt(360, 360)));
   EXPECT_FALSE(Carries(e, StandingAt(360, 360, 0, {20, 20})));
   EXPECT_FALSE(Carries(e, StandingAt(200, 360)));
-  // A hole all inside of what is covered, a way across it, a way around it.
+  // A hole inside the surface, a path across it, a path around it.
   EXPECT_FALSE(Carries(e, StandingAt(360, 360, 0, {400, 400})));
   const auto way = [](const Place& from, const Place& to) {
     return Area{.places = {from, to}, .count = 2, .mover = {155, 155}};
   };
   EXPECT_FALSE(Carries(e, way({120, 360}, {600, 360})));
   EXPECT_TRUE(Carries(e, way({120, 120}, {600, 120})));
-  // No way from one island to another.
+  // No path from one island to another.
   EXPECT_TRUE(Carries(e, StandingAt(1320, 600)));
   EXPECT_FALSE(Carries(e, way({600, 600}, {1320, 600})));
 }
 
-// PL-31: where stators meet in a corner alone there is no way across; outlines that touch there do not cross.
+// PL-31: stators that meet in a corner only are not connected; outlines that touch there do not cross.
 TEST(Environments, DoNotMeetInCorners) {
   const Environment apart = Surface(Grid({".#", "#."}));
   ASSERT_EQ(apart.outlines.size(), 2u);
@@ -120,7 +120,7 @@ TEST(Environments, DoNotMeetInCorners) {
   EXPECT_EQ(holes.outlines[1].corners.size(), 8u);
 }
 
-// PL-31: stators need no grid. Shifted by half a stator, and in steps that no computer knows exactly.
+// PL-31: stators need no grid. Shifted by half a stator, and in steps without an exact binary representation.
 TEST(Environments, NeedNoGrid) {
   const Environment e = Surface({{0, 0}, {240, 0}, {120, 240}});
   ASSERT_EQ(e.outlines.size(), 1u);
@@ -131,7 +131,7 @@ TEST(Environments, NeedNoGrid) {
   EXPECT_EQ(Surface(row).outlines.at(0).corners.size(), 4u);
 }
 
-// PL-31: what cannot be is named.
+// PL-31: problems are reported.
 TEST(Environments, NameWhatIsWrong) {
   Environment e = Surface({{0, 0}});
   const auto problem = [&](const std::vector<Place>& stators) { return MakeEnvironment(stators, e); };
@@ -150,12 +150,12 @@ TEST(Environments, NameWhatIsWrong) {
   EXPECT_EQ(problem({{0, 0}, {0, 0}}).problem, StatorProblem::kOverlap);
   EXPECT_EQ(problem({{0, 0}, {239.99, 0}}).problem, StatorProblem::kOverlap);
   EXPECT_EQ(problem(std::vector<Place>(kMostStators + 1)).problem, StatorProblem::kTooMany);
-  // What it was before it still is.
+  // The old surface is unchanged.
   EXPECT_EQ(CornersOf(e.outlines.at(0)), (Corners{{0, 0}, {240, 0}, {240, 240}, {0, 240}}));
 }
 
-// PL-31: random surfaces, on a grid and off it: what is carried has all its places on stators, what is not has a place
-// beside them.
+// PL-31: random surfaces, on a grid and off it: all points of a carried area are on stators; an area that is not
+// carried has a point off them.
 TEST(Environments, CarryWhatLiesOnStators) {
   Random random(41);
   int carried = 0, refused = 0, holes = 0, narrow = 0;
@@ -198,7 +198,7 @@ TEST(Environments, CarryWhatLiesOnStators) {
       if (said) {
         EXPECT_FALSE(off);
       } else if (!off) {
-        ++narrow;  // so little is off that it was not found
+        ++narrow;  // the part off the stators is too small to be found
       }
     }
   }

@@ -1,4 +1,4 @@
-// Polygons as FCL has them: prisms. For tests and benchmarks.
+// Polygons as prisms of FCL. For tests and benchmarks.
 #pragma once
 
 #include <fcl/geometry/shape/convex.h>
@@ -14,7 +14,7 @@ namespace takt::planar::testing {
 
 using Prism = std::shared_ptr<fcl::Convexd>;
 
-// 100 mm high. The polygon is convex and counterclockwise.
+// Height 100 mm. Requires: the polygon is convex and counterclockwise.
 inline Prism PrismOf(const std::vector<Place>& polygon) {
   const int n = static_cast<int>(polygon.size());
   auto corners = std::make_shared<std::vector<fcl::Vector3d>>();

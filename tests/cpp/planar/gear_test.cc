@@ -1,4 +1,4 @@
-// Movers that go along with a master, in traffic: PL-14, PL-34.
+// Traffic of movers that follow a master: PL-14, PL-34.
 #include "takt/planar/gear.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using testing::Straight;
 using testing::TrackNetworkState;
 using testing::Watcher;
 
-// An axis that goes from one random velocity to the next, and now and then jumps.
+// An axis that moves from one random velocity to the next, with an occasional jump.
 class Axis {
  public:
   Axis(const trajectory::Limits& limits, testing::Random& random) : limits_(limits), random_(random) {}
@@ -26,7 +26,7 @@ class Axis {
     time_ += testing::kPeriod;
     if (time_ > profile_.duration() + hold_) {
       hold_ = random_.Between(0, 0.5);
-      // Near either end of its range it turns round.
+      // Near either end of its range it reverses.
       double velocity = random_.Between(-1, 1) * limits_.velocity;
       if (at_.position > upper) velocity = -std::abs(velocity);
       if (at_.position < lower) velocity = std::abs(velocity);
@@ -86,8 +86,7 @@ TEST(Gear, FollowsWhatItsLimitsAllowBitForBit) {  // PL-14
   }
 }
 
-// A master beyond the limits of the mover, and one that jumps: limits are kept, and what is said of being in step is
-// true.
+// A master beyond the limits of the mover, and one that jumps: limits are kept, and in_step is true only in step.
 TEST(Gear, KeepsItsLimitsWhateverTheMasterDoes) {  // PL-14
   int regained = 0, lost = 0;
   for (unsigned trial = 0; trial < 20; ++trial) {
@@ -129,7 +128,7 @@ TEST(Gear, KeepsItsLimitsWhateverTheMasterDoes) {  // PL-14
   EXPECT_GT(regained, 100);
 }
 
-// Until it has been in step it goes only the way it may.
+// Until it has been in step it moves only in the permitted direction.
 TEST(Gear, GetsIntoStepTheWayItMay) {  // PL-14
   const Pace pace = testing::PaceOf(1000, 8000, 200000);
   for (const int sense : {0, 1, -1}) {
@@ -137,7 +136,7 @@ TEST(Gear, GetsIntoStepTheWayItMay) {  // PL-14
     streets.Put(0, 0, 1500, pace);
     Couple(streets, 0, 0);
     streets[0].gear.sense = static_cast<std::int8_t>(sense);
-    // The master stands behind it, comes up to it, and goes on.
+    // The master is at rest behind it, comes up to it, and continues.
     double least = 1500, most = 1500;
     for (int i = 0; i < 6000; ++i) {
       const double t = i * testing::kPeriod;
@@ -147,13 +146,13 @@ TEST(Gear, GetsIntoStepTheWayItMay) {  // PL-14
       most = std::max(most, streets[0].at.position);
     }
     EXPECT_NEAR(least, sense > 0 ? 1500 : 1300, 1e-6) << sense;
-    // Once it has been in step it goes along either way.
+    // Once it has been in step it follows in both directions.
     EXPECT_TRUE(streets[0].gear.in_step);
     EXPECT_NEAR(most, 2099.8, 1e-6);
   }
 }
 
-// Coupled late, it comes from behind and does not pass its master's place: it could not come back.
+// Coupled late, it comes from behind and does not pass its master's position: it could not move back.
 TEST(Gear, ComesFromBehindWithoutPassing) {  // PL-14
   for (unsigned trial = 0; trial < 30; ++trial) {
     testing::Random random(trial);
@@ -180,7 +179,7 @@ TEST(Gear, ComesFromBehindWithoutPassing) {  // PL-14
   }
 }
 
-// Its master's place is behind it and it may only go forwards: it waits for its master, which waits for it.
+// Its master's position is behind it and it may only move forwards: it waits for its master, which waits for it.
 TEST(Gear, MayWaitForItsMaster) {  // PL-14, PL-26
   const Pace pace = testing::PaceOf(1000, 8000, 200000);
   TrackNetworkState streets({Straight(3000)}, 2);
@@ -204,7 +203,7 @@ TEST(Gear, MayWaitForItsMaster) {  // PL-14, PL-26
   EXPECT_NEAR(streets[1].at.position, 2300, 1e-6);
 }
 
-// The place lies ahead and comes back; as long as it is on the track it can be waited for.
+// The demand is ahead and comes back; while it is on the track the mover can wait for it.
 TEST(Gear, LetsAPlaceComeThatIsOnItsWay) {  // PL-14
   const Pace pace = testing::PaceOf(1000, 8000, 200000);
   trajectory::Planner planner;
@@ -215,7 +214,7 @@ TEST(Gear, LetsAPlaceComeThatIsOnItsWay) {  // PL-14
       streets.Put(0, 0, from, pace);
       Couple(streets, 0, from + 400 * back);
       streets[0].gear.sense = static_cast<std::int8_t>(sense);
-      trajectory::Profile master;  // comes back to the end, and goes
+      trajectory::Profile master;  // comes back to the end, and leaves it
       ASSERT_TRUE(planner.ToPosition({}, -399 * back, 0, {900, 8000, 8000, 200000}, master).ok());
       double furthest = from;
       for (int i = 1; i < 3000; ++i) {
@@ -226,13 +225,13 @@ TEST(Gear, LetsAPlaceComeThatIsOnItsWay) {  // PL-14
         ASSERT_LE(streets[0].at.position, 1000 + 1e-6);
         furthest = back > 0 ? std::max(furthest, streets[0].at.position) : std::min(furthest, streets[0].at.position);
       }
-      // Away from the end it goes only where it may.
+      // Away from the end it moves only in the permitted direction.
       const bool may = sense == 0 || sense == back;
       EXPECT_EQ(streets[0].gear.in_step, may) << from << " " << sense;
       if (!may) {
         EXPECT_EQ(furthest, from);
       }
-      // Beyond it nothing can be waited for.
+      // A demand beyond the end is not waited for.
       trajectory::Profile on;
       ASSERT_TRUE(planner.ToPosition(master.end(), -500 * back, 0, {900, 8000, 8000, 200000}, on).ok());
       for (int i = 1; i < 2000; ++i) {
@@ -274,7 +273,7 @@ TEST(Gear, StopsWhereItsWayEnds) {  // PL-14
   }
 }
 
-// Each goes along with the one before it, at just the gap that it has to keep: they are one body.
+// Each follows the one ahead, at just the gap that it has to keep: they are one body.
 TEST(Gear, AConvoyIsRigid) {  // PL-14
   TrackNetworkState streets({Straight(30000)}, 11);
   const Pace pace = testing::PaceOf(1500, 10000, 200000);
@@ -306,7 +305,7 @@ TEST(Gear, AConvoyIsRigid) {  // PL-14
   EXPECT_LE(watcher.jerk, 1 + 1e-5);
 }
 
-// The same, but they come from somewhere behind: they close up, without shaking, and then are one body.
+// The same, but they start somewhere behind: they close up, without oscillation, and then are one body.
 TEST(Gear, AConvoyClosesUp) {  // PL-14
   testing::Random random(7);
   TrackNetworkState streets({Straight(60000)}, 11);
@@ -346,7 +345,7 @@ TEST(Gear, AConvoyClosesUp) {  // PL-14
   RecordProperty("refused", refused);
 }
 
-// Where a curve does not allow what the master does the mover lets go, keeps its lateral acceleration, and catches up.
+// If a curve does not admit the master's motion the mover falls behind, keeps its lateral acceleration, and catches up.
 TEST(Gear, SlowsDownInCurves) {  // PL-14, PL-21
   for (unsigned trial = 0; trial < 10; ++trial) {
     testing::Random random(trial);
@@ -385,7 +384,7 @@ TEST(Gear, SlowsDownInCurves) {  // PL-14, PL-21
   }
 }
 
-// Over a switch each goes where the first one went, as one body.
+// At a switch each takes the route of the first one, as one body.
 TEST(Gear, AConvoyGoesThroughSwitches) {  // PL-14, PL-34
   const Layout in{{testing::Line({0, 0}, {2000, 0})}};
   const Layout left{{testing::Line({2000, 0}, {2300, 0}), testing::Line({2600, 300}, {4000, 300})}};
@@ -409,7 +408,7 @@ TEST(Gear, AConvoyGoesThroughSwitches) {  // PL-14, PL-34
     for (std::uint32_t i = 1; i < 6; ++i) ASSERT_TRUE(streets[i].gear.in_step) << i << " " << streets.now();
   };
   for (int i = 0; i < 1500; ++i) step();
-  // The first one is over the switch, the last one not yet: all go where the first one went.
+  // The first one is past the switch, the last one not yet: all take the route of the first one.
   EXPECT_GT(streets[0].origin, 0);
   EXPECT_EQ(streets[5].origin, 0);
   EXPECT_FALSE(streets[0].route.Contains(2));
@@ -431,8 +430,8 @@ bool Follows(TrackNetworkState& streets, std::uint32_t mover, std::uint32_t mast
   return true;
 }
 
-// Random movers of random cities go along with axes, with movers anywhere, and behind movers wherever those go; others
-// go their own ways. Whatever masters do, nobody comes too near, limits are kept, and who says to be in step is.
+// Random movers of random cities follow axes, movers anywhere, and movers whose routes they take; others have targets.
+// Whatever masters do, none comes too near, limits are kept, and in_step is true only in step.
 TEST(Gear, NobodyComesTooNear) {  // PL-14, PL-23, PL-24
   const int trials = Trials(12);
   int behind = 0, in_step = 0, ended = 0, crossed = 0;
@@ -454,7 +453,7 @@ TEST(Gear, NobodyComesTooNear) {  // PL-14, PL-23, PL-24
     }
     std::vector<trajectory::Limits> most;
     for (std::uint32_t k = 0; k < put; ++k) most.push_back(streets[k].pace.limits);
-    // Each command comes with dynamics of its own.
+    // Each command has dynamics of its own.
     const auto some_of = [&](const trajectory::Limits& l) {
       const auto share = [&] { return random.Coin() ? 1 : random.Between(0.2, 1); };
       return trajectory::Limits{share() * l.velocity, share() * l.acceleration, share() * l.deceleration,
@@ -550,11 +549,11 @@ TEST(Gear, NobodyComesTooNear) {  // PL-14, PL-23, PL-24
     EXPECT_LE(watcher.speed, 1 + 1e-8) << trial;
     EXPECT_LE(watcher.lateral, 1 + 1e-6) << trial;
   }
-  // Else it would prove nothing.
+  // Otherwise the test would prove nothing.
   EXPECT_GT(behind, Trials(50));
   EXPECT_GT(in_step, Trials(10000));
   EXPECT_GT(ended, Trials(10));
-  if (kSanitized) return;  // too few trials for what is seldom
+  if (kSanitized) return;  // too few trials for rare events
   EXPECT_GT(crossed, 0);
 }
 

@@ -1,4 +1,4 @@
-// PL-81: what movers cover until they rest, and who of many is near it.
+// PL-81: courses of movers until they rest, and the search for near ones among many.
 #include "takt/planar/guard.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ Area BodyAt(const Place& place, double width, double height, double c) {
   return {.places = {place}, .count = 1, .least_c = c, .most_c = c, .mover = {width, height}, .margin = 0};
 }
 
-// A network of this track alone, and a mover on it.
+// A network of only this track, and a mover on it.
 struct Alone {
   explicit Alone(Track of) : track(std::move(of)) {
     network.roads.resize(1);
@@ -38,7 +38,7 @@ struct Alone {
   Rider rider;
 };
 
-// Every place of the stretch lies in the course, and the course is no larger than it says.
+// Every position of the stretch is in the course, and the course is no larger than specified.
 TEST(CourseProperty, CoversItsStretch) {
   Random random(3);
   for (int i = 0; i < Trials(200); ++i) {
@@ -58,7 +58,7 @@ TEST(CourseProperty, CoversItsStretch) {
   }
 }
 
-// The grid finds what a look at all of them finds, whatever has come, gone and moved.
+// The grid finds the same as a search through all, after any insertions, removals and moves.
 TEST(GuardProperty, FindsTheFirstInTheWay) {
   Random random(5);
   constexpr std::uint32_t kCount = 60;
@@ -126,8 +126,8 @@ TEST(GuardProperty, FindsTheFirstInTheWay) {
   EXPECT_GT(found, Trials(500));
 }
 
-// Two movers that brake one behind the other: whenever they are said to be kept apart they are, at any time, turned as
-// they are.
+// Two movers that brake one behind the other: if they are reported to stay apart, they do at all times, at their
+// angles.
 TEST(CourseProperty, KnowsWhatIsApart) {
   Random random(7);
   int by_order = 0, in_time = 0, overlaps = 0;
@@ -168,7 +168,7 @@ TEST(CourseProperty, KnowsWhatIsApart) {
   EXPECT_GT(overlaps, Trials(5));
 }
 
-// On a straight line squares that stand along it need no more than their side, turned ones what their corners take.
+// On a straight line squares aligned with it need no more than their side, rotated ones the extent of their corners.
 TEST(Course, TakesTheGapOfAStraightLine) {
   Alone alone(Make({.elements = {Line({0, 0}, {1000, 0})}}));
   const auto apart = [&](double gap, double c) {

@@ -1,4 +1,4 @@
-// What a mover on tracks never exceeds, whatever it is told: PL-15, PL-21.
+// Limits that a mover on tracks never exceeds, whatever is commanded: PL-15, PL-21.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ void ExpectWithin(const Watcher& watcher, const char* what) {
   EXPECT_LE(watcher.vector_jerk, 1 + 2e-5) << what;
 }
 
-// A line into a corner, as tight as its distance from both sides says, and on.
+// A line into a corner, as tight as its distance from both sides, and on.
 Layout CornerOf(double distance) {
   return {{testing::Line({0, 0}, {500, 0}), testing::Line({500 + distance, distance}, {500 + distance, 1200})}};
 }
@@ -45,7 +45,7 @@ Layout Serpentine(double distance) {
   return layout;
 }
 
-// Where it is is known but for rounding, and so is whether that is on its track.
+// The position is known up to rounding, and so is whether it is on the track.
 TEST(Limits, AMoverMayBeBeforeItsTrackByRounding) {
   TrackNetworkState streets({Corner()}, 1);
   for (const double place : {-1.2e-13, 0.0, 100.0}) {
@@ -58,7 +58,7 @@ TEST(Limits, AMoverMayBeBeforeItsTrackByRounding) {
   }
 }
 
-// The acceleration that it has would have to be taken away slower than there is speed left.
+// The commanded jerk would take longer to remove the acceleration than the speed limit admits.
 TEST(Limits, ALowerJerkIsNoReasonToGetTooFast) {  // PL-15
   for (const double jerk : {1000.0, 5000.0, 20000.0}) {
     for (const double velocity : {2000.0, 500.0}) {
@@ -89,7 +89,7 @@ TEST(Limits, ALowerJerkIsNoReasonToGetTooFast) {  // PL-15
   }
 }
 
-// What it is told is too little to slow down for the corner.
+// The commanded dynamics are too low to slow down for the corner.
 TEST(Limits, LessDynamicsAreNoReasonToTakeACurveTooFast) {  // PL-21
   const Pace paces[] = {testing::PaceOf(2000, 100, 200000), testing::PaceOf(2000, 1000, 200000),
                         testing::PaceOf(2000, 10000, 1000), testing::PaceOf(2000, 10000, 10000),
@@ -119,8 +119,8 @@ TEST(Limits, LessDynamicsAreNoReasonToTakeACurveTooFast) {  // PL-21
   }
 }
 
-// However tight the track, with whatever maxima, up to a lateral acceleration that is all of the acceleration: alone it
-// keeps both vectors within them, and comes to its end without having to stop before.
+// However tight the track, with any maxima, up to a lateral acceleration that uses all of the acceleration: alone on
+// it, a mover keeps the maxima of both vectors, and reaches the end without a stop before.
 TEST(Limits, VectorsKeepTheirMaximaInCurvesAndTransitions) {  // PL-82
   double hardest = 0;
   for (const double distance : {15.0, 45.0, 120.0, 260.0}) {
@@ -152,7 +152,7 @@ TEST(Limits, VectorsKeepTheirMaximaInCurvesAndTransitions) {  // PL-82
   EXPECT_GT(hardest, 0.99);
 }
 
-// A halt takes the deceleration and jerk that it is given; behind a mover that brakes harder it brakes as that does.
+// A halt uses the commanded deceleration and jerk; behind a mover that brakes harder it brakes like that.
 TEST(Limits, AHaltBrakesAsItIsTold) {  // PL-11
   for (const double deceleration : {500.0, 3000.0, 10000.0}) {
     for (const double jerk : {5000.0, 50000.0}) {
@@ -200,7 +200,7 @@ TEST(Limits, AHaltBrakesAsItIsTold) {  // PL-11
   ExpectWithin(watcher, "halted");
 }
 
-// Random commands to few movers of random cities, each with dynamics of its own; gears with what jumps; halts.
+// Random commands to few movers of random cities, each with dynamics of its own; gears with jumping masters; halts.
 TEST(Limits, AreKeptWhateverAMoverIsTold) {  // PL-14, PL-15, PL-21
   const int trials = Trials(24);
   double travelled = 0, fastest = 0, hardest = 0;
@@ -269,10 +269,10 @@ TEST(Limits, AreKeptWhateverAMoverIsTold) {  // PL-14, PL-15, PL-21
     ExpectWithin(watcher, "told anything");
     hardest = std::max(hardest, watcher.lateral);
   }
-  // Else it would prove nothing.
+  // Otherwise the test would prove nothing.
   EXPECT_GT(travelled, 2000.0 * trials);
   EXPECT_GT(fastest, 0.99);
-  if (kSanitized) return;  // too few trials for what is seldom
+  if (kSanitized) return;  // too few trials for rare events
   EXPECT_GT(hardest, 0.99);
 }
 

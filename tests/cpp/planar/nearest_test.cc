@@ -1,4 +1,4 @@
-// PL-20: where a track is nearest to a place: by hand, and against looking everywhere.
+// PL-20: the nearest point of a track: by hand, and against an exhaustive search.
 #include "takt/planar/nearest.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(NearestPlaces, AreThoseOfLinesAndArcs) {
   EXPECT_NEAR(NearestTo(arc, {-50, -1}).s, arc.length, 1e-12);
 }
 
-// PL-20: of equally near places the first.
+// PL-20: of equally near points the first.
 TEST(NearestPlaces, AreTheFirstOfMany) {
   const Track circle = Make({.elements = {Arc({100, 0}, {100, 0}, {0, 0}, false)}, .closed = true});
   EXPECT_NEAR(NearestTo(circle, {0, 0}).distance, 100, 1e-12);
@@ -42,8 +42,8 @@ TEST(NearestPlaces, AreTheFirstOfMany) {
   EXPECT_NEAR(NearestTo(around, {100, 100}).s, 100, 1e-9);
 }
 
-// PL-20: no place of a random track is nearer than the one found, which is at s, and square to the track or at an end;
-// to 1e-6 mm.
+// PL-20: no point of a random track is nearer than the one found, which is at s, and perpendicular to the track or at
+// an end; to 1e-6 mm.
 TEST(NearestPlaces, AreNowhereElse) {
   Random random(11);
   for (int i = 0; i < Trials(100); ++i) {
@@ -52,7 +52,7 @@ TEST(NearestPlaces, AreNowhereElse) {
     std::vector<Place> places;
     for (int k = 0; k <= samples; ++k) places.push_back(At(track, track.length * k / samples).place);
     for (int k = 0; k < 200; ++k) {
-      // Also on the track, and about the centres of its curves, from where much of it is equally far.
+      // Also on the track, and about the centres of its curves, from which much of it is equally far.
       const TrackPoint near = At(track, random.Between(0, track.length));
       double off = k < 5 ? 0 : random.Between(-300, 300);
       if (k >= 15 && std::abs(near.curvature) > 1e-3) off = random.Between(0.9, 1.1) / near.curvature;
@@ -75,7 +75,7 @@ TEST(NearestPlaces, AreNowhereElse) {
   }
 }
 
-// PL-60: it allocates nothing.
+// PL-60: does not allocate.
 TEST(NearestPlaces, AreFoundWithoutMemory) {
   Random random(12);
   const Track track = RandomTrack(random);

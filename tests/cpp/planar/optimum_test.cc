@@ -1,4 +1,4 @@
-// PL-15: along tracks with curves, beside the least time that there is within the limits.
+// PL-15: times along tracks with curves, compared with the least possible within the limits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using testing::TrackNetworkState;
 
-// The tracks of tests/tools/track_problems.py: what they are made of, limits, and a solver's time.
+// The tracks of tests/tools/track_problems.py: layouts, limits, and the time of a solver.
 TEST(Optimum, TracksWithCurvesTakeFivePercentLongerAtMost) {
   std::ifstream file(std::string(TAKT_SOURCE_DIR) + "/tests/data/track_optimum.json");
   const auto problems = nlohmann::json::parse(file);
@@ -34,7 +34,7 @@ TEST(Optimum, TracksWithCurvesTakeFivePercentLongerAtMost) {
     streets.Put(0, 0, 0, pace);
     streets.Send(0, 0, track.length);
     ASSERT_TRUE(streets.Run(30));
-    // A cycle's rounding and a solver's tolerance: nothing is quicker.
+    // Rounding to a cycle, and the tolerance of the solver: no motion is quicker.
     ratios.push_back(streets.now() / double(p["optimum_s"]));
     EXPECT_GT(ratios.back(), 0.998) << p["name"];
     EXPECT_LT(ratios.back(), 1.05) << p["name"];

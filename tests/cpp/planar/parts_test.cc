@@ -1,4 +1,4 @@
-// PL-32: the border of parts that lie beside each other is that of all their stators together, wherever they go.
+// PL-32: the border of adjacent parts is that of all their stators together, wherever they move.
 #include "takt/planar/parts.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(Parts, BordersGoAroundAll) {
   EXPECT_DOUBLE_EQ(border({240, 0}), 6 * 240);
   EXPECT_DOUBLE_EQ(border({240, 100}), 8 * 240 - 2 * 140);
   EXPECT_DOUBLE_EQ(border({-100, 240}), 8 * 240 - 2 * 140);
-  EXPECT_DOUBLE_EQ(border({240, 240}), 8 * 240);  // a corner is no way
+  EXPECT_DOUBLE_EQ(border({240, 240}), 8 * 240);  // movers cannot pass a corner
   EXPECT_DOUBLE_EQ(border({240.5, 0}), 8 * 240);
 }
 
@@ -59,7 +59,7 @@ TEST(Parts, HangTogether) {
   EXPECT_FALSE(HangTogether(std::vector<Place>{{0, 0}, {241, 0}}));
 }
 
-// The same as of one surface with all stators that are there: by what that says, which is proved elsewhere.
+// The same as for one surface with all stators present: by the functions for that, which are tested elsewhere.
 TEST(Parts, CarryWhatAllStatorsTogetherCarry) {
   std::mt19937 random(3);
   const auto whole = [&](int from, int to) { return std::uniform_int_distribution<int>(from, to)(random); };
@@ -81,7 +81,7 @@ TEST(Parts, CarryWhatAllStatorsTogetherCarry) {
     Parts parts({"one", "two"}, all, std::vector<PartNow>(all.size(), {.away = true}));
     const std::size_t room = parts.borders[0].capacity();
     for (int moves = 0; moves < 10; ++moves) {
-      // Where it overlaps nothing it goes there, or else it is taken away.
+      // If it overlaps nothing it moves there, or else it is removed.
       const auto part = static_cast<std::uint32_t>(whole(0, count - 1));
       const auto position = static_cast<std::uint32_t>(whole(0, 3));
       bool free = true;

@@ -1,4 +1,4 @@
-// PL-30: who may go where: the manual's programs, what is reserved and given back, and random traffic that never meets.
+// PL-30: reservations: the manual's programs, what is reserved and released, and random traffic without collisions.
 #include "takt/planar/reservation.h"
 
 #include <gmock/gmock.h>
@@ -50,8 +50,8 @@ Pose At(double x, double y, double c = 0) {
   return {{x, y}, c};
 }
 
-// PL-30: the manual's program 6.3.2: mover one goes from (0, 0) to (0, 240), mover two stands at (240, 0) and is to go
-// to (0, 0) at the same time: it is refused, as mover one is still there; later it may.
+// PL-30: the manual's program 6.3.2: mover one moves from (0, 0) to (0, 240), mover two is at (240, 0) and is sent to
+// (0, 0) at the same time: refused while mover one is still there; admitted later.
 TEST(ReservationsOfMovers, RefuseWhatIsTaken) {
   Reservations r = MakeReservations(2, 0);
   Settle(0, kMover, At(0, 0), r);
@@ -66,7 +66,7 @@ TEST(ReservationsOfMovers, RefuseWhatIsTaken) {
   EXPECT_EQ(Ask(1, To(0, 100), {}, r), Mover(0));
 }
 
-// PL-30: the manual's program 6.7.2: one stator about the origin; the mover cannot go to (100, 100).
+// PL-30: the manual's program 6.7.2: one stator about the origin; the mover cannot move to (100, 100).
 TEST(ReservationsOfMovers, RefuseTheBorder) {
   const Environment environment = Surface({{-120, -120}});
   Reservations r = MakeReservations(1, 0);
@@ -76,8 +76,8 @@ TEST(ReservationsOfMovers, RefuseTheBorder) {
   EXPECT_EQ(Ask(0, To(100, 100), {}, r), kFree);
 }
 
-// PL-30: the manual's program 6.5: a track from (0, 0) to (400, 0) with mover one on it; mover two stands in its way
-// until it has gone to (240, 320). While the track is Moving nothing else gets onto it.
+// PL-30: the manual's program 6.5: a track from (0, 0) to (400, 0) with mover one on it; mover two blocks it until it
+// has moved to (240, 320). While the track is Moving nothing else may enter it.
 TEST(ReservationsOfTracks, RefuseWhatIsTaken) {
   const Track track = testing::Make({.elements = {Line({0, 0}, {400, 0})}});
   const TrackArea area = MakeTrackArea(track, kMover, 7);
@@ -91,7 +91,7 @@ TEST(ReservationsOfTracks, RefuseWhatIsTaken) {
   EXPECT_EQ(AskTrack(0, around, r), Mover(1));
   EXPECT_EQ(Ask(1, To(240, 320), around, r), kFree);
   Take(1, To(240, 320), r);
-  // On its way it still reaches into the track.
+  // On the move it still reaches into the track.
   Advance(1, At(240, 154), r);
   EXPECT_EQ(AskTrack(0, around, r), Mover(1));
   Advance(1, At(240, 155.1), r);
@@ -103,7 +103,7 @@ TEST(ReservationsOfTracks, RefuseWhatIsTaken) {
   EXPECT_EQ(Ask(1, To(240, 155.1), around, r), kFree);
   EndTrack(0, r);
   EXPECT_EQ(Ask(1, To(240, 0), around, r), kFree);
-  // The border, and tracks of other networks; those of its own do not count.
+  // The border, and tracks of other networks, count; those of its own do not.
   const Environment narrow = Surface({{-120, -120}, {120, -120}});
   EXPECT_EQ(AskTrack(0, {.environment = &narrow, .tracks = tracks}, r), kBorder);
   const Environment wide = Surface({{-120, -120}, {120, -120}, {360, -120}});
@@ -123,7 +123,7 @@ TEST(ReservationsOfTracks, RefuseWhatIsTaken) {
   EXPECT_EQ(AskTrack(1, {.tracks = others}, two), kFree);
 }
 
-// PL-30: what a mover has left is free again, to where it is, not further.
+// PL-30: the area that a mover has left is free again, up to the mover.
 TEST(ReservationsOfMovers, AreFreedAsTheyAreLeft) {
   Reservations r = MakeReservations(2, 0);
   Settle(0, kMover, At(0, 0), r);
@@ -141,18 +141,18 @@ TEST(ReservationsOfMovers, AreFreedAsTheyAreLeft) {
     Settle(1, kMover, At(1155.1, 400), r);
     EXPECT_EQ(Ask(1, To(1155.1, 0), {}, r), kFree) << x;
   }
-  // Halted underway: the rest is free once it stands.
+  // Halted underway: the rest is free once it is at rest.
   Advance(0, At(600, 0), r);
   End(0, r);
   EXPECT_EQ(Ask(1, To(1000, 0), {}, r), kFree);
-  // And gone.
+  // Removed.
   Leave(0, r);
   EXPECT_EQ(Ask(1, To(600, 0), {}, r), kFree);
 }
 
 // PL-30: a mover in motion along X is sent to (300, 300); it would come to rest on its old line at (200, 0). Until it
-// has turned off, the triangle is its own, whose side leads from (277.5, -77.5) to (377.5, 222.5); from then on what is
-// left of the straight way.
+// has turned off it reserves the triangle, whose side runs from (277.5, -77.5) to (377.5, 222.5); from then on the rest
+// of the straight line.
 TEST(ReservationsOfMovers, CoverTheWayToTurn) {
   Reservations r = MakeReservations(2, 0);
   Settle(0, kMover, At(0, 0), r);
@@ -173,7 +173,7 @@ TEST(ReservationsOfMovers, CoverTheWayToTurn) {
   EXPECT_EQ(Ask(1, To(200, -64), {}, r), Mover(0));
 }
 
-// PL-30: sent back the way it came, a mover has to come to rest first; how far it will go on is its own until then.
+// PL-30: a mover sent back has to come to rest first; until then it reserves the distance that it still moves on.
 TEST(ReservationsOfMovers, CoverTheWayToReturn) {
   Reservations r = MakeReservations(2, 0);
   Settle(0, kMover, At(0, 0), r);
@@ -190,13 +190,13 @@ TEST(ReservationsOfMovers, CoverTheWayToReturn) {
   EXPECT_EQ(Ask(1, To(330, 0), {}, r), Mover(0));
 }
 
-// PL-30: turning takes room, and gives it back.
+// PL-30: a rotation reserves room, and releases it.
 TEST(ReservationsOfMovers, CoverTurns) {
   Reservations r = MakeReservations(2, 0);
   Settle(0, kMover, At(0, 0), r);
   Settle(1, kMover, At(160, 0), r);
   EXPECT_EQ(Ask(0, To(0, 0, 90), {}, r), Mover(1));
-  // It may turn first, and go then.
+  // It may rotate first, and move then.
   EXPECT_EQ(Ask(0, To(-30, 0, 90), {}, r), Mover(1));
   EXPECT_EQ(Ask(0, To(0, 0, 1), {}, r), kFree);
   EXPECT_EQ(Ask(0, {.target = At(0, 0, 1), .over_c = -30.0}, {}, r), Mover(1));
@@ -216,7 +216,7 @@ TEST(ReservationsOfMovers, CoverTurns) {
   EXPECT_EQ(Ask(1, To(175, 0), {}, r), kFree);
 }
 
-// PL-30: around a bend of 100 mm the outer corners of a square of 155 mm go round at 193.68 mm, its inner side at 22.5
+// PL-30: around a bend of 100 mm the outer corners of a square of 155 mm move at 193.68 mm, its inner side at 22.5 mm.
 // mm.
 TEST(AreasOfTracks, FollowBends) {
   const Track track = testing::Make({.elements = {testing::Arc({100, 0}, {0, 100}, {0, 0}, false)}});
@@ -249,7 +249,7 @@ TEST(AreasOfTracks, AreThoseOfTheirMovers) {
     const int count = static_cast<int>(track.length) * 2;
     for (int k = 0; k <= count; ++k) points.push_back(At(track, track.length * k / count));
     for (int k = 0; k < 100; ++k) {
-      // About where a mover of the track ends.
+      // About where the area of a mover on the track ends.
       const TrackPoint beside = points[static_cast<std::size_t>(random.Below(count + 1))];
       const double reach = random.Between(0.9, 2) * std::max(mover.width, mover.height);
       Area other;
@@ -265,7 +265,7 @@ TEST(AreasOfTracks, AreThoseOfTheirMovers) {
         EXPECT_TRUE(said);
       }
       if (said) {
-        // Between samples a corner goes on by so much.
+        // Distance that a corner moves between samples.
         const double sampling =
             0.25 * (1 + std::hypot(mover.width, mover.height) / 2 * PeakCurvature(track, 0, track.length));
         EXPECT_LT(least, kTrackSlack + sampling);
@@ -277,8 +277,7 @@ TEST(AreasOfTracks, AreThoseOfTheirMovers) {
   EXPECT_GT(far, Trials(300));
 }
 
-// Movers on a surface with a hole that are sent about at random, each as fast along its way and in its turn as it
-// likes.
+// Movers sent about at random on a surface with a hole, each at any speed along its path and in its rotation.
 class RandomTraffic {
  public:
   RandomTraffic(unsigned seed, bool turning) : random_(seed), turning_(turning) {
@@ -307,7 +306,7 @@ class RandomTraffic {
     }
   }
 
-  // A mover in motion is now and then sent elsewhere, halted, or arrives.
+  // A mover in motion is sometimes sent elsewhere, halted, or arrives.
   void Go(std::uint32_t i) {
     Motion& m = motions_[i];
     const double end = m.legs.size() > 2 ? 2 : 1;
@@ -334,12 +333,12 @@ class RandomTraffic {
     if (random_.Below(5) == 0) move.target.place = own.pose.place;
     if (turning_ && random_.Coin()) move.target.c += random_.Between(-1, 1) * (random_.Coin() ? 15 : 120);
     if (own.moving) {
-      // It first goes on along its way for a while, which is its own as yet.
+      // It first continues on its old path for a while, which it has reserved.
       const Motion& m = motions_[i];
       const Place& to = m.legs[static_cast<std::size_t>(m.way) + 1 < m.legs.size() ? static_cast<std::size_t>(m.way) + 1
                                                                                    : m.legs.size() - 1];
       const double share = random_.Between(0, 1);
-      // Now and then back the way it came.
+      // Sometimes back the way it came.
       if (random_.Below(3) == 0) {
         move.target.place = {2 * own.pose.place.x - to.x, 2 * own.pose.place.y - to.y};
       }
@@ -357,7 +356,7 @@ class RandomTraffic {
     Justify(i, move, object);
   }
 
-  // What is refused would come near to what it names, for some instant of some motion.
+  // A refused move would come near to the object named, at some instant of some motion.
   void Justify(std::uint32_t i, const Move& move, const ObjectInfo& object) {
     Reservation wish = r.movers[i];
     wish.moving = true;
@@ -387,7 +386,7 @@ class RandomTraffic {
   int taken = 0, refused = 0, at_border = 0, arrived = 0;
 
  private:
-  // Along the legs by 1 each.
+  // Along the legs, 1 for each.
   struct Motion {
     std::vector<Place> legs{};
     double way = 0;
@@ -402,7 +401,7 @@ class RandomTraffic {
   std::vector<Motion> motions_;
 };
 
-// PL-30: whatever is asked, no two movers ever touch and none leaves the surface; and what is refused has a reason.
+// PL-30: whatever is requested, no two movers ever touch and none leaves the surface; and each refusal has a reason.
 TEST(ReservationsOfMovers, KeepMoversApart) {
   for (const bool turning : {false, true}) {
     RandomTraffic traffic(52, turning);
@@ -417,7 +416,7 @@ TEST(ReservationsOfMovers, KeepMoversApart) {
   }
 }
 
-// PL-30, EN-06: fit for the cycle; all memory is in what can be copied and compared.
+// PL-30, EN-06: fit for the cycle; all state can be copied and compared.
 TEST(ReservationsOfMovers, AllocateNothing) {
   const Environment surface = Surface({{0, 0}, {240, 0}, {480, 0}});
   const TrackArea area = MakeTrackArea(testing::Make({.elements = {Line({120, 120}, {300, 120})}}), kMover, 0);
@@ -444,7 +443,7 @@ TEST(ReservationsOfMovers, AllocateNothing) {
   EXPECT_EQ(blocked, TrackOf(0));
 }
 
-// EN-11: all memory is described, so that it is hashed, copied and replayed.
+// EN-11: all state is described, so that it is hashed, copied and replayed.
 TEST(ReservationsOfMovers, AreDescribed) {
   EXPECT_THAT(Verify(TypeOf<Reservations>()), ::testing::IsEmpty());
   Reservations r = MakeReservations(2, 1);

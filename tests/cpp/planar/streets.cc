@@ -11,7 +11,7 @@ bool Meet(const TrackPoint& a, const TrackPoint& b) {
   return SamePlace(a.place, b.place) && SameDirection(a, b);
 }
 
-// The track comes near itself, which traffic does not look at.
+// The track comes near itself, which traffic does not check.
 bool ComesBack(const Track& track, double near) {
   constexpr double kStep = 25;
   for (double s = 0; s < track.length; s += kStep) {
@@ -22,7 +22,7 @@ bool ComesBack(const Track& track, double near) {
   return false;
 }
 
-// Bodies on both tracks come too near only from a common start, or to a common end, on; or from the end of one to the
+// Bodies on both tracks come too near only from a common start on, or up to a common end; or from the end of one to the
 // start of the other.
 bool GoTogether(const Track& a, const Track& b, const Footprint& body) {
   const bool starts = Meet(StartOf(a), StartOf(b)), ends = Meet(EndOf(a), EndOf(b));
@@ -68,7 +68,7 @@ std::vector<Layout> RandomCity(Random& random, int count, double size) {
     layouts.push_back(layout);
     tracks.push_back(track);
   }
-  // Tracks that only start, or only end, at the same place are not linked: nobody sees to them.
+  // Tracks that only start, or only end, at the same point are not linked: traffic does not keep their movers apart.
   for (std::size_t i = 0; i < tracks.size();) {
     const auto linked = [&](const TrackPoint& place, const auto& own, const auto& across) {
       int alike = 0, linked = 0;
@@ -214,7 +214,7 @@ void Watcher::Look() {
     const KinematicState& b = before_[i];
     speed = std::max(speed, std::abs(r.at.velocity) / r.top_speed);
     const bool slows = r.at.velocity * r.at.acceleration < 0;
-    // What it had by an earlier command it may still have.
+    // It may keep the speed of an earlier command.
     most_[i] = std::max(most_[i], r.pace.limits.acceleration);
     acceleration = std::max(acceleration, std::abs(r.at.acceleration) / (slows ? r.brakes.deceleration : most_[i]));
     const double most = std::max(r.brakes.jerk, r.pace.limits.jerk);
@@ -228,7 +228,7 @@ void Watcher::Look() {
     vector_acceleration = std::max(vector_acceleration, std::hypot(push.x, push.y) / r.pace.vector_acceleration);
     vector_jerk = std::max(vector_jerk, Distance(push, pushes_[i]) / kPeriod / r.pace.vector_jerk);
     pushes_[i] = push;
-    // What is said of speed and place is one motion.
+    // Speed and position belong to one motion.
     const double way = r.at.position + r.origin;
     if (ways_[i] != 0) {
       // Its jerk may change within the cycle.

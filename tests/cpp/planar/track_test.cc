@@ -1,4 +1,4 @@
-// PL-20, PL-21: tracks by arc length: what is given, what fills the gaps, and how they run.
+// PL-20, PL-21: tracks by arc length: given elements, transitions in the gaps, and their shape.
 #include "takt/planar/track.h"
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ TEST(Tracks, GoStraight) {
   ExpectPoint(At(track, 250), {250, 250}, std::atan2(4, 3), 0);
 }
 
-// PL-20: a whole circle, both ways round: 2 pi r, at the top after half of it.
+// PL-20: a full circle in both directions: 2 pi r, at the top after half of it.
 TEST(Tracks, GoRoundCircles) {
   for (const bool clockwise : {false, true}) {
     const double side = clockwise ? -1 : 1;
@@ -73,8 +73,8 @@ TEST(Tracks, GoRoundCircles) {
   }
 }
 
-// PL-20: a stadium of lines of 300 mm and half circles of 100 mm, with gaps of 40 mm between them: what is given has
-// its closed form; around the gaps it is a little longer than without them, by much less than the gaps.
+// PL-20: a stadium of lines of 300 mm and half circles of 100 mm, with gaps of 40 mm between them: given elements are
+// exact; the length is a little more than without gaps, by much less than the gaps.
 TEST(Tracks, GoRoundStadiums) {
   const Track track = Make({.elements = {Line({0, 0}, {300, 0}), Arc({340, 0}, {340, 200}, {340, 100}, false),
                                          Line({300, 200}, {0, 200}), Arc({-40, 200}, {-40, 0}, {-40, 100}, false)},
@@ -91,8 +91,8 @@ TEST(Tracks, GoRoundStadiums) {
   EXPECT_NEAR(EndOf(track).direction, 2 * kPi, 1e-9);
 }
 
-// PL-20: position, direction and curvature go on from piece to piece: steps of the curvature are below a millionth of
-// its maximum.
+// PL-20: position, direction and curvature are continuous from piece to piece: steps of the curvature are below a
+// millionth of its maximum.
 TEST(Tracks, RunSmoothly) {
   Random random(3);
   int made = 0;
@@ -120,8 +120,8 @@ TEST(Tracks, RunSmoothly) {
   EXPECT_GT(made, trials * 2 / 3);
 }
 
-// PL-20: s is the length of the way, at every place; direction, curvature and its change are what places, directions
-// and curvatures around it say.
+// PL-20: s is the arc length everywhere; direction, curvature and its rate agree with differences of points, directions
+// and curvatures.
 TEST(Tracks, CountArcLength) {
   Random random(4);
   for (int i = 0; i < Trials(30); ++i) {
@@ -143,7 +143,7 @@ TEST(Tracks, CountArcLength) {
   }
 }
 
-// PL-20: a track goes through its positions, alone or between lines, open or round.
+// PL-20: a track passes through its positions, alone or between lines, open or closed.
 TEST(Tracks, GoThroughPositions) {
   const std::vector<Place> places{{0, 0}, {200, 50}, {250, 250}, {100, 300}, {-50, 200}};
   for (const bool closed : {false, true}) {
@@ -156,7 +156,7 @@ TEST(Tracks, GoThroughPositions) {
     }
     EXPECT_LT(Distance(EndOf(track).place, places[closed ? 0 : 4]), 1e-9);
   }
-  // Where one begins to count is nothing to a loop.
+  // The first element of a loop is arbitrary.
   const Track one = Make({.elements = {Position({0, 0}), Position({200, 50}), Position({100, 300})}, .closed = true});
   const Track two = Make({.elements = {Position({100, 300}), Position({0, 0}), Position({200, 50})}, .closed = true});
   EXPECT_NEAR(one.length, two.length, 1e-6);
@@ -166,7 +166,7 @@ TEST(Tracks, GoThroughPositions) {
   EXPECT_NEAR(Make({.elements = {Position({0, 0}), Position({30, 40})}}).length, 50, 1e-9);
 }
 
-// PL-20: positions in a loop with lines, wherever the list begins.
+// PL-20: positions in a loop with lines, for any first element.
 TEST(Tracks, GoThroughPositionsWhereALoopBegins) {
   const Element line = Line({0, 0}, {300, 0}), right = Position({400, 150}), left = Position({-100, 150});
   const Element top = Position({150, 300});
@@ -176,7 +176,7 @@ TEST(Tracks, GoThroughPositionsWhereALoopBegins) {
   EXPECT_NEAR(Make({.elements = {left, line, right, top}, .closed = true}).length, length, 1e-6);
 }
 
-// PL-20: from the end of one track, to the start of another: taken over exactly.
+// PL-20: from the end of one track to the start of another: both are taken over exactly.
 TEST(Tracks, TakeOverTheirNeighbours) {
   Random random(5);
   int made = 0;
@@ -200,7 +200,7 @@ TEST(Tracks, TakeOverTheirNeighbours) {
   EXPECT_GT(made, Trials(20));
 }
 
-// PL-20: an open track ends, a loop goes round; what is no number is the start.
+// PL-20: an open track ends, a loop is periodic; NaN is the start.
 TEST(Tracks, EndOrGoRound) {
   const Track open = Make({.elements = {Line({0, 0}, {100, 0})}});
   const Track loop = Make({.elements = {Arc({100, 0}, {100, 0}, {0, 0}, false)}, .closed = true});
@@ -218,7 +218,7 @@ TEST(Tracks, EndOrGoRound) {
   EXPECT_LT(Distance(At(loop, -1e-12).place, At(loop, 0).place), 1e-9);
 }
 
-// PL-21: on a circle of 100 mm, 1000 mm/s² let 316 mm/s go. What is straight bounds nothing.
+// PL-21: on a circle of 100 mm, 1000 mm/s² admit 316 mm/s. A straight line has no bound.
 TEST(Tracks, BoundTheSpeedInCurves) {
   const Track track = Make({.elements = {Line({0, 0}, {100, 0}), Arc({130, 0}, {130, 200}, {130, 100}, false)}});
   EXPECT_EQ(SpeedBound(At(track, 50), 1000), std::numeric_limits<double>::infinity());
@@ -227,7 +227,7 @@ TEST(Tracks, BoundTheSpeedInCurves) {
   EXPECT_NEAR(PeakCurvature(track, track.length - 100, track.length), 0.01, 1e-12);
 }
 
-// PL-21: nowhere in a stretch does a track bend more than said; and nearly as much it does.
+// PL-21: the curvature in a stretch is nowhere larger than reported; and almost reaches it.
 TEST(Tracks, KnowWhereTheyBendMost) {
   Random random(6);
   for (int i = 0; i < Trials(200); ++i) {
@@ -247,7 +247,7 @@ TEST(Tracks, KnowWhereTheyBendMost) {
   }
 }
 
-// PL-21: what movers slow down by is nowhere less than how a track bends. What bends less than 1e-5 / mm is straight.
+// PL-21: the bends that movers slow down for are nowhere less than the curvature. Below 1e-5 / mm it is straight.
 TEST(Tracks, BendNoMoreThanTheirBendsSay) {
   Random random(8);
   for (int i = 0; i < Trials(200); ++i) {
@@ -262,7 +262,7 @@ TEST(Tracks, BendNoMoreThanTheirBendsSay) {
   }
 }
 
-// PL-60: looking up allocates nothing.
+// PL-60: evaluation does not allocate.
 TEST(Tracks, AllocateNothing) {
   Random random(7);
   const Track track = RandomTrack(random);
@@ -274,7 +274,7 @@ TEST(Tracks, AllocateNothing) {
   EXPECT_TRUE(std::isfinite(sum));
 }
 
-// PL-20: which element a problem is at, or the transition before it.
+// PL-20: the element that a problem is at, or the transition before it.
 TEST(Tracks, SayWhereTheProblemIs) {
   const double nan = std::nan("");
   struct Case {
@@ -309,11 +309,11 @@ TEST(Tracks, SayWhereTheProblemIs) {
     EXPECT_EQ(making.element, c.element) << Text(c.problem);
     EXPECT_TRUE(track.pieces.empty());
   }
-  // Touching smoothly there is no transition.
+  // Elements that join smoothly have no transition between them.
   EXPECT_EQ(Make({.elements = {line, Line({100, 0}, {200, 0})}}).pieces.size(), 2u);
 }
 
-// PL-20: whatever numbers are given, there is a problem or a track of finite numbers.
+// PL-20: for any numbers there is a problem, or a track of finite numbers.
 TEST(Tracks, StandAnyNumbers) {
   Random random(8);
   const double numbers[] = {0, 1, -1, 1e-9, 100, 200, 1e6, -1e6, 1e9, 1e308, std::nan(""), INFINITY};

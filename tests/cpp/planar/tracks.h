@@ -1,4 +1,4 @@
-// Random tracks, and what is measured on them.
+// Random tracks, and measurements of them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -38,18 +38,18 @@ Element Arc(const Place& start, const Place& end, const Place& center, bool cloc
 Place Ahead(const Place& from, double direction, double distance);
 double Distance(const Place& a, const Place& b);
 
-// A track that must be.
+// Makes a track that must be valid.
 Track Make(const Layout& layout);
 
-// Lines, arcs and positions with gaps, as people leave them, here and there bad ones; about a third closed.
+// Random lines, arcs and positions with gaps, as users leave them, some of them invalid; about a third closed.
 Layout RandomLayout(Random& random);
-// One that can be made.
+// A random valid layout.
 Track RandomTrack(Random& random);
 
 TrackPoint StartOf(const Track& track);
 TrackPoint EndOf(const Track& track);
 
-// mm from the start to s, from places only: sums of straight lines, finer and finer.
+// Returns the length [mm] from the start to s, from points only: sums of chords, finer and finer.
 double LengthTo(const Track& track, double s);
 
 }  // namespace testing

@@ -59,7 +59,7 @@ TEST(Traffic, AMoverStopsBehindAnother) {  // PL-24
   EXPECT_TRUE(streets.Run(5));
 }
 
-// A target just at the gap behind another is reached.
+// A target just at the gap behind another mover is reached.
 TEST(Traffic, GoesUpToTheGap) {  // PL-24
   for (const double from : {100.0, 1200.0, 1299.9, 1299.9995}) {
     TrackNetworkState streets({Straight(3000)}, 2);
@@ -72,7 +72,7 @@ TEST(Traffic, GoesUpToTheGap) {  // PL-24
   }
 }
 
-// How often the jerk of a mover turns round, by more than half of its limit.
+// Counts the reversals of the jerk of a mover, by more than half of its limit.
 class Turns {
  public:
   explicit Turns(TrackNetworkState& streets)
@@ -108,7 +108,7 @@ TEST(Traffic, FollowsWithoutChatter) {  // PL-25
     apart = std::max(apart, streets[1].at.position - streets[0].at.position);
   };
   EXPECT_FALSE(streets.Run(20));
-  EXPECT_LT(most, 1e-4 * 10000);  // 1 % is what is asked for
+  EXPECT_LT(most, 1e-4 * 10000);  // 1 % is required
   EXPECT_LT(apart, 210);
   EXPECT_LT(turns.count, 10);
 }
@@ -147,13 +147,13 @@ TEST(Traffic, AStreamOpensAndClosesLikeAnAccordion) {  // PL-25
   EXPECT_LE(watcher.speed, 1 + 1e-9);
   EXPECT_LE(watcher.acceleration, 1 + 1e-9);
   EXPECT_LE(watcher.jerk, 1 + 1e-6);
-  // Six times speeding up and braking: some for each of them, nothing that shakes.
+  // Six phases of speeding up and braking: some reversals for each of them, no chatter.
   EXPECT_LT(turns.count, 20 * 6 * 8);
   RecordProperty("turns", turns.count);
 }
 
-// The first of twenty movers with dynamics of their own, which is the slowest, is halted: who follows it brakes as it
-// does, or less, and does not speed up again.
+// The first of twenty movers with dynamics of their own, which is the slowest, is halted: its followers brake as hard
+// as it does, or less, and do not speed up again.
 TEST(Traffic, NobodyBrakesHarderThanTheFirst) {  // PL-25
   testing::Random random(5);
   for (int trial = 0; trial < 10; ++trial) {
@@ -185,7 +185,7 @@ TEST(Traffic, NobodyBrakesHarderThanTheFirst) {  // PL-25
   }
 }
 
-// A straight line and a bend of each kind, as a racing driver would go them without looking at jerk.
+// A straight line and a bend of each kind, at the highest speeds possible without regard to jerk.
 TEST(Traffic, TakesCurvesNotMuchSlowerThanCanBe) {  // PL-15, PL-21
   testing::Random random(5);
   double worst = 0;
@@ -200,7 +200,7 @@ TEST(Traffic, TakesCurvesNotMuchSlowerThanCanBe) {  // PL-15, PL-21
       x = across ? to.x + radius : to.x + radius;
       y = across ? to.y + (random.Coin() ? radius : -radius) : to.y + side * radius;
       if (!across) continue;
-      // The next one goes away from this corner.
+      // The next one leads away from this corner.
     }
     Track track;
     if (MakeTrack(layout, track).problem != Problem::kNone) continue;
@@ -226,17 +226,17 @@ TEST(Traffic, TakesCurvesNotMuchSlowerThanCanBe) {  // PL-15, PL-21
     for (std::size_t i = steps; i-- > 0;) square[i] = std::min(square[i], square[i + 1] + 2 * 10000 * step);
     double best = 0;
     for (std::size_t i = 0; i < steps; ++i) best += 2 * step / (std::sqrt(square[i]) + std::sqrt(square[i + 1]));
-    // What jerk costs at both ends whatever is done.
+    // The cost of jerk at both ends, which is unavoidable.
     best += pace.limits.acceleration / pace.limits.jerk;
     worst = std::max(worst, streets.now() / best);
     EXPECT_GT(streets.now(), 0.98 * best);
   }
-  // Against a bound that has to do with jerk only at both ends.
+  // Against a bound that includes jerk only at both ends.
   EXPECT_LT(worst, 1.07);
   RecordProperty("worst", std::to_string(worst));
 }
 
-// Tracks with bends in a row, each mover told at rest or on its way.
+// Tracks with bends in a row; each mover is queried at rest or on the move.
 TEST(Traffic, SaysHowLongAWayTakes) {  // PL-12
   testing::Random random(7);
   trajectory::Planner planner;
@@ -278,7 +278,7 @@ TEST(Traffic, SaysHowLongAWayTakes) {  // PL-12
   RecordProperty("most", std::to_string(most));
 }
 
-// On a ring the tracks behind the first plans are the same one again.
+// On a ring the tracks beyond the first plans are the same one again.
 TEST(Traffic, SaysHowLongTurnsTake) {  // PL-12
   trajectory::Planner planner;
   for (const double radius : {80.0, 250.0}) {
@@ -299,7 +299,7 @@ TEST(Traffic, SaysHowLongTurnsTake) {  // PL-12
   }
 }
 
-// Two tracks that join: the first to come goes first, the other waits outside, and both go on.
+// Two tracks that merge: the first to arrive passes first, the other waits outside, and both continue.
 TEST(Traffic, GivesWayWhereTracksJoin) {  // PL-23, PL-24
   Layout below{{testing::Line({0, 0}, {1000, 0}), testing::Line({1300, 200}, {1600, 200})}};
   Layout above{{testing::Line({0, 400}, {1000, 400}), testing::Line({1300, 200}, {1600, 200})}};
@@ -320,8 +320,8 @@ TEST(Traffic, GivesWayWhereTracksJoin) {  // PL-23, PL-24
   EXPECT_DOUBLE_EQ(streets[1].at.position, 600);
 }
 
-// As the manual has it: within the range of the other track a mover that stands blocks the way; the one that waits
-// stands where its own range begins.
+// As in the manual: within the range of the other track a stationary mover blocks it; the mover that waits stops where
+// its own range begins.
 TEST(Traffic, StopsWhereTheRangeBegins) {  // PL-24
   Layout below{{testing::Line({0, 0}, {1000, 0}), testing::Line({1300, 200}, {1600, 200})}};
   Layout above{{testing::Line({0, 400}, {1000, 400}), testing::Line({1300, 200}, {1600, 200})}};
@@ -334,7 +334,7 @@ TEST(Traffic, StopsWhereTheRangeBegins) {  // PL-24
     streets.Put(1, 1, 60, pace, gap);
     streets.Send(1, 2, 600);
     streets.Run(5);
-    // Behind the other one along the way, or outside of what both share.
+    // Behind the other one along the track, or outside of the shared range.
     const double expected = length - std::min(std::max(gap, range), 100 + gap);
     EXPECT_NEAR(streets[1].at.position, expected, 0.05) << gap;
     EXPECT_EQ(streets[1].waits_for, 0U);
@@ -343,8 +343,8 @@ TEST(Traffic, StopsWhereTheRangeBegins) {  // PL-24
   }
 }
 
-// Side by side before the ranges of two tracks that join: neither counts there yet. A larger gap, or somebody off his
-// place elsewhere, does not bring both into the ranges as they are.
+// Side by side before the ranges of two tracks that merge: neither is active there yet. A larger gap, or a displaced
+// mover elsewhere, does not bring both into the ranges side by side.
 TEST(Traffic, NobodyGetsSideBySideIntoAJoinByBeingTold) {  // PL-13, PL-24
   Layout below{{testing::Line({0, 0}, {1000, 0}), testing::Line({1300, 200}, {1600, 200})}};
   Layout above{{testing::Line({0, 400}, {1000, 400}), testing::Line({1300, 200}, {1600, 200})}};
@@ -372,7 +372,7 @@ TEST(Traffic, NobodyGetsSideBySideIntoAJoinByBeingTold) {  // PL-13, PL-24
   }
 }
 
-// Two bends side by side, that end or start together; the outer one is 157 mm longer.
+// Two bends side by side, with a common end or start; the outer one is 157 mm longer.
 struct Bends {
   explicit Bends(bool end) {
     const Place center{-300, 400}, node{0, 0}, before{200, 0};
@@ -391,8 +391,8 @@ struct Bends {
   Layout outer, inner, common;
 };
 
-// Beside one that stands on the shorter track a mover on the longer one may be further from where they join by more
-// than the gap, and touch it; likewise where tracks part, the other way round.
+// Beside a mover at rest on the shorter track, a mover on the longer one may be farther from the merge by more than the
+// gap, and still touch it; likewise at a branch, in the other direction.
 TEST(Traffic, KeepsClearOfTracksThatRunBeside) {  // PL-24
   const Pace pace = testing::PaceOf(1000, 8000, 200000);
   for (const bool end : {true, false}) {
@@ -419,14 +419,14 @@ TEST(Traffic, KeepsClearOfTracksThatRunBeside) {  // PL-24
     EXPECT_NEAR(from_node(0) - from_node(1), lead, 0.05);
     EXPECT_EQ(streets[1].waits_for, 0U);
     EXPECT_GT(nearest, 0);
-    // It goes on when the other one has gone.
+    // It continues when the other one has left.
     streets.Send(0, end ? 2 : 0, end ? 1200 : 1700);
     EXPECT_TRUE(streets.Run(5));
     EXPECT_GT(nearest, 0);
   }
 }
 
-// Against all pairs of places.
+// Against all pairs of positions.
 TEST(Traffic, LeadsAreAsLongAsTheyHaveToBe) {  // PL-24
   testing::Random random(8);
   double longest = 0;
@@ -436,7 +436,7 @@ TEST(Traffic, LeadsAreAsLongAsTheyHaveToBe) {  // PL-24
     TrackNetworkState streets(layouts, 0);
     Network& network = streets.network();
     const double reach = network[0].reach;
-    // Of movers so large: what LeadAtStart and LeadAtEnd are to be.
+    // For movers of this size: the values of LeadAtStart and LeadAtEnd.
     const auto most = [&](std::uint32_t near, std::uint32_t far, bool at_end, double size) {
       const auto range = [&](std::uint32_t track) {
         return at_end ? network[track].range_at_end : network[track].range_at_start;
@@ -474,7 +474,7 @@ TEST(Traffic, LeadsAreAsLongAsTheyHaveToBe) {  // PL-24
   EXPECT_GT(longest, std::hypot(100, 100));
 }
 
-// One that comes behind just at the gap is not in the way, whatever rounding makes of it.
+// A mover just at the gap behind is not in the way, whatever the rounding.
 TEST(Traffic, GoesBeforeOneThatIsJustAtTheGap) {  // PL-24
   Layout below{{testing::Line({0, 0}, {1000, 0}), testing::Line({1300, 200}, {1600, 200})}};
   Layout above{{testing::Line({0, 400}, {1000, 400}), testing::Line({1300, 200}, {1600, 200})}};
@@ -482,7 +482,7 @@ TEST(Traffic, GoesBeforeOneThatIsJustAtTheGap) {  // PL-24
   const Pace pace = testing::PaceOf(1000, 8000, 200000);
   for (int trial = 0; trial < 20; ++trial) {
     TrackNetworkState streets({below, above, on}, 2);
-    // It counts there already, while the other one stands where it begins to.
+    // It is active there already, while the other one is at rest where it would become active.
     const double ahead = 600 + 7.1 * trial, behind = 800 + 7.1 * trial;
     streets.network().roads[0].range_at_end = 1000;
     streets.network().roads[1].range_at_end = ahead - 0.001;
@@ -493,7 +493,7 @@ TEST(Traffic, GoesBeforeOneThatIsJustAtTheGap) {  // PL-24
   }
 }
 
-// Who may be off its place is kept away from by as much more; by whoever comes, and at nodes.
+// A displaced mover gets a gap that is larger by its displacement; from movers that approach, and at nodes.
 TEST(Traffic, KeepsMoreAwayFromWhoIsOffItsPlace) {  // PL-13, PL-24
   const Pace pace = testing::PaceOf(2000, 10000, 200000);
   const std::vector<Layout> layouts{Straight(2000),
@@ -534,8 +534,8 @@ TEST(Traffic, FaceToFaceIsADeadlock) {  // PL-26
   EXPECT_FALSE(IsDeadlocked(streets.riders(), 0));
 }
 
-// Random commands, halts and faults of random movers in random cities: the invariant, by what is seen of it. Who is in
-// a deadlock is taken off its track, and joins another one where it may.
+// Random commands, halts and faults of random movers in random cities: the invariant, by its visible consequences. A
+// mover in a deadlock is taken off its track, and joins another one where it may.
 class CityProperty : public ::testing::TestWithParam<int> {
  protected:
   static constexpr double kGap = 170;
@@ -556,12 +556,12 @@ class CityProperty : public ::testing::TestWithParam<int> {
                                   share() * l.jerk};
     streets[mover].gap = random.Coin() ? kGap : random.Between(kGap, 1.5 * kGap);
   }
-  // Where a track is away from all others.
+  // Ends of the stretch of a track that is away from all others.
   double from(std::uint32_t track) { return std::max(kGap, streets.network()[track].range_at_start) + 1; }
   double to(std::uint32_t track) {
     return streets.network()[track].length - std::max(kGap, streets.network()[track].range_at_end) - 1;
   }
-  // As on a machine: nobody joins where others are under way; and wherever else nobody is too near.
+  // As on a machine: no mover joins a track in use; elsewhere, none may be too near.
   void Join(std::uint32_t mover) {
     const std::uint32_t track = AnyTrack();
     const bool used = std::ranges::any_of(streets.riders(), [&](const Rider& r) {
@@ -578,7 +578,7 @@ class CityProperty : public ::testing::TestWithParam<int> {
       ++joins;
     }
   }
-  // So far off its place, if there is room for that.
+  // Displaces a mover by this distance, if there is room for that.
   void GetOff(std::uint32_t mover, double off) {
     Rider& r = streets[mover];
     const double before = r.off;
@@ -591,13 +591,13 @@ class CityProperty : public ::testing::TestWithParam<int> {
   testing::Random random{static_cast<unsigned>(GetParam())};
   const std::vector<Layout> layouts = testing::RandomCity(random, 14, 100);
   TrackNetworkState streets{layouts, 50};
-  std::vector<trajectory::Limits> most{50};  // of each
+  std::vector<trajectory::Limits> most{50};  // by mover
 };
 
 TEST_P(CityProperty, NobodyComesTooNear) {  // PL-23, PL-24
   const int cycles = Trials(20000, 30);
   std::uint32_t put = 0;
-  std::vector<double> was;  // where each was
+  std::vector<double> was;  // last position of each
   for (std::uint32_t track = 0; track < layouts.size(); ++track) {
     for (double s = from(track); s < to(track) && put < 50; s += 180 + random.Between(0, 500)) {
       Put(put++, track, s);
@@ -605,7 +605,7 @@ TEST_P(CityProperty, NobodyComesTooNear) {  // PL-23, PL-24
     }
   }
   double missing = -INFINITY, nearest = INFINITY, travelled = 0;
-  std::vector<int> down(put);  // until this cycle, by a fault
+  std::vector<int> down(put);  // until this cycle, after a fault
   Watcher watcher(streets);
   int refused = 0, taken_off = 0;
   for (int i = 0; i < cycles && !HasFailure(); ++i) {
@@ -643,8 +643,8 @@ TEST_P(CityProperty, NobodyComesTooNear) {  // PL-23, PL-24
     if (i % 5 == 0) nearest = std::min(nearest, streets.Nearest());
     EXPECT_GT(nearest, 0) << i;
   }
-  EXPECT_GT(travelled, 0.5 * cycles);  // mm; else it would prove nothing
-  EXPECT_LT(refused, cycles / 5);      // dynamics, gaps and places beside the track change from one cycle to the next
+  EXPECT_GT(travelled, 0.5 * cycles);  // [mm] otherwise the test would prove nothing
+  EXPECT_LT(refused, cycles / 5);      // dynamics, gaps and displacements change from one cycle to the next
   EXPECT_LE(watcher.acceleration, 1 + 1e-6);
   EXPECT_LE(watcher.jerk, 1 + 1e-6);
   EXPECT_LE(watcher.speed, 1 + 1e-8);
@@ -656,7 +656,7 @@ TEST_P(CityProperty, NobodyComesTooNear) {  // PL-23, PL-24
       joins, refused_joins);
 }
 
-// TAKT_SEED: the first one.
+// TAKT_SEED: the first seed.
 int FirstSeed() {
   const char* seed = std::getenv("TAKT_SEED");
   return seed ? std::atoi(seed) : 0;

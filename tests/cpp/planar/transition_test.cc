@@ -1,4 +1,4 @@
-// PL-20: transitions have place, direction and curvature of both sides, and bend little.
+// PL-20: transitions have position, direction and curvature of both sides, and bend little.
 #include "takt/planar/transition.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TrackPoint RandomPoint(Random& random) {
           random.Coin() ? 0 : random.Between(-0.03, 0.03)};
 }
 
-// PL-20: in line with both sides there is nothing to bend.
+// PL-20: in line with both sides a transition does not bend.
 TEST(Transitions, AreStraightWhereTheyCan) {
   Segments transition;
   const double direction = std::atan2(3, 4);
@@ -64,7 +64,7 @@ TEST(Transitions, BendLittleAroundCorners) {
   Segments transition;
   ASSERT_EQ(MakeTransition({{0, 0}, 0}, {{50, 50}, 90 * kDegree}, transition), Problem::kNone);
   EXPECT_LT(Peak(transition), 1.19 / 50);
-  // Between the corner cut off and the corner itself, near to the circle's quarter.
+  // Between the corner cut off and the corner itself, near to the quarter circle.
   EXPECT_NEAR(Length(transition), 50 * std::numbers::pi / 2, 0.05 * 50);
 }
 
@@ -76,7 +76,7 @@ TEST(Transitions, BendLittleAroundUTurns) {
   EXPECT_LT(Length(transition), 1.2 * 50 * std::numbers::pi);
 }
 
-// PL-20: over random gaps both ends are as they must be.
+// PL-20: over random gaps both ends match.
 TEST(Transitions, GoOnFromBothSides) {
   Random random(1);
   int made = 0;
@@ -102,8 +102,7 @@ TEST(Transitions, GoOnFromBothSides) {
   EXPECT_GT(made, Trials(2000) * 3 / 4);
 }
 
-// PL-20: two gaps that are the same but for where they lie, or seen in a mirror, or gone the other way, have
-// transitions of the same length.
+// PL-20: two gaps that differ only by position, rotation, mirroring or direction have transitions of the same length.
 TEST(Transitions, AreTheSameWhereverTheyLie) {
   Random random(2);
   for (int i = 0; i < Trials(300); ++i) {
@@ -128,7 +127,7 @@ TEST(Transitions, AreTheSameWhereverTheyLie) {
   }
 }
 
-// PL-20: what cannot be is refused, and nothing made.
+// PL-20: an impossible gap is refused, and nothing is made.
 TEST(Transitions, AreRefused) {
   struct Case {
     TrackPoint begin, end;

@@ -1,4 +1,4 @@
-// PL-01, PL-30, PL-31: groups of movers and environments without a machine: their states, and what they take of memory.
+// PL-01, PL-30, PL-31: groups of movers and environments without a machine: their states, and their use of memory.
 #include "takt/planargroup/groups.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ namespace {
 
 using planar::ObjectState;
 
-// A group of two movers and an environment of two stators. The movers stand where they are said to.
+// A group of two movers and an environment of two stators. The movers are at the given poses.
 struct Rig {
   Rig() {
     for (std::uint32_t i = 0; i < 2; ++i) {
@@ -65,8 +65,8 @@ struct Rig {
   std::map<Ticket, int> ends;
 };
 
-// PL-01: whatever it is told and whatever fails, a group goes only where the table of transitions leads, it watches
-// just while it is Enabled, and every command ends once.
+// PL-01: with any commands and faults, a group makes only transitions of the table, it watches exactly while it is
+// Enabled, and every command ends once.
 TEST(PlanarGroups, KeepToTheTransitions) {
   std::mt19937 random(1);
   std::set<ObjectState> seen;
@@ -88,7 +88,7 @@ TEST(PlanarGroups, KeepToTheTransitions) {
     if (what == 2) rig.Give(Disable{});
     if (what == 3) rig.Give(Reset{});
     if (what == 4 && random() % 4 == 0) Fail(rig.context(), 0, ErrorId::kInternal, random() % 2 == 0);
-    // Now and then the movers stand on one another: then it cannot watch.
+    // Sometimes the movers overlap: then it cannot be enabled.
     if (rig.state().state != ObjectState::kEnabled) rig.grounds.movers[1].pose.place.x = random() % 8 == 0 ? 50 : 240;
     check();
     rig.Step();
@@ -124,7 +124,7 @@ TEST(PlanarGroups, ResetLeadsWhereTheReactionSays) {
   }
 }
 
-// PL-30: who is in the way of being enabled is told.
+// PL-30: the object that prevents enabling is reported.
 TEST(PlanarGroups, SayWhoIsInTheWay) {
   Rig rig;
   rig.grounds.movers[1].rests = false;
@@ -143,7 +143,7 @@ TEST(PlanarGroups, SayWhoIsInTheWay) {
   EXPECT_EQ(rig.groups.outputs[0].environment, 1u);
 }
 
-// PL-31: an environment that is in use, or being made, stays as it is; stators that cannot be are told.
+// PL-31: an environment that is in use, or being built, stays as it is; invalid stators are reported.
 TEST(Environments, AreMadeOutsideTheCycle) {
   Rig rig;
   const auto give = [&](const environment::Command& command) {
@@ -174,7 +174,7 @@ TEST(Environments, AreMadeOutsideTheCycle) {
   EXPECT_EQ(rig.last[wrong].error, ErrorId::kStators);
   EXPECT_EQ(environment::ProblemOf(rig.last[wrong].value), planar::StatorProblem::kOverlap);
   EXPECT_GT(environment::StatorOf(rig.last[wrong].value), 0u);
-  // What there was stays.
+  // The old boundary stays.
   EXPECT_EQ(s.border_count, 6u);
   EXPECT_EQ(give(environment::AddToGroup{Name::Of("cell")}).error, ErrorId::kNone);
   rig.Do(Enable{});
@@ -191,7 +191,7 @@ TEST(Environments, AreMadeOutsideTheCycle) {
   EXPECT_EQ(environment::ProblemOf(rig.last[rig.ticket].value), planar::StatorProblem::kEmpty);
 }
 
-// One that was being made while its group came to be enabled is not taken over: movers rely on the one that is there.
+// A boundary that was being built while its group was enabled is not taken over: movers rely on the old one.
 TEST(Environments, DoNotChangeUnderAnEnabledGroup) {
   Rig rig;
   const auto give = [&](const environment::Command& command) {
@@ -220,7 +220,7 @@ TEST(Environments, DoNotChangeUnderAnEnabledGroup) {
   EXPECT_GT(rig.environments.states[0].border_count, borders);
 }
 
-// PL-31: there is an end to stators.
+// PL-31: the number of stators is limited.
 TEST(Environments, HoldSoManyStators) {
   Rig rig;
   const auto give = [&](const environment::Command& command) {
@@ -234,7 +234,7 @@ TEST(Environments, HoldSoManyStators) {
   EXPECT_EQ(give(environment::AddStator{-480, 0}), ErrorId::kStators);
 }
 
-// EN-04: a mover in a group, the group and its environment take no memory in the cycle.
+// EN-04: a mover in a group, the group and its environment do not allocate in the cycle.
 TEST(PlanarGroups, AllocateNothingInTheCycle) {
   const auto touch = []<typename... T>(const std::variant<T...>*) {
     (TypeOf<T>(), ...);  // the first use allocates
@@ -289,7 +289,7 @@ TEST(PlanarGroups, AllocateNothingInTheCycle) {
   EXPECT_EQ(AllocationsOfThisThread(), made);
 }
 
-// EN-11: all memory is described.
+// EN-11: all state is described.
 TEST(PlanarGroups, AreDescribed) {
   EXPECT_THAT(Verify(TypeOf<State>()), ::testing::IsEmpty());
   EXPECT_THAT(Verify(TypeOf<planar::GroupReservations>()), ::testing::IsEmpty());

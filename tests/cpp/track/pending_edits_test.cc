@@ -1,4 +1,4 @@
-// PL-20, PL-23: geometry that commands change, made outside the cycle; links and what they lock.
+// PL-20, PL-23: changes of geometry by commands, built outside the cycle; links and what they lock.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ EndAtTrack To(std::size_t track) {
   return {Name::Of(Rig::NameOf(track))};
 }
 
-// One step of a track that is put together step by step.
+// One step of building a track.
 struct Attempt {
   Command command;
   std::function<Problem(planar::TrackBuilder&)> build;
@@ -56,7 +56,7 @@ Attempt Any(std::mt19937& random) {
   }
 }
 
-// PL-20: random commands do what the geometry's own builder does, to the last bit; and no track crosses itself.
+// PL-20: random commands give the same as TrackBuilder, to the last bit; and no track crosses itself.
 TEST(PendingEdits, BuildWhatTheBuilderBuilds) {
   std::mt19937 random(11);
   int made = 0, crossed = 0, refused = 0, closed = 0;
@@ -91,7 +91,7 @@ TEST(PendingEdits, BuildWhatTheBuilderBuilds) {
   EXPECT_GT(closed, Trials(2));
 }
 
-// EN-04: the cycle's part takes no memory.
+// EN-04: the cycle does not allocate.
 TEST(PendingEdits, AllocateNothingInTheCycle) {
   []<typename... T>(const std::variant<T...>*) {
     (TypeOf<T>(), ...);  // the first use allocates
@@ -157,7 +157,7 @@ TEST(PendingEdits, LinkTracks) {
   EXPECT_EQ(out[4].subsequent_tracks, 1u);
   EXPECT_EQ(rig.state(4).ends_at.tracks[0], 0u);
   EXPECT_EQ(rig.Do(4, Line(0, 900, 100, 900)), Problem::kEnded);
-  // Where several end and start at one point, each goes on to each.
+  // Where several tracks end and start at one point, each end is linked to each start.
   ASSERT_EQ(rig.Do(4, Clear{}), Problem::kNone);
   EXPECT_EQ(out[0].previous_tracks, 0u);
   ASSERT_EQ(rig.Do(4, Line(200, 100, 250, 50)), Problem::kNone);
@@ -166,7 +166,7 @@ TEST(PendingEdits, LinkTracks) {
   EXPECT_EQ(out[4].subsequent_tracks, 3u);
 }
 
-// As many at one point as a network has links for; said at once, by commands and in the machine file.
+// At most as many at one point as a network can link; reported at once, for commands and in the machine file.
 TEST(PendingEdits, LinkSoManyAtOnePoint) {
   const std::size_t most = planar::kLinks;
   Rig rig(most + 2);
@@ -187,7 +187,7 @@ TEST(PendingEdits, LinkSoManyAtOnePoint) {
   EXPECT_TRUE(Build(params).problems.empty());
 }
 
-// PL-23: what others start from or end at stays as it is, until they are cleared.
+// PL-23: a track that others start from or end at stays as it is, until they are cleared.
 TEST(PendingEdits, LockWhatOthersUse) {
   Rig rig(2);
   rig.Do(0, Line(0, 0, 300, 0));
@@ -198,7 +198,7 @@ TEST(PendingEdits, LockWhatOthersUse) {
     EXPECT_TRUE(problem == Problem::kInUse || problem == Problem::kOtherEmpty) << static_cast<int>(problem);
     EXPECT_EQ(rig.state(0).length, 300);
   }
-  EXPECT_EQ(rig.Do(1, From(0)), Problem::kNone);  // once more: it does
+  EXPECT_EQ(rig.Do(1, From(0)), Problem::kNone);  // once more: succeeds
   EXPECT_EQ(rig.state(1).starts_from.count, 1u);
   EXPECT_EQ(rig.Do(1, Clear{}), Problem::kNone);
   EXPECT_EQ(rig.Do(0, Line(400, 100, 400, 300)), Problem::kNone);
@@ -206,7 +206,7 @@ TEST(PendingEdits, LockWhatOthersUse) {
   EXPECT_EQ(rig.Do(1, From(0)), Problem::kNotItsStart);
 }
 
-// Many at once: more than can wait are refused, the others are made in their order.
+// Many at once: those beyond the capacity are refused, the others are made in their order.
 TEST(PendingEdits, TakeSoManyAtOnce) {
   Rig rig(2);
   std::vector<Ticket> given;
@@ -221,7 +221,7 @@ TEST(PendingEdits, TakeSoManyAtOnce) {
   EXPECT_DOUBLE_EQ(rig.state(0).length, 100 * (kOrders / 2) - 50);
 }
 
-// An answer that nobody waits for, or without what was made, changes nothing.
+// An answer that is not awaited, or without a delivery, changes nothing.
 TEST(PendingEdits, TakeTheAnswerTheyWaitForAlone) {
   Rig rig(2);
   const auto hash = [&] { return HashOf(rig.tracks.works, HashOf(rig.state(0), HashOf(rig.state(1), 0))); };
@@ -241,11 +241,11 @@ TEST(PendingEdits, TakeTheAnswerTheyWaitForAlone) {
   refuse(0, {.number = 2, .problem = Problem::kKink});
   refuse(1, {.number = 1});
   EXPECT_EQ(rig.End(line), Problem::kNone);
-  refuse(0, {.number = 1});  // once is enough
+  refuse(0, {.number = 1});  // a second answer
   EXPECT_EQ(rig.state(0).length, 300);
 }
 
-// What was made and is not wanted is no answer to the next question.
+// A delivery that is not wanted is no answer to the next request.
 TEST(PendingEdits, ForgetWhatWasMadeForNothing) {
   Rig rig(1);
   const Ticket first = rig.Give(0, Line(0, 0, 300, 0));

@@ -1,4 +1,4 @@
-// Tracks in virtual time, with somebody who makes what they ask for.
+// Tracks in virtual time, with a builder for their requests.
 #pragma once
 
 #include <map>
@@ -23,7 +23,7 @@ class Rig {
 
   Context context() { return {tracks, grounds, cycle, feedback}; }
 
-  // Its ticket. It is carried out in the next cycle's stage of commands.
+  // Returns the ticket. The command is carried out in the next cycle's stage of commands.
   Ticket Give(std::size_t track, const Command& command) {
     const Ticket ticket = next_++;
     Apply(context(), track, ticket, command);
@@ -41,7 +41,7 @@ class Rig {
     feedback.Clear();
     ++cycle.count;
   }
-  // What was asked for is made between two cycles.
+  // Requests are built between two cycles.
   void Work() {
     while (const std::optional<BuiltTrack> answer = Make(tracks.desk)) Apply(context(), answer->track, 0, answer->made);
   }
@@ -51,7 +51,7 @@ class Rig {
       Work();
     }
   }
-  // Until it has ended; why it was refused, or kNone.
+  // Steps until it has ended. Returns the problem for which it was refused, or kNone.
   planar::Problem End(Ticket ticket) {
     for (int i = 0; i < 500 && ends[ticket] == 0; ++i) Steps(1);
     return last[ticket].error == ErrorId::kTrackGeometry ? ProblemOf(last[ticket].value) : planar::Problem::kNone;
@@ -64,7 +64,7 @@ class Rig {
   Cycle cycle{1, 0.001};
   std::vector<FeedbackEvent> storage;
   FeedbackSink feedback;
-  std::map<Ticket, int> ends;  // how often each ended
+  std::map<Ticket, int> ends;  // number of ends of each command
   std::map<Ticket, FeedbackEvent> last;
 
  private:

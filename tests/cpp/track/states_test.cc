@@ -1,4 +1,4 @@
-// PL-01, PL-22: states of tracks, and what leads from one to the other.
+// PL-01, PL-22: states of tracks and their transitions.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -15,7 +15,7 @@ using planar::Problem;
 
 constexpr AppendLine kLine{.start_x = 0, .start_y = 0, .end_x = 500, .end_y = 0};
 
-// PL-01: the table says what the manual's diagram says: every state is left and reached, and one way leads out of
+// PL-01: the table agrees with the manual's diagram: every state is entered and left, and one transition leads out of
 // Error.
 TEST(ObjectStates, TableIsThatOfTheManual) {
   std::set<std::pair<ObjectState, ObjectState>> seen;
@@ -49,8 +49,8 @@ TEST(Tracks, AreDescribedToTheLastMember) {
   }
 }
 
-// PL-01, PL-22: any commands and faults, in any order: only legal transitions, each command ends once, a mode that
-// fits the state; and all states are seen.
+// PL-01, PL-22: any commands and faults, in any order: only legal transitions, each command ends once, a mode that fits
+// the state; and all states occur.
 TEST(Tracks, GoByTheTable) {
   std::mt19937 random(7);
   std::set<ObjectState> seen;
@@ -129,7 +129,7 @@ TEST(Tracks, ResetLeadsWhereTheReactionSays) {
   }
 }
 
-// PL-22: only a track that stands is disabled; nor is its geometry changed while movers stand on it.
+// PL-22: only a track at rest is disabled; nor is its geometry changed while movers are on it.
 TEST(Tracks, AreNotDisabledInUse) {
   Rig rig(1);
   rig.Do(0, kLine);
@@ -153,13 +153,13 @@ TEST(Tracks, AreNotDisabledInUse) {
   EXPECT_EQ(rig.state(0).length, 500);
 }
 
-// What was given before enable is made first.
+// Elements given before Enable are built first.
 TEST(Tracks, EnableWaitsForTheGeometry) {
   Rig rig(2);
   rig.Give(1, kLine);
   const Ticket line = rig.Give(0, kLine);
   const Ticket enable = rig.Give(0, Enable{});
-  for (int i = 0; i < 10; ++i) rig.Step();  // nobody makes anything
+  for (int i = 0; i < 10; ++i) rig.Step();  // without a builder
   EXPECT_EQ(rig.state(0).state, ObjectState::kEnabling);
   EXPECT_EQ(rig.ends[line] + rig.ends[enable], 0);
   EXPECT_EQ(rig.End(enable), Problem::kNone);
