@@ -72,7 +72,8 @@ struct Reservations {
 };
 Reservations MakeReservations(std::size_t movers, std::size_t tracks);
 
-// Obstacles that do not change from cycle to cycle. Tracks that are not in the group have no area.
+// Obstacles that do not change from cycle to cycle. Tracks without an area are null; of the others only those count
+// that are Moving in the reservations of the group.
 struct StaticObstacles {
   const Environment* environment = nullptr;  // in coordinate system 0; null: no border
   std::span<const TrackArea* const> tracks{};
