@@ -1,6 +1,6 @@
-// Commands as they arrive: what carrying them out has in common. Each family has a file of its own beside this one:
-// power.cc, moves.cc, by_coordinate.cc, on_tracks.cc, gear.cc, setpoints.cc, buffer.cc, membership.cc, formation.cc,
-// routes.cc.
+// Admission of commands: what the execution of all commands has in common. Each family of commands has a file of its
+// own: power.cc, moves.cc, by_coordinate.cc, on_tracks.cc, gear.cc, setpoints.cc, buffer.cc, membership.cc,
+// formation.cc, routes.cc.
 #pragma once
 
 #include <algorithm>
@@ -11,20 +11,20 @@
 
 namespace takt::mover {
 
-// A command that has arrived.
+// Context of a command under admission.
 struct CommandContext {
   const Context& c;
   Ticket ticket;
   State& s;
 };
 
-// What becomes of it.
+// Result of the admission of a command.
 struct AdmissionResult {
   Status status;
-  double value = 0;     // s that it takes, as planned; refused: what the error says of it
-  bool goes_on = true;  // it is done later
-  bool waits = false;   // and does nothing yet
-  ObjectInfo object{};  // that is in the way
+  double value = 0;     // [s] planned duration; if refused: the value that the error reports
+  bool goes_on = true;  // the command stays in progress after admission
+  bool waits = false;   // accepted, but not active yet
+  ObjectInfo object{};  // the obstacle, or the object that the error names; none if empty
 };
 
 inline AdmissionResult Refused(ErrorId error, const ObjectInfo& object = {}, double value = 0) noexcept {
@@ -40,20 +40,21 @@ inline AdmissionResult Done() noexcept {
   return {Status::Ok(), 0, false};
 }
 
-// The command gets this slot; who had it is aborted.
+// Assigns the slot to the command; the command that held it is aborted.
 inline void Take(const CommandContext& g, Slot slot) noexcept {
   End(g.c, slot, FeedbackState::kAborted, ErrorId::kNone, g.s);
   g.s.tickets[slot] = g.ticket;
   g.s.begun[slot] = g.c.cycle.count;
 }
 
-// Why the mover does not do this now.
+// Returns kMoverDisabled or kCommandMode if the mover does not accept `ask` now; else kNone.
 inline ErrorId Diagnose(const State& s, Ask ask) noexcept {
   if (s.state != planar::ObjectState::kEnabled) return ErrorId::kMoverDisabled;
   return Accepts(s.mode, ask) ? ErrorId::kNone : ErrorId::kCommandMode;
 }
 
-// Dynamics of a command, no more than the maximum.
+// Returns the dynamics of a command: unset values are the standard ones, all are clamped to the maximum. `limited_by`:
+// the first value that was reduced.
 template <typename Move, typename Params>
 trajectory::Limits LimitsOf(const Move& m, const Params& params, LimitedBy& limited_by) noexcept {
   const trajectory::Limits standard = StandardOf(params);
@@ -70,7 +71,8 @@ trajectory::Limits LimitsOf(const Move& m, const Params& params, LimitedBy& limi
           take(m.jerk, standard.jerk, most.jerk, LimitedBy::kJerk)};
 }
 
-// Along tracks with these limits; as vectors in the plane acceleration and jerk keep the mover's maxima.
+// Returns the pace along tracks with these limits; as vectors in the plane, acceleration and jerk are bounded by the
+// mover's maxima.
 inline planar::Pace PaceOf(const MoverParams& params, const trajectory::Limits& limits,
                            DynamicsReduction reduction = DynamicsReduction::kAccelerationLimitedVelocity) noexcept {
   const trajectory::Limits most = params.xy.maximum.limits();
@@ -79,37 +81,41 @@ inline planar::Pace PaceOf(const MoverParams& params, const trajectory::Limits& 
   return {limits, lateral, acceleration, most.jerk};
 }
 
-// Carries it out, or refuses it; reports either way. Whether it was accepted. With `in_the_way`, one that only another
-// mover or a track that is Moving is in the way of is not refused: nothing has happened, and this is what it was.
+// Executes or refuses a command and reports the result; returns true if it was accepted. With `in_the_way`, a command
+// that is blocked only by another mover or by a track that is Moving is neither refused nor reported: the state is
+// unchanged, and `in_the_way` receives the obstacle.
 bool Begin(const Context& c, Ticket ticket, const Command& command, State& s,
            ObjectInfo* in_the_way = nullptr) noexcept;
 
-// Whether a mover may go along these tracks now; and then it does.
+// AskRoute returns why the mover may not move along these tracks now, kNone if it may; TakeRoute then counts it as
+// moving on them and reserves them.
 planar::Verdict AskRoute(const Context& c, const planar::Route& route) noexcept;
 void TakeRoute(const Context& c, const planar::Route& route) noexcept;
-// The least gap, mm, at which it and those that are on its route now would not touch, turned as it will be, anywhere on
-// its way. No less than `wanted` if that is enough in all bends.
+// Returns the smallest gap [mm] at which this mover and the movers that are now on the tracks of its route do not
+// touch, at the final angle of its rotation in progress. Checked at its position, at the ends of the tracks and, for
+// gaps above `wanted`, in all bends of its route.
 double LeastGap(const Context& c, const State& s, const planar::Rider& rider, double wanted) noexcept;
-// The mover must not cover what a move would cover; the part that it would leave is named.
+// Refuses a move because of the area that it would cover; kOffStators names the part that the mover would leave.
 inline AdmissionResult RefusedThere(const State& s, ErrorId why) noexcept {
   const bool leaves = why == ErrorId::kOffStators && s.part != planar::kNoPart;
   return Refused(why, leaves ? ObjectAt(ObjectKind::kPart, s.part) : ObjectInfo{});
 }
-// A part that is not where it is to be.
+// Returns true if the part is moving, or not at its commanded position.
 inline bool IsOnItsWay(const Context& c, std::uint32_t part) noexcept {
   const planar::PartNow& now = c.streets.parts->now[part];
   return now.away || now.position != now.commanded;
 }
-// The part that a move has to wait for before it can begin; kNoPart: none, or it is not on its way.
+// Returns the part whose motion a move on tracks has to wait for before it can begin; kNoPart: none, or it is not
+// moving.
 std::uint32_t PartAwaited(const Context& c, const Command& command, const State& s) noexcept;
-// Sends a mover on its way as `command` asks; not yet with its dynamics.
+// Computes route and target of `command` and writes them into `rider`; the dynamics are not set.
 planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept;
 planar::Way WayOf(TurnDirection direction) noexcept;
-// A move of X and Y in the plane, whatever the mode.
+// Moves X and Y in the plane, whatever the command mode.
 AdmissionResult MoveTo(const CommandContext& g, const MoveToPosition& command) noexcept;
-// As a mover on a route moves on: its coordinate system is that where it is, and nothing is reported.
+// A move of a mover along its route: `move` is in the coordinate system of the mover, and nothing is reported.
 AdmissionResult MoveAlong(const Context& c, const MoveToPosition& move, State& s) noexcept;
-// One of C, if it may do what `ask` says.
+// Turns C if the command mode accepts `ask`.
 AdmissionResult Turn(const CommandContext& g, const MoveC& command, Ask ask) noexcept;
 
 AdmissionResult CarryOut(const CommandContext& g, const Enable& command) noexcept;

@@ -1,4 +1,4 @@
-// What a mover needs of the ground for its motions, and how it gets it from its group (planar/group_registry.h).
+// The areas that a mover needs for its motions, and how its group grants them (planar/group_registry.h).
 #pragma once
 
 #include "takt/mover/on_parts.h"
@@ -6,19 +6,20 @@
 
 namespace takt::mover {
 
-// What is in the way of motions of X, Y and C that begin when this cycle does, or go on; on a track: of C alone. None:
-// they may be.
+// Returns the obstacle to motions of X, Y and C that begin in this cycle or are in progress (on a track: to that of C
+// alone); none: the motions are admissible.
 ObjectInfo InTheWay(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, bool on_track) noexcept;
-// Those of the state are reserved, whatever is in the way.
+// Reserves the motions of the state, without a check for obstacles.
 void Reserve(const Context& c, const State& s, bool on_track) noexcept;
-// What is in the way of a mover that comes to rest from this set point, at the end of this cycle, as hard as it can;
-// X and Y in the plane. None: that is reserved from now on, in place of what was.
+// Returns the obstacle to a mover that stops from this set point, at the end of this cycle, with its maximum dynamics,
+// X and Y in the plane. None: the area of that stop replaces what the mover had reserved.
 ObjectInfo TakeStop(const Context& c, const State& s, const SetPoint& at) noexcept;
-// The same of one on a track whose middle stays between these places.
+// The same for a mover on a track whose centre stays within the hull of these positions.
 ObjectInfo TakeStopOff(const Context& c, const PlacesOff& places, const SetPoint& at) noexcept;
-// Where X, Y and C lead as commanded; on a track, and moved from outside, X and Y are where they are.
+// Returns the commanded target pose; on a track and with external set points, X and Y are the set position.
 planar::Pose GoalOf(const Context& c, const State& s) noexcept;
-// Where the mover is when this cycle begins, for others; what it has left is free.
+// Publishes the state of the mover at the beginning of this cycle to its group and the guard, and frees the area that
+// it has left.
 void Stand(const Context& c, const State& s) noexcept;
 
 }  // namespace takt::mover

@@ -1,10 +1,10 @@
-// Commands of a mover that wait for their turn (PL-71): each begins when all that were given before it are done.
+// Command buffer of a mover (PL-71): a buffered command begins when all commands given before it are done.
 //
-// In its turn a command waits further (PL-72, PL-83) while a part on its way, another mover or a track that is Moving
-// is in its way: what may be gone by itself. It is asked anew in each cycle and reserves nothing meanwhile, so the
-// mover stands where it has reserved to stand. Only while the mover in its way is leaving, others that wait, too, but
-// not as long, do not get what it waits for (planar::AskTurn). Nothing of the invariant of the guard depends on it.
-// Movers that wait for one another in a ring say so.
+// When it is its turn, a command waits further (PL-72, PL-83) while an obstacle that may leave by itself blocks it: a
+// part that is moving, another mover or a track that is Moving. The request is repeated in each cycle and reserves
+// nothing meanwhile, so the mover stays at rest within the area that it has reserved. Only while the blocking mover is
+// leaving, other waiting movers that have waited less do not get the awaited area (planar::AskTurn). The invariant of
+// the guard does not depend on any of this. Movers that wait for one another in a ring report a deadlock.
 #pragma once
 
 #include <array>
@@ -27,42 +27,42 @@ inline constexpr std::size_t kBuffered = 16;
 struct Queued {
   Ticket ticket = 0;
   Command command;
-  // Bits of the slots of Z, A, B and C whose commands were given later: it does not wait for them.
+  // Bits of the slots of Z, A, B and C whose commands were given later: this command does not wait for them.
   std::uint32_t beside = 0;
 };
 
 struct Buffer {
-  std::array<Queued, kBuffered> waiting{};  // the next one first
+  std::array<Queued, kBuffered> waiting{};  // [0] is next
   std::uint32_t count = 0;
-  std::uint32_t releases = 0;  // that nobody has taken
-  std::uint64_t until = 0;     // cycle at which a Wait is over
-  bool for_release = false;    // what it waits for, too
-  // A way along tracks that went over into the next one is done where it was to end (Slot kPassing).
-  double passing_at = 0;  // mm, with those of all tracks left behind
+  std::uint32_t releases = 0;  // releases that no Wait has consumed
+  std::uint64_t until = 0;     // cycle in which the time of a Wait is over
+  bool for_release = false;    // the Wait ends with a release only
+  // A move along tracks that continued into the next one without a stop is done at its own target (Slot kPassing).
+  double passing_at = 0;  // [mm] over all tracks left behind
   std::int8_t direction = 1;
-  // The part, mover or track that the next one waits for in its turn; of a mover, where that stood when it was asked.
+  // The part, mover or track that blocks the next command; for a mover, its pose when the request was refused.
   ObjectInfo held_by{};
   planar::Pose held_at{};
   std::uint64_t held_since = 0;  // cycle
 };
 
-// Whether this one waits for its turn.
+// Returns true if the command is buffered.
 bool IsBuffered(const Command& command) noexcept;
-// Lets it wait. False: there is no room.
+// Appends a command; returns false if the buffer is full.
 bool Push(Ticket ticket, const Command& command, Buffer& buffer) noexcept;
-// It would take over at once, but this is in its way: the mover comes to rest, and the command is the next one. What it
-// would have taken over from is aborted.
+// Brings the mover to rest for a command with kAborting that `in_the_way` blocks, and makes that command the next one
+// of the buffer. The commands that it would have replaced are aborted.
 void WaitInTurn(const Context& c, Ticket ticket, const Command& command, const ObjectInfo& in_the_way,
                 State& s) noexcept;
-// One of Z, A, B or C has begun at once: what waits already does not wait for it.
+// A command of Z, A, B or C has begun at once: the commands in the buffer do not wait for it.
 void GoBeside(Ticket ticket, State& s) noexcept;
-// None waits any more.
+// Aborts all buffered commands.
 void AbortBuffered(const Context& c, State& s) noexcept;
-// move: ends a Wait, and gives the next one its turn if it is that.
+// Cycle stage move: ends a Wait that is over, and begins the next command if it is its turn.
 void TakeTurns(const Context& c, State& s) noexcept;
-// At the end of a cycle: what was passed is done.
+// At the end of a cycle: reports the command in kPassing done once the mover has passed its target.
 void LookBack(const Context& c, State& s) noexcept;
-// The mover that this one, at rest, waits for: because of its own command or the next one. kNobody: none.
+// Returns the mover that this one, at rest, waits for, with its own command or the next buffered one; kNobody: none.
 std::uint32_t WaitsFor(const Context& c, std::uint32_t mover) noexcept;
 
 void describe(Description<Queued>&);

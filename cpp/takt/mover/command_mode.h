@@ -1,4 +1,4 @@
-// What kind of command a mover carries out, and what it accepts meanwhile (PL-10).
+// The kind of command that a mover executes, and what it accepts meanwhile (PL-10).
 #pragma once
 
 #include <algorithm>
@@ -10,16 +10,16 @@
 
 namespace takt::mover {
 
-// In: how a mover gets there. Out: how it leaves.
+// in: how a mover enters the mode; out: how it leaves it.
 enum class CommandMode : std::uint8_t {
-  kFreeMovement,                // in: enabled, a track left, turned into a window. out: any other
-  kJoiningTrack,                // in: a move onto a track. out: it is over
-  kOnTrack,                     // in: joined. out: it leaves, or turns out of a window
-  kLeavingTrack,                // in: a move from a track. out: it is over
-  kCRotationFreeMovement,       // in: turns out of a window, or is turned so. out: at rest within one
+  kFreeMovement,                // in: enabled, a track left, turned into a window. out: to any other mode
+  kJoiningTrack,                // in: a move onto a track. out: the move is over
+  kOnTrack,                     // in: joined. out: a move from the track, a turn out of a window
+  kLeavingTrack,                // in: a move from a track. out: the move is over
+  kCRotationFreeMovement,       // in: a turn out of a window, enabled outside of them. out: at rest within one
   kCRotationOnTrack,            // the same on a track
   kExternalSetpointGeneration,  // in: absolute set points from outside. out: at rest after them
-  kFormation,                   // in: a formation joined. out: left, or its end
+  kFormation,                   // in: a formation joined. out: left, or dissolved
 };
 inline constexpr int kCommandModes = 8;
 
@@ -50,7 +50,7 @@ constexpr bool IsLegal(CommandMode from, CommandMode to) {
   return takt::IsLegal(kModeTransitions, from, to);
 }
 
-// What commands ask of a mover. Whatever its mode, it can be enabled, disabled, reset and halted.
+// What a command asks of a mover. Enable, disable, reset and halt are accepted in every mode.
 enum class Ask : std::uint8_t {
   kMoveToPosition,  // or X or Y by itself
   kMoveC,

@@ -10,28 +10,28 @@
 
 namespace takt::mover {
 
-inline constexpr double kWindow = 90;  // deg from one window of C to the next
+inline constexpr double kWindow = 90;  // [deg] from one window of C to the next
 
-// Returns whether the speed stays within `maximum` [mm/s, deg/s].
+// Returns true if the speed stays within `maximum` [mm/s, deg/s].
 bool KeepsVelocity(const trajectory::Profile& profile, double maximum) noexcept;
-// Returns the maximum acceleration, deceleration and jerk with the velocity that was asked for.
+// Returns the maximum acceleration, deceleration and jerk with the requested velocity.
 trajectory::Limits WithMaximumDynamics(const trajectory::Limits& limits, const trajectory::Limits& maximum) noexcept;
 
-// To a position, as these limits say; with the maximum dynamics where the mover would leave the coordinate's limits or
-// its largest speed else. False: there is no such motion.
+// Plans a motion to rest at `position` with these limits, or with the maximum dynamics if it would otherwise leave the
+// range of the coordinate or exceed its maximum velocity. Returns false if there is no such motion.
 bool PlanCoordinate(trajectory::Planner& planner, const KinematicState& from, double position,
                     const trajectory::Limits& limits, const CoordinateParams& params,
                     trajectory::Profile& out) noexcept;
-// The same to rest.
+// The same for a stop; its end position is not prescribed.
 bool PlanRest(trajectory::Planner& planner, const KinematicState& from, const trajectory::Limits& limits,
               const CoordinateParams& params, trajectory::Profile& out) noexcept;
 
-// C with the window that it is in as its limits; outside of all, or not `bounded`: without any.
+// Returns C limited to the window that contains `position`; without limits outside of all windows, or if not `bounded`.
 CoordinateParams Windowed(const CoordinateParams& c, double position, bool bounded) noexcept;
-// Whether all of [lower, upper] lies within one window.
+// Returns true if [lower, upper] lies within one window.
 bool InOneWindow(const CoordinateParams& c, double lower, double upper) noexcept;
 
-// Where move_c leads from a state, which comes to rest at `stop`.
+// Returns the target [deg] of move_c from the state `from`, which would come to rest at `stop` [deg].
 double TargetOf(const MoverParams& params, const KinematicState& from, double stop, const MoveC& command) noexcept;
 
 }  // namespace takt::mover

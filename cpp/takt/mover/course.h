@@ -1,4 +1,4 @@
-// How a mover keeps off others wherever it goes: its side of the guard (planar/guard.h).
+// How a mover stays clear of all others, whatever moves it: its side of the guard (planar/guard.h).
 #pragma once
 
 #include "takt/mover/run.h"
@@ -6,26 +6,29 @@
 
 namespace takt::mover {
 
-// Tells the guard the course of a mover that brakes from where it is when this cycle begins. Traffic does so for movers
-// that it moves.
+// Sets the course that the guard knows to that of a mover that brakes from its state at the beginning of this cycle.
+// Traffic does this for movers that it moves.
 void ShowCourse(const Context& c, const State& s) noexcept;
-// The same once it is at rest, or turns; at the end of each step.
+// At the end of each step: the same for a mover that has come to rest, turns, or is displaced from its track; and the
+// area where its part will bring it.
 void ShowRest(const Context& c, const State& s) noexcept;
 
-// A step in the plane to this set point, and whom its course from there would overlap; none: that is its course now.
+// Returns the mover that the course from set point `at`, in the plane, would overlap; none: that course is taken.
 ObjectInfo TakeCourse(const Context& c, const SetPoint& at, State& s) noexcept;
-// How it comes to rest when this cycle begins, as the guard knows it.
+// Returns how the mover comes to rest from the beginning of this cycle, as the guard knows it.
 Escape EscapeOf(const Context& c, const State& s) noexcept;
-// Whom the mover would overlap where it is, and comes to rest, by such a rotation; none: it may turn.
+// Returns the mover that this one would overlap, at its position and during its stop, with the rotation `turn`; none:
+// it may turn.
 ObjectInfo InTheTurn(const Context& c, const State& s, const CoordinateMove& turn) noexcept;
-// The same of one on a track whose set point from outside is off its place there.
+// As TakeCourse, for a mover on a track that external set points displace from its position there.
 ObjectInfo TakeCourseOff(const Context& c, const State& s, const SetPoint& at) noexcept;
-// Returns the mover whose course a mover would overlap that is set to this spot at the angle `turned` [deg].
+// Returns the mover whose course this one would overlap if it were set to `at` with the angle `turned` [deg].
 ObjectInfo InTheCourse(const Context& c, const planar::Spot& at, double turned) noexcept;
 
-// X and Y brake on their line for another mover, and go on once the way is clear as far as it takes to get fast.
+// X and Y brake for another mover, and continue once the path ahead is clear over the braking distance from the
+// commanded velocity (IsHeld).
 void Hold(const Context& c, std::uint32_t other, State& s) noexcept;
-// At rest on its line: whether another mover is still in the way of one that was held.
+// Returns true if a mover that was held, now at rest on its line, still has another mover in its way.
 bool IsHeld(const Context& c, State& s) noexcept;
 
 }  // namespace takt::mover

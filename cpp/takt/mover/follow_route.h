@@ -1,15 +1,16 @@
-// Routes of movers over the free surface (PL-72). Which places each visits, and behind whom, is planned outside the
-// cycle; here it is carried out, so that a mover that is late, or fails, holds up those behind it and no others.
+// Execution of routes of movers over the free surface (PL-72). The places that each mover visits, and the order of
+// movers at each place, are planned outside the cycle. A mover that is late or fails delays only the movers behind it.
 //
-// The invariant: a place is granted to a mover when the mover that visits it before has left it, or is ahead on its way
-// straight through it, in the same direction: then it cannot be overtaken, and the guard keeps both apart. A mover is
+// The invariant: a place is granted to a mover when the mover that visits it before has left it, or moves ahead
+// straight through it in the same direction. Then it cannot be overtaken, and the guard keeps the two apart. A mover is
 // sent straight on as far as places are granted to it, and further while it moves.
 //
-// With times of a plan a mover starts a whole straight motion as soon as all of its places are expected to be free on
-// arrival, given the present delays of the others: the motion of the plan, without braking. Where a place is not
-// granted at the last moment at which the mover can stop before it, it stops, and places are granted one by one then.
+// With planned times a mover starts a whole straight motion as soon as all of its places are expected to be free on
+// arrival, given the present delays of the other movers: the planned motion, without braking. If a place is not granted
+// at the last moment at which the mover can stop before it, it stops, and places are granted one by one from then on.
 //
-// A mover in an enabled group is sent only where others have left: what it reserves there is free then.
+// A mover in an enabled group is sent only to places that other movers have left: the area that it reserves there is
+// free.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +32,7 @@ struct Everyone {
   SurfaceRoutes& routes;
 
   Context of(std::size_t mover) const noexcept { return context(owner, mover); }
-  // Calls this for movers on their way.
+  // Calls `what` for each mover that is on its route.
   void Each(const auto& what) const {
     for (std::size_t i = 0; i < routes.of.size(); ++i) {
       if (states[i].tickets[kRoute] != 0) what(of(i), states[i], routes.of[i]);
@@ -39,38 +40,39 @@ struct Everyone {
   }
 };
 
-// move: before the movers step.
+// Cycle stage move, before the movers step.
 void FollowRoutes(const Everyone& all) noexcept;
 
 inline SurfaceRoute& RouteOf(const Context& c, std::size_t mover) noexcept {
   return c.fleet.routes->of[mover];
 }
-// The mover is on its way along a route.
+// Returns true if the mover is on its route.
 inline bool IsOnRoute(const State& s) noexcept {
   return s.tickets[kRoute] != 0;
 }
-// The mover that visits a place of this one before, if one does.
+// Returns the other mover that visits the place before this visit, if there is one.
 std::optional<std::uint32_t> Before(const Context& c, const Visit& visit) noexcept;
-// Notes which places it has passed. What it does besides ends its route.
+// Updates the last place that the mover has passed. Aborts the route if the mover is disabled, has left free movement
+// or its coordinate system, or follows external set points.
 void Look(const Context& c, State& s, SurfaceRoute& r) noexcept;
-// It is where it was told to go, at rest.
+// Returns true if the mover rests at the last place to which it was sent.
 bool Rests(const Context& c, const State& s, const SurfaceRoute& r) noexcept;
-// mm between the mover and its route, from the place that it has passed to the next one.
+// Returns the distance [mm] between the mover and its route, between the place that it has passed and the next one.
 double OffRoute(const State& s, const SurfaceRoute& r) noexcept;
-// Where it comes to rest if it is told so `later` s from now, with these dynamics: mm from the place that it has
-// passed.
+// Returns where the mover comes to rest if it brakes `later` [s] from now with these dynamics: [mm] along its route
+// from the place that it has passed; infinite if there is no plan.
 double RestsAt(const Context& c, const State& s, const SurfaceRoute& r, const RouteDynamics& dynamics,
                double later = 0) noexcept;
-// Returns the first granted visit where it can come to rest.
+// Returns the first granted visit at which the mover can come to rest.
 std::uint64_t StopsAt(const Context& c, const State& s, const SurfaceRoute& r) noexcept;
-// The present motion is none of the plan any more.
+// Marks the present motion as one that no longer follows the plan.
 void Disturb(SurfaceRoute& r) noexcept;
 
-// Why a mover rests in a place of its route.
+// Why a mover rests at a place of its route.
 struct RestInPlace {
   bool held = false;                      // routes are being held
-  std::uint32_t mover = planar::kNobody;  // that visits the next place before; kNobody: none
-  std::uint64_t since = 0;                // cycle; 0: it does not
+  std::uint32_t mover = planar::kNobody;  // the mover that visits the next place before; kNobody: none
+  std::uint64_t since = 0;                // cycle since which it rests there; 0: it does not
 };
 RestInPlace WhyResting(const Context& c, const State& s) noexcept;
 

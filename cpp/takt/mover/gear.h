@@ -1,21 +1,21 @@
-// A mover that goes along with an axis or another mover, over tracks (PL-14).
+// A mover that follows an axis or another mover on tracks (PL-14).
 #pragma once
 
 #include "takt/mover/mover.h"
 
 namespace takt::mover {
 
-// It is geared, in step or not.
+// Returns true if the mover is geared, in sync or not.
 inline bool IsGeared(const Context& c, const State& s) noexcept {
   return s.track != planar::kNoTrack && c.rider().on && c.rider().aim == planar::Aim::kFollow;
 }
-// Whether `mover` goes along with this one, be it over others.
+// Returns true if `mover` is `master`, or follows it directly or over other movers.
 bool IsFollowedBy(const TrackNetworkState& streets, std::uint32_t master, std::uint32_t mover) noexcept;
 
-// Before traffic: where its master is at the end of this cycle, and where that goes. Masters that are lost end the
-// gear.
+// Before traffic: updates the demand and the route from the master, as of the end of this cycle. The gear ends if the
+// master is lost.
 void Lead(const Context& c, State& s) noexcept;
-// Behind traffic: says what has become of it.
+// After traffic: reports a change of in-sync, and the end of the gear where its route ends.
 void NoteGear(const Context& c, State& s) noexcept;
 
 }  // namespace takt::mover

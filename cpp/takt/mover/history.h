@@ -1,4 +1,4 @@
-// The last commands of a mover and what became of them (PL-70).
+// The last commands of a mover and their results (PL-70).
 #pragma once
 
 #include <array>
@@ -13,26 +13,26 @@ namespace takt::mover {
 
 struct Record {
   Ticket ticket = 0;          // 0: none
-  std::uint64_t cycle = 0;    // that took the command
-  std::uint64_t begun = 0;    // cycle in which it began; buffered ones later
-  std::uint64_t changed = 0;  // cycle in which it came to be what it is
-  std::uint8_t command = 0;   // place in mover::Command
+  std::uint64_t cycle = 0;    // in which the command was received
+  std::uint64_t begun = 0;    // in which it began; later for buffered ones
+  std::uint64_t changed = 0;  // of the last change of its state
+  std::uint8_t command = 0;   // index in mover::Command
   FeedbackState state = FeedbackState::kBusy;
   ErrorId error = ErrorId::kNone;
-  ObjectInfo object{};                         // that was in the way
-  LimitedBy limited_by = LimitedBy::kNothing;  // what of its dynamics was reduced
+  ObjectInfo object{};                         // the obstacle, if any
+  LimitedBy limited_by = LimitedBy::kNothing;  // first value of its dynamics that was reduced
 };
 
 inline constexpr std::size_t kHistory = 100;
 
 struct History {
-  std::array<Record, kHistory> records;  // a ring
-  std::uint64_t count = 0;               // of all commands so far
+  std::array<Record, kHistory> records;  // ring buffer
+  std::uint64_t count = 0;               // number of all commands so far
 
   void Begin(Ticket ticket, std::uint64_t cycle, std::uint8_t command) noexcept {
     records[count++ % kHistory] = {ticket, cycle, cycle, cycle, command, FeedbackState::kBusy, ErrorId::kNone};
   }
-  // Null: it is too old, and forgotten.
+  // Returns the record of a command; null if it has been overwritten.
   Record* Find(Ticket ticket) noexcept {
     const std::uint64_t oldest = count > kHistory ? count - kHistory : 0;
     for (std::uint64_t i = count; i-- > oldest;) {

@@ -1,5 +1,5 @@
-// One planar mover, stage by stage of the cycle. Free functions over plain state; nothing here allocates, locks, throws
-// or reads a clock.
+// One planar mover, stage by stage of the cycle. Free functions over plain state; they do not allocate, lock, throw or
+// read a clock.
 #pragma once
 
 #include <cstdint>
@@ -20,25 +20,25 @@ namespace takt::mover {
 
 struct SurfaceRoutes;  // route.h
 
-// What a star can do with its planets (mover/formation.h): X and Y or C alone, and both at once.
+// The parameters of a star with its planets (mover/formation.h): for X and Y or C alone, and for both at once.
 struct Body {
-  // With room for so many planets.
+  // Reserves memory for `most` planets.
   Body(const MoverParams& params, std::size_t most) : alone(params), both(params) { planets.reserve(most); }
 
-  std::vector<std::uint32_t> planets{};  // their numbers
+  std::vector<std::uint32_t> planets{};  // indices
   MoverParams alone;
   MoverParams both;
 };
 
-// All movers, as those of a formation see each other; by number.
+// All movers, by index, as members of a formation see each other.
 struct Fleet {
   std::span<const MoverParams> params{};
   std::span<const State> states{};
-  std::span<Body> bodies{};         // what follows from the planets of each
-  SurfaceRoutes* routes = nullptr;  // of all
+  std::span<Body> bodies{};         // derived from the planets of each
+  SurfaceRoutes* routes = nullptr;  // of all movers
 };
 
-// What every stage gets besides the mover itself.
+// Context of every stage besides the mover's own state.
 struct Context {
   const MoverParams& params;
   Cycle cycle;
@@ -52,30 +52,30 @@ struct Context {
   planar::Rider& rider() const noexcept { return streets.riders[index]; }
 };
 
-// What is measured, at the beginning of a cycle.
+// Measured values at the beginning of a cycle.
 struct Inputs {
   Place actual;
 };
 
-// What an ideal mover measures after this cycle: it is where it is to be.
+// Returns the values of an ideal mover after this cycle: the actual pose is the set pose.
 Inputs Simulate(const State& s) noexcept;
 
-// command: carries it out or refuses it; reports either way.
+// Cycle stage command: executes or refuses a command and reports the result.
 void Apply(const Context& c, Ticket ticket, const Command& command, State& s) noexcept;
 
-// move
+// Cycle stage move.
 void Step(const Context& c, const Inputs& inputs, State& s) noexcept;
 
-// Where it is at the start, for others.
+// Publishes the pose at the start to the other movers.
 void Arrive(const Context& c, const State& s) noexcept;
 
-// Comes to rest with the maximum dynamics, and is in Error then. `aborts`: a reset leads to Disabled.
+// Brings the mover to rest with the maximum dynamics, then to Error. `aborts`: a reset leads to Disabled.
 void Fail(const Context& c, ErrorId error, State& s, bool aborts = false, const ObjectInfo& object = {}) noexcept;
 
 void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& out) noexcept;
 
 bool AtRest(const State& s) noexcept;
-// At rest and without power: disabled, or after a fault that leads there.
+// Returns true if the mover is at rest and without power: Disabled, or after a fault whose reset leads there.
 bool IsOff(const State& s) noexcept;
 
 void describe(Description<Inputs>&);

@@ -13,68 +13,68 @@
 
 namespace takt::mover {
 
-// Brings coordinates with a reference into the coordinate system where the mover is. kReference: there is no such
-// reference, or it is of another coordinate system.
+// Transforms coordinates relative to `reference` into the coordinate system of the mover. Returns kReference if the
+// reference is unknown or belongs to another coordinate system.
 ErrorId ToMoverSystem(const Context& c, const State& s, const Name& reference, double& x, double& y) noexcept;
 
-// What a mover covers of the plane; tracks apart.
+// The area that a mover covers in the plane, without what it will cover along tracks.
 struct Cover {
   std::array<planar::Area, 5> areas{};
   std::uint32_t count = 0;
 
   std::span<const planar::Area> all() const noexcept { return {areas.data(), count}; }
 };
-// From now on: along the planned motion; with set points from outside, along a stop with maximum dynamics.
+// From now on: along the planned motion; with external set points, along a stop with maximum dynamics.
 Cover CoverOf(const Context& c, const State& s) noexcept;
 // Along a stop with maximum dynamics from the set point `at`, as after a fault; empty without parts.
 Cover CoverOfStop(const Context& c, const SetPoint& at) noexcept;
 // Of a mover displaced from its track by `off` [mm] at the end of this cycle: the hull of its centre until it rests,
-// its way back onto the track included.
+// with the return onto the track.
 struct PlacesOff {
   std::array<planar::Place, 4> places;
-  double margin = 0;  // mm, round these
+  double margin = 0;  // [mm] around these positions
 };
 PlacesOff PlacesOffTrack(const Context& c, const PlaneState& off) noexcept;
 Cover CoverOf(const Context& c, const State& s, const PlacesOff& places) noexcept;
 // Along a planned motion of X and Y with a rotation of C.
 Cover CoverOf(const Context& c, const PlaneMove& move, const CoordinateMove& turn) noexcept;
 
-// What a mover covers (`kind`: an area without places) along a motion, from the time t [s] on.
+// The area that a mover (`kind`: an area without positions) covers along a motion, from the time t [s] on.
 Cover CoverOf(const planar::Area& kind, const PlaneMotion& motion, double t) noexcept;
 
-// Returns kOffStators or kPartDisabled where the cover, that of planets of its formation included, leaves the stators
-// or touches a part that is neither enabled nor about to be; else kNone.
+// Returns kOffStators if the cover, with that of the planets of its formation, leaves the stators; kPartDisabled if it
+// touches a part that is neither enabled nor about to be; else kNone.
 ErrorId DiagnoseCover(const Context& c, const State& s, const Cover& cover) noexcept;
 
 // The same for the route of a mover on tracks (planar::WayOf), with its present angle and those of `turn`.
 ErrorId DiagnoseRoute(const Context& c, const State& s, const planar::Rider& rider,
                       const CoordinateMove& turn) noexcept;
-// Returns whether the route of a mover on a track leads over the part; off tracks false.
+// Returns true if the route of a mover on a track leads over the part; false off tracks.
 bool LeadsOver(const Context& c, const State& s, std::uint32_t part) noexcept;
 
-// Returns whether the part under the mover is changing its position; without a part false.
+// Returns true if the part under the mover is changing its position; false without a part.
 bool IsAway(const Context& c, const State& s) noexcept;
-bool IsPartReady(const Context& c, const State& s) noexcept;  // enabled, or there are no parts
+bool IsPartReady(const Context& c, const State& s) noexcept;  // enabled; true without parts
 bool IsPartSound(const Context& c, const State& s) noexcept;  // without a fault
 bool CanPartBeReady(const Context& c, const State& s) noexcept;
 
-// Returns whether the mover rests, has no pending move and is not joining or leaving a track.
+// Returns true if the mover rests, has no pending move and is not joining or leaving a track.
 bool IsStill(const Context& c, const State& s) noexcept;
-// Returns whether the parts in the coordinate system of the mover must be enabled: not while it is Disabled, or has a
-// fault that leads there.
+// Returns true if the parts in the coordinate system of the mover must be enabled: unless it is Disabled, or has a
+// fault whose reset leads there.
 bool NeedsParts(const State& s) noexcept;
 
-// After each step: which part it is on.
+// After each step: updates the part that the centre of the mover is on.
 void Locate(const Context& c, State& s) noexcept;
 
-// Shifts set and actual position from one spot to the other, as the part under the mover has. Requires: at rest.
+// Shifts set and actual position from one spot to the other, with the part under the mover. Requires: at rest.
 void ShiftWithPart(const Context& c, const planar::Spot& from, const planar::Spot& to, Inputs& inputs,
                    State& s) noexcept;
 
-// Returns the area of a mover at `place` [mm] with the angle `c` [deg].
+// Returns the area of a mover at the position `place` [mm] with the angle `c` [deg].
 planar::Area AreaAt(const MoverParams& params, const planar::Place& place, double c) noexcept;
-// Resolves a pose given relative to `reference` into the coordinate system and the place in that. Returns kNone,
-// kReference (unknown, or on its way) or kOffStators.
+// Resolves a pose relative to `reference` into a coordinate system and a position in it. Returns kNone, kReference
+// (unknown, or a part that is moving) or kOffStators.
 ErrorId FindSpot(const MoverParams& params, const planar::Parts& parts, std::string_view reference,
                  const planar::Pose& pose, planar::Spot& out) noexcept;
 // Sets the mover at rest at this spot.

@@ -1,4 +1,4 @@
-// A route of one mover over the free surface, as it is carried out (follow_route.h).
+// A route of one mover over the free surface, during its execution (follow_route.h).
 #pragma once
 
 #include <algorithm>
@@ -16,10 +16,10 @@
 namespace takt::mover {
 
 inline constexpr std::size_t kMostVisits = 512;  // of one route
-inline constexpr std::size_t kMostKept = 32;     // of the route before, that the mover is bound for already
-inline constexpr double kNear = 0.05;            // mm that a mover may be off its route
+inline constexpr std::size_t kMostKept = 32;     // of the preceding route, to which the mover is already bound
+inline constexpr double kNear = 0.05;            // [mm] tolerance of the distance from the route
 
-// Visits of one mover, numbered through over all its routes.
+// Visits of one mover, numbered consecutively over all its routes.
 class Visits {
  public:
   Visits() : items_(kMostKept + kMostVisits) {}
@@ -33,18 +33,18 @@ class Visits {
     first_ = first;
     count_ = 0;
   }
-  // False: there is no room.
+  // Returns false if there is no room.
   bool Add(const Visit& visit) noexcept {
     if (count_ == kMostVisits) return false;
     items_[kMostKept + count_++] = visit;
     return true;
   }
-  // The first one, or up to kMostKept before it.
+  // Sets a visit of the route, or one of up to kMostKept visits before its first one.
   void Put(std::uint64_t number, const Visit& visit) noexcept { items_[Place(number)] = visit; }
 
  private:
   std::size_t Place(std::uint64_t number) const noexcept {
-    return kMostKept + static_cast<std::size_t>(number - first_);  // unsigned: right below `first_`, too
+    return kMostKept + static_cast<std::size_t>(number - first_);  // unsigned arithmetic is also right below `first_`
   }
 
   std::vector<Visit> items_;
@@ -52,52 +52,52 @@ class Visits {
   std::size_t count_ = 0;
 };
 
-// Of the motions; unset: the mover's standard.
+// Dynamics of the motions on a route; unset: the mover's standard.
 struct RouteDynamics {
-  std::optional<double> velocity{};      // mm/s
-  std::optional<double> acceleration{};  // mm/s²
-  std::optional<double> deceleration{};  // mm/s²
-  std::optional<double> jerk{};          // mm/s³
+  std::optional<double> velocity{};      // [mm/s]
+  std::optional<double> acceleration{};  // [mm/s²]
+  std::optional<double> deceleration{};  // [mm/s²]
+  std::optional<double> jerk{};          // [mm/s³]
 };
 
-// Numbers are those of visits.
+// `begin`, `passed`, `granted`, `sent`, `held_at` and `leg` are numbers of visits.
 struct SurfaceRoute {
   Visits visits;
   RouteDynamics dynamics{};
   std::uint64_t started = 0;      // cycle
-  std::uint64_t begin = 0;        // the first visit that is known
-  std::uint64_t passed = 0;       // the last place whose middle it has reached
-  std::uint64_t granted = 0;      // the last place that is its turn
-  std::uint64_t sent = 0;         // the last place that it was told
-  bool aims = false;              // its motion ends at ...
-  double aim_x = 0, aim_y = 0;    // mm
+  std::uint64_t begin = 0;        // the first visit in `visits`
+  std::uint64_t passed = 0;       // the last place whose centre the mover has reached
+  std::uint64_t granted = 0;      // the last place that is granted
+  std::uint64_t sent = 0;         // the place to which the mover was last sent
+  bool aims = false;              // the motion ends at the known position ...
+  double aim_x = 0, aim_y = 0;    // [mm]
   std::uint32_t system = 0;       // coordinate system of the places
-  std::uint32_t pause = 0;        // cycles until it is tried again
-  std::uint64_t rests_since = 0;  // cycle since which it rests before a place of another one; 0: it does not
+  std::uint32_t pause = 0;        // cycles until a refused move is tried again
+  std::uint64_t rests_since = 0;  // cycle since which it rests before a place that is not granted; 0: it does not
 
-  bool held = false;          // no place is granted
-  std::uint64_t held_at = 0;  // for a look at all: where it comes to rest
+  bool held = false;          // no further place is granted
+  std::uint64_t held_at = 0;  // while routes are held: where the mover comes to rest
 
-  bool timed = false;            // there are times
-  std::uint64_t leg = 0;         // where its present planned motion begins, or at rest the next one
-  bool leaves = false;           // that motion has begun; ...
-  double late = 0;               // s, by which it began late; infinite: not known
-  std::uint64_t look_again = 0;  // cycle in which it is asked anew when that may begin
+  bool timed = false;            // the visits have planned times
+  std::uint64_t leg = 0;         // start of the present planned motion, or at rest of the next one
+  bool leaves = false;           // that motion has begun ...
+  double late = 0;               // [s] ... with this delay; infinite: not known
+  std::uint64_t look_again = 0;  // cycle in which the start of that motion is computed anew
 
-  Visits draft;             // told, and not started
-  Ticket draft_ticket = 0;  // of the command that told it; 0: none
-  bool takes = false;       // for a look at all: it begins now
+  Visits draft;             // received, and not started
+  Ticket draft_ticket = 0;  // of the command that gave it; 0: none
+  bool takes = false;       // while routes are started: the draft begins now
 
   std::uint64_t last() const noexcept { return visits.empty() ? passed : visits.last(); }
 };
 
-// Along X or Y.
+// Unit vector along X or Y.
 struct Heading {
   double x = 0, y = 0;
   bool operator==(const Heading&) const = default;
 };
 
-// mm between places of which one lies along X or Y of the other.
+// Returns the distance [mm] between two places on a line along X or Y.
 inline double Distance(const Visit& a, const Visit& b) noexcept {
   return std::max(std::abs(b.x - a.x), std::abs(b.y - a.y));
 }
@@ -108,7 +108,7 @@ inline Heading HeadingOf(const Visit& a, const Visit& b) noexcept {
   return {0, y > 0 ? 1.0 : -1.0};
 }
 
-// From this visit to the next one.
+// The heading and the distance from this visit to the next one.
 inline Heading HeadingAt(const SurfaceRoute& r, std::uint64_t visit) noexcept {
   return HeadingOf(r.visits[visit], r.visits[visit + 1]);
 }
@@ -116,31 +116,31 @@ inline double PitchAt(const SurfaceRoute& r, std::uint64_t visit) noexcept {
   return Distance(r.visits[visit], r.visits[visit + 1]);
 }
 
-// Of all movers, by number.
+// The routes of all movers.
 struct SurfaceRoutes {
   explicit SurfaceRoutes(std::size_t movers) : of(movers) {}
 
   std::vector<SurfaceRoute> of;
-  std::uint64_t changes = 0;  // so many commands have changed any
+  std::uint64_t changes = 0;  // number of commands that have changed a route
 };
 
-// Why routes were refused: the value of a feedback with ErrorId::kRoute.
+// Why a route was refused: the value of a feedback with ErrorId::kRoute.
 enum class RouteProblem : std::uint8_t {
   kNone,
   kTooMany,    // more than kMostVisits
-  kNotNext,    // `first` of what continues is not the number behind the last one
-  kNotBeside,  // a place is not beside the one before, along X or Y
-  kTimes,      // a motion as planned without both times, or not straight
-  kNoMover,    // there is no mover `after`
+  kNotNext,    // `first` of a continuation is not the number after the last visit
+  kNotBeside,  // a place is not beside the preceding one, along X or Y
+  kTimes,      // a planned motion without both times, or not straight
+  kNoMover,    // no mover has the number `after`
   kNoVisit,    // that mover has no visit `after_visit`
-  kNumber,     // `first` is not the number of the visit where it is
-  kElsewhere,  // the mover, at rest, is not in the place
-  kTooLate,    // it is bound for places further on, and cannot come to rest before
-  kBehind,     // it is bound for a place that a mover is to visit before, and that one does not get so far
-  kMissing,    // it is behind one that changes over, and has no new route
-  kNoneTold,   // no mover was told a route
-  kMoves,      // it has to rest for this
-  kNoRoute,    // it has no route that it could go on along
+  kNumber,     // `first` is not the number of the visit where the mover is
+  kElsewhere,  // the mover, at rest, is not at the place
+  kTooLate,    // the mover is bound for later places, and cannot come to rest before them
+  kBehind,     // the mover is bound for a place that another mover, which does not get that far, is to visit before
+  kMissing,    // the mover is behind one that changes its route, and has no new route
+  kNoneTold,   // no mover has received a route
+  kMoves,      // the mover is not at rest
+  kNoRoute,    // the mover has no route to resume
 };
 std::string_view MessageOf(RouteProblem problem) noexcept;
 

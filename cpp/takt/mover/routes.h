@@ -1,4 +1,4 @@
-// Commands that give movers routes over the free surface, and start them at once.
+// Commands that give movers routes over the free surface, and start and hold them together.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,8 @@
 
 namespace takt::mover {
 
-// command: movers begin what they were told, or none: the answer says why.
+// Cycle stage command. Start begins the routes that movers have received, all of them or none, and returns why not;
+// Hold brings movers to rest at places of their routes, or continues these.
 planar::Verdict Start(const Everyone& all, const StartRoutes& command) noexcept;
 planar::Verdict Hold(const Everyone& all, const HoldRoutes& command) noexcept;
 

@@ -1,4 +1,4 @@
-// All memory of a mover: plain, so that it can be copied, compared, hashed and replayed.
+// The complete state of a mover: plain, so that it can be copied, compared, hashed and replayed.
 #pragma once
 
 #include <array>
@@ -27,12 +27,12 @@ namespace takt::mover {
 enum Coordinate : std::size_t { kX, kY, kZ, kA, kB, kC, kCoordinates };
 inline constexpr std::array kOthers = {kZ, kA, kB, kC};  // besides X and Y
 
-using SetPoint = std::array<KinematicState, kCoordinates>;  // mm, deg
+using SetPoint = std::array<KinematicState, kCoordinates>;  // [mm, deg]
 
-// Where a command leads X or Y by itself.
+// Goal of X or Y by itself.
 struct Goal {
-  bool active = false;  // a command leads to it; else the coordinate comes to rest, or stands
-  double target = 0;    // mm
+  bool active = false;  // a command moves to `target`; else the coordinate stops, or is at rest
+  double target = 0;    // [mm]
   trajectory::Limits limits;
 };
 
@@ -40,77 +40,78 @@ struct Goal {
 struct PlaneMove {
   PlaneMotion motion;
   std::uint64_t begin = 0;  // cycle
-  bool waits = false;       // it only comes to rest, and then goes to `next`
-  MoveToPosition next;      // with all its dynamics
-  bool each = false;        // X and Y move each by itself, to their goals
+  bool waits = false;       // the motion is a stop, after which the move to `next` begins
+  MoveToPosition next;      // the move after the stop, with all its dynamics
+  bool each = false;        // X and Y move each by itself, to `goals`
   std::array<Goal, 2> goals{};
-  bool turns = false;  // C belongs to it
+  bool turns = false;  // C belongs to the move
   trajectory::Limits limits;
-  bool tried = false;   // whether it can go round a corner has been looked at
-  bool passes = false;  // it goes round a corner at its end: what is buffered next takes over where it ends
-  double share = 0;     // of the limits then, across the second line
-  double corner_x = 0, corner_y = 0;        // mm
-  bool hard = false;                        // it comes to rest with the greatest dynamics
-  bool goes = false;                        // a command leads it to a target; else it comes to rest
-  std::uint32_t held_by = planar::kNobody;  // the mover in its way: it comes to rest, and goes on once that is clear
+  bool tried = false;  // a blend of the corner at its end has been tried
+  // the corner at its end is blended: the next buffered command takes over at the end of `motion`
+  bool passes = false;
+  double share = 0;                         // of the limits, across the second line of the blend
+  double corner_x = 0, corner_y = 0;        // [mm]
+  bool hard = false;                        // it stops with the maximum dynamics
+  bool goes = false;                        // a command moves it to a target; else it stops
+  std::uint32_t held_by = planar::kNobody;  // the mover in its way: it stops, and continues once the path is clear
   std::uint64_t held_since = 0;             // cycle
 };
 
-// How X and Y come to rest if the mover may not go on: the course that the guard knows of it.
+// The stop of X and Y if the mover may not move on: the course that the guard knows.
 struct Escape {
   PlaneMotion motion;
   std::uint64_t begin = 0;  // cycle
-  // It is good from the beginning of this cycle on; none yet.
+  // The cycle at whose beginning it applies; maximum: none yet.
   std::uint64_t cycle = std::numeric_limits<std::uint64_t>::max();
 };
 
-// One of another coordinate.
+// A motion of another coordinate in progress.
 struct CoordinateMove {
   trajectory::Profile profile;
   std::uint64_t begin = 0;  // cycle
 };
 
-// A move of X, Y or C by velocity: as far as there is room.
+// A move of X, Y or C by velocity, until the room is used up.
 struct Endless {
   bool on = false;
-  bool reached = false;          // its velocity, as said
-  double velocity = 0;           // mm/s, deg/s
-  ErrorId end = ErrorId::kNone;  // why it ends where it does
-  ObjectInfo object{};           // that is in its way there
+  bool reached = false;          // the velocity has been reached and reported
+  double velocity = 0;           // [mm/s, deg/s]
+  ErrorId end = ErrorId::kNone;  // why it ends at the end of its room
+  ObjectInfo object{};           // the obstacle there, if any
 };
 inline constexpr std::array kEndless = {kX, kY, kC};
 
-// Set points from outside.
+// External set points.
 struct External {
   SetpointMode mode = SetpointMode::kNone;
-  SetPoint given{};           // the last one, or what it went on to
-  bool fresh = false;         // one has come in this cycle
+  SetPoint given{};           // the last one received, extrapolated over missing cycles
+  bool fresh = false;         // one was received in this cycle
   SetPoint taken{};           // the last one that the mover followed
-  std::uint32_t missing = 0;  // so many in a row
+  std::uint32_t missing = 0;  // number of consecutive missing ones
 };
 
 inline constexpr std::uint32_t kNoStar = 0xffffffff;
 
-// What a mover goes along with; the rest of it lies with its place on tracks (planar/gear.h).
+// The master of a mover; the rest is with its state on tracks (planar/gear.h).
 inline constexpr std::uint32_t kNoMaster = 0xffffffff;
 struct GearState {
   std::uint32_t axis =
-      kNoMaster;         // number of the master among TrackNetworkState::masters; kNoMaster: a mover, or nothing
-  bool in_sync = false;  // as last said
+      kNoMaster;         // index in TrackNetworkState::masters; kNoMaster: the master is a mover, or there is none
+  bool in_sync = false;  // as last reported
 };
 
-// A planet's place in a formation (mover/formation.h), and what a star remembers of its own.
+// State of a planet in a formation (mover/formation.h), and of a star.
 struct FormationState {
-  std::uint32_t star = kNoStar;  // number of the mover that it goes along with, from 0
-  double x = 0, y = 0;           // mm, where it is seen from the star
-  double c = 0;                  // deg, to the star
-  bool joined = false;           // as last said
-  bool whole = false;            // of a star: what it does now may have all of its dynamics ...
-  double share = 0.5;            // ... else, what turning has of them
-  bool brakes = false;           // of a star: for a planet that cannot go on
+  std::uint32_t star = kNoStar;  // index of the mover that it follows; kNoStar: none
+  double x = 0, y = 0;           // [mm] position relative to the star, in its frame
+  double c = 0;                  // [deg] angle relative to the star
+  bool joined = false;           // as last reported
+  bool whole = false;            // of a star: the motion in progress may use all of the dynamics ...
+  double share = 0.5;            // ... else turning has this share of them
+  bool brakes = false;           // of a star: it stops because of a planet that cannot continue
 };
 
-// What commands there may be at a time, each with a ticket of its own.
+// Commands that may be in progress at the same time, each with its own ticket.
 enum Slot : std::size_t {
   kPower,
   kPlane,
@@ -133,26 +134,26 @@ enum Slot : std::size_t {
 
 struct State {
   planar::ObjectState state = planar::ObjectState::kDisabled;
-  std::uint64_t since = 0;  // cycle in which it came to be so
+  std::uint64_t since = 0;  // cycle in which `state` was entered
   CommandMode mode = CommandMode::kFreeMovement;
-  bool aborts = false;  // the fault is to lead to Disabled
+  bool aborts = false;  // a reset of the fault leads to Disabled
   ErrorId error = ErrorId::kNone;
-  LimitedBy limited_by = LimitedBy::kNothing;  // what of the dynamics of the last command was reduced
+  LimitedBy limited_by = LimitedBy::kNothing;  // first value of the dynamics of the last command that was reduced
   std::array<Ticket, kSlots> tickets{};
   std::array<std::uint64_t, kSlots> begun{};  // cycle in which each took its slot
   Buffer buffer;
   Escape escape;
-  PlaneMove plane;                         // on a track: of where it is off its place there
-  std::uint32_t track = planar::kNoTrack;  // that it joins, is on, or leaves
-  std::uint32_t system = 0;                // coordinate system where it is, from 0
-  std::uint32_t part = planar::kNoPart;    // that its middle is on
+  PlaneMove plane;                         // on a track: of the displacement from the position there
+  std::uint32_t track = planar::kNoTrack;  // track that it joins, is on, or leaves
+  std::uint32_t system = 0;                // index of its coordinate system
+  std::uint32_t part = planar::kNoPart;    // part that its centre is on
   GearState gear;
   FormationState formation;
   std::array<CoordinateMove, kOthers.size()> others;  // in the order of kOthers
   std::array<Endless, kEndless.size()> endless;       // in the order of kEndless
   External external;
   SetPoint set_point{};     // at the end of the last cycle
-  planar::Place carried{};  // mm, by parts: its place was put so much further on, without any motion
+  planar::Place carried{};  // [mm] total displacement by moves of its part, without a motion of its own
   History history;
 };
 

@@ -1,5 +1,6 @@
-// Better steps than the first ones of FindSteps, where movers are in each other's way: by repair, from one seed after
-// the other, the best of which are improved. Where repair fails, by FindSteps from any of the steps on.
+// Better steps than the first ones of FindSteps for crowded problems. Steps are found by repair from successive seeds,
+// and the best are improved. If repair finds none, the tail of known steps is searched anew by FindSteps from random
+// steps on.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +15,19 @@ namespace takt::routing {
 class BetterSteps {
  public:
   struct How {
-    std::int64_t effort = 0;  // states of Improving that would take as long; taken twice
+    std::int64_t effort = 0;  // states of Improving that take as long as each of the two stages
     std::uint64_t seed = 0;
   };
-  // Keeps references. `pools`: as those of Improving.
+  // Keeps references. `pools`: as in Improving.
   BetterSteps(const Grid& grid, const Task& task, const StepTables& tables, const std::vector<std::int32_t>& pools,
               const How& how);
 
-  // Whether some may be found with that effort.
+  // Returns true if the effort may be enough to find steps.
   bool Worthwhile() const noexcept;
 
-  // Takes steps; returns the sum of the arrivals [s] that they become.
+  // Receives steps; returns the sum of the arrivals [s] of the plan composed of them.
   using Offer = std::function<double(const std::vector<Configuration>&)>;
-  // `first`: steps that there are, and their sum. Requires: there is a mover.
+  // `first`: known steps, with their sum [s]. Requires: at least one mover.
   void Run(std::vector<Configuration> first, double first_sum, const Offer& offer);
 
  private:
@@ -43,7 +44,7 @@ class BetterSteps {
   const StepTables& tables_;
   const std::vector<std::int32_t>& pools_;
   std::uint64_t seed_;
-  std::int64_t cells_, budget_, spent_ = 0;  // states of steps; the budget twice
+  std::int64_t cells_, budget_, spent_ = 0;  // states of steps; the budget is available twice
   std::unique_ptr<Repair> best_;
 };
 

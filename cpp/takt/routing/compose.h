@@ -1,5 +1,5 @@
-// From steps to legs with times: the order in which movers visit each place stays, steps straight on are merged into
-// runs, and each run departs as early as those before it in its places allow.
+// From steps to legs with times: the order in which movers visit each place is kept, consecutive steps in one direction
+// are merged into runs, and each run departs as early as the preceding visits of its places allow.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace takt::routing {
 
-// Returns the legs by mover. Steps of FindSteps and SwapTargets always have them; nothing: those of somebody else's
-// cannot be carried out by movers that need a place to be left before they enter it.
+// Returns the legs by mover; nothing if the steps cannot be executed by movers that enter a place only after it has
+// been left. Steps of FindSteps and SwapTargets always can.
 std::optional<std::vector<Legs>> Compose(const Grid& grid, const std::vector<Configuration>& steps);
 
 }  // namespace takt::routing

@@ -1,12 +1,13 @@
-// The surface as places: squares of one pitch, in rows and columns. A mover rests in the middle of a place, and moves
-// straight along rows and columns, in runs over one or more places.
+// The surface as a grid of places: squares of one pitch, in rows and columns. A mover rests at the centre of a place,
+// and moves straight along rows and columns, in runs over one or more places.
 //
-// What a plan keeps, and why it is safe even if movers brake at any moment (PL-72): between the middles of two places a
-// mover has both, until no part of it covers the first one. It takes the next place at the last moment at which it
-// could still rest in the middle of the one before (less kEarly). A mover is smaller than a place, so two movers that
-// brake at the same time come to rest apart. A follower in the same lane need not wait for that: it departs so much
-// later (Lag) that its stop position is always a mover's size behind the present position of its leader. The guard of
-// movers (planar/guard.h) requires the same: the distance in which the leader would stop does not count.
+// The safety rule of a plan, which holds even if movers brake at any moment (PL-72): between the centres of two places
+// a mover occupies both, until no part of it covers the first one. It takes the next place at the last moment at which
+// it could still come to rest at the centre of the preceding one (less kEarly). A mover is smaller than a place, so two
+// movers that brake at the same time come to rest without overlap. A follower in the same lane need not wait for that:
+// it departs so much later (Lag) that its stop position is always the size of a mover behind the present position of
+// its leader. The guard of movers (planar/guard.h) requires the same: the stopping distance of the leader does not
+// count.
 #pragma once
 
 #include <array>
@@ -21,12 +22,12 @@ namespace takt::routing {
 using PlaceIndex = std::int32_t;
 using MoverIndex = std::int32_t;
 inline constexpr std::int32_t kNone = -1;
-inline constexpr double kEarly = 0.002;  // s, for the cycles between a look and a command
+inline constexpr double kEarly = 0.002;  // [s] for the cycles between a decision and its command
 
 enum class Direction : std::uint8_t { kNone, kRight, kLeft, kUp, kDown };
 inline constexpr std::array kDirections{Direction::kRight, Direction::kLeft, Direction::kUp, Direction::kDown};
 
-// The value of a place or a mover.
+// Returns the value of a place or a mover.
 template <typename Values>
 decltype(auto) At(Values& values, std::int32_t i) noexcept {
   return values[static_cast<std::size_t>(i)];
@@ -42,43 +43,43 @@ class Grid {
   double pitch() const noexcept { return pitch_; }
   PlaceIndex size() const noexcept { return width_ * height_; }
   bool blocked(PlaceIndex place) const noexcept { return blocked_[static_cast<std::size_t>(place)]; }
-  // Places beside it that movers can be at.
+  // Returns the neighbours of a place that are not blocked.
   std::span<const PlaceIndex> beside(PlaceIndex place) const noexcept {
     const Beside& its = beside_[static_cast<std::size_t>(place)];
     return {its.places.data(), its.count};
   }
-  // By place: steps from there to `target`; kUnreachable: no way leads there.
+  // Returns, by place, the number of steps to `target`; kUnreachable if there is no path.
   std::vector<std::int32_t> StepsTo(PlaceIndex target) const;
   static constexpr std::int32_t kUnreachable = 1'000'000'000;
-  // By place: s from there to `target` for a mover alone; infinite where no way leads there.
+  // Returns, by place, the time [s] to `target` for a mover alone; infinite if there is no path.
   std::vector<double> TimesTo(PlaceIndex target) const;
 
-  // Direction of a run between two places of one row or column; kNone: the same place, or no run.
+  // Returns the direction of a run between two places of one row or column; kNone for the same place, or if there is no
+  // run.
   Direction Towards(PlaceIndex from, PlaceIndex to) const noexcept;
-  // To be added to a place.
+  // Returns the difference of place indices for one step.
   PlaceIndex Step(Direction direction) const noexcept { return steps_[static_cast<std::size_t>(direction)]; }
-  // Places of a run. Requires: both in one row or column.
+  // Returns the number of steps of a run. Requires: both places in one row or column.
   int Count(PlaceIndex from, PlaceIndex to) const noexcept;
-  // Places ahead of others in this direction have larger numbers.
+  // Returns the coordinate of a place along the direction: larger for places further ahead.
   int Along(Direction direction, PlaceIndex place) const noexcept {
     return along_[static_cast<std::size_t>(place)][static_cast<std::size_t>(direction)];
   }
-  // Places that a run in this direction may go on from `from`.
+  // Returns the number of places ahead of `from` in this direction up to the border or a blocked place.
   int Room(Direction direction, PlaceIndex from) const noexcept {
     return room_[static_cast<std::size_t>(from)][static_cast<std::size_t>(direction)];
   }
 
-  // A run over `count` places; of its k-th place (0: where it starts) s from its departure.
+  // Times [s] of a run of `count` steps after its departure: its duration, and for its k-th place (0: the start) when
+  // the mover takes the place (Entry), frees it (Exit) and passes its centre.
   double Duration(int count) const noexcept { return lane(count).duration; }
-  double Entry(int count, int k) const noexcept { return lane(count).entry[static_cast<std::size_t>(k)]; }  // takes it
-  double Exit(int count, int k) const noexcept {
-    return lane(count).exit[static_cast<std::size_t>(k)];
-  }  // gives it back
+  double Entry(int count, int k) const noexcept { return lane(count).entry[static_cast<std::size_t>(k)]; }
+  double Exit(int count, int k) const noexcept { return lane(count).exit[static_cast<std::size_t>(k)]; }
   double Middle(int count, int k) const noexcept { return lane(count).middle[static_cast<std::size_t>(k)]; }
   const StraightRun& run(int count) const noexcept { return lane(count).run; }
-  // Returns how much later [s] than a leader on a run over `leader` places a follower on one over `follower` places may
-  // depart at the earliest, `ahead` places behind it in the same lane, so that its stop position stays behind.
-  // Below 0: before it.
+  // Returns how much later [s] than a leader on a run of `leader` steps a follower on a run of `follower` steps,
+  // `ahead` places behind it in the same lane, may depart at the earliest so that its stop position stays behind.
+  // Negative: before it.
   double Lag(int leader, int follower, int ahead) const;
 
  private:
@@ -89,7 +90,7 @@ class Grid {
   struct Lane {
     StraightRun run;
     double duration;
-    std::vector<double> entry, exit, middle;  // exit of the last: its duration
+    std::vector<double> entry, exit, middle;  // exit of the last place: the duration
     std::vector<double> at, stop;             // StraightRun::At and StopAt, every sampled_ s
   };
   const Lane& lane(int count) const noexcept { return lanes_[static_cast<std::size_t>(count)]; }
@@ -101,9 +102,9 @@ class Grid {
   std::array<PlaceIndex, 5> steps_;        // by direction
   std::vector<std::array<int, 5>> room_;   // by place and direction
   std::vector<std::array<int, 5>> along_;  // by place and direction
-  double sampled_ = 0;                     // s
+  double sampled_ = 0;                     // [s]
   std::vector<Lane> lanes_;                // by count
-  mutable std::vector<double> lags_;       // computed when asked for; nan: not yet
+  mutable std::vector<double> lags_;       // computed on demand; nan: not yet
 };
 
 }  // namespace takt::routing

@@ -1,6 +1,6 @@
-// A plan made better: some movers are planned anew between all others, and what is quicker stays. First sweeps, mover
+// Improvement of a plan: some movers are replanned among all others, and better results are kept. First sweeps, mover
 // by mover; then large neighbourhood search (Shaw 1998; for many movers Li et al., IJCAI 2021) with simulated
-// annealing. What it may take is counted in states that SIPP looks at, not in time: the same plan on every host.
+// annealing. The effort is counted in states that SIPP expands, not in time: the same plan on every host.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace takt::routing {
 
 struct Plan {
   std::vector<Legs> legs;           // by mover
-  std::vector<PlaceIndex> targets;  // by mover, where it ends
+  std::vector<PlaceIndex> targets;  // by mover: where it ends
 };
 
 // Times to targets for a mover alone, computed once.
@@ -36,19 +36,20 @@ class Alone {
   std::map<PlaceIndex, std::vector<double>> times_;
 };
 
-// Prioritised planning: one mover after the other, those with short ways first; one that finds no way is the first of
-// the next try. Returns nothing if `tries` were in vain: it is not complete. Movers without a target stay.
+// Prioritised planning: one mover after the other, those with short paths first; a mover without a path is the first of
+// the next try. Returns nothing after `tries` failed ones: the method is not complete. Movers without a target stay.
 std::optional<Plan> PlanInTurn(const Grid& grid, const Task& task, Alone& alone, int tries, std::int64_t effort);
 
-// Sum of the arrivals of a plan, s.
+// Returns the sum of the arrivals of a plan [s].
 double SumOf(const Grid& grid, const Plan& plan);
 
 struct Improving {
-  std::int64_t effort = 0;            // states
-  std::uint64_t seed = 0;             //
-  std::vector<std::int32_t> pools{};  // by mover: within one, targets may be exchanged; kNone: its own. Empty: all
+  std::int64_t effort = 0;  // states of SIPP
+  std::uint64_t seed = 0;   //
+  // by mover; targets may be exchanged within a pool; kNone, or empty: none
+  std::vector<std::int32_t> pools{};
 };
-// Requires: the plan is one of the task. Returns one that is not worse.
+// Requires: the plan solves the task. Returns a plan that is not worse.
 Plan Improve(const Grid& grid, const Task& task, Alone& alone, Plan plan, const Improving& how);
 
 }  // namespace takt::routing

@@ -1,4 +1,5 @@
-// The same numbers on every host and with every library. SplitMix64 (Steele, Lea and Flood, 2014).
+// Pseudorandom numbers that are the same on every host and with every library. SplitMix64 (Steele, Lea and Flood,
+// 2014).
 #pragma once
 
 #include <cstddef>
@@ -18,7 +19,7 @@ class Random {
     z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
     return z ^ (z >> 31U);
   }
-  // From 0 to below `count`. Requires: count > 0.
+  // Returns a number from 0 to count - 1. Requires: count > 0.
   std::size_t Below(std::size_t count) noexcept { return static_cast<std::size_t>(Next() % count); }
   double Unit() noexcept { return static_cast<double>(Next() >> 11U) * 0x1p-53; }  // in [0, 1)
 

@@ -1,7 +1,7 @@
-// Steps for many movers, found by repair. At first each takes the path with the fewest conflicts with those before it;
-// then movers in conflict are planned anew, a few at a time, until there is none (MAPF-LNS2: Li et al., AAAI 2022).
-// After that the sum of the arrivals is made less in the same way (MAPF-LNS: Li et al., IJCAI 2021). Where many places
-// are filled these are far fewer steps than FindSteps finds; but the search is not complete.
+// Steps for many movers, found by repair. First each mover takes the path with the fewest conflicts with those before
+// it; then movers in conflict are replanned, a few at a time, until no conflict is left (MAPF-LNS2: Li et al., AAAI
+// 2022). After that the sum of the arrivals is reduced in the same manner (MAPF-LNS: Li et al., IJCAI 2021). If many
+// places are occupied, the result has far fewer steps than that of FindSteps; but the search is not complete.
 //
 // Two movers are in conflict if they are at one place at a time, exchange places, or take part in a ring in which each
 // enters the place of the next. To enter a place in the step in which another mover leaves it is no conflict: Compose
@@ -19,30 +19,30 @@ namespace takt::routing {
 
 class Repair {
  public:
-  // Keeps references to all but the task. Not to be copied or moved. `pools`: as those of Improving.
+  // Keeps references to all but the task. Not to be copied or moved. `pools`: as in Improving.
   Repair(const Grid& grid, Task task, const StepTables& tables, const std::vector<std::int32_t>& pools,
          std::uint64_t seed);
   Repair(const Repair&) = delete;
   Repair& operator=(const Repair&) = delete;
 
-  // The size of its tables, which have a line for each step and a column for each place.
+  // Returns the size of the tables, which have a row for each step and a column for each place.
   static std::int64_t Cells(const Grid& grid, const Task& task, const StepTables& tables);
 
-  // Returns whether there is no conflict left, before so many states were looked at.
+  // Returns true if no conflict is left; false if the search gives up, at the latest after `effort` expanded states.
   bool Find(std::int64_t effort);
-  // Makes the sum of the arrivals less; what is worse is taken with a probability that falls with `heat` [steps], so
-  // the last steps need not be the best. Requires: Find returned true.
+  // Reduces the sum of the arrivals. Worse steps are accepted with a probability that falls with `heat` [steps], so the
+  // last steps need not be the best. Requires: Find returned true.
   void Improve(std::int64_t effort, double heat);
 
-  // From step to step; the first are the starts. Requires: Find returned true.
+  // Returns the configurations step by step; the first are the starts. Requires: Find returned true.
   std::vector<Configuration> steps() const;
-  std::int64_t sum() const noexcept { return sum_; }              // steps, of all arrivals
-  std::int64_t least_sum() const noexcept { return least_sum_; }  // if each were alone
-  std::int64_t looked_at() const noexcept { return looked_at_; }  // states in all
+  std::int64_t sum() const noexcept { return sum_; }              // [steps] sum of all arrivals
+  std::int64_t least_sum() const noexcept { return least_sum_; }  // [steps] if each mover were alone
+  std::int64_t looked_at() const noexcept { return looked_at_; }  // number of states expanded so far
 
  private:
   using Movers = std::vector<MoverIndex>;
-  using Steps = std::vector<PlaceIndex>;  // where one mover is, by step
+  using Steps = std::vector<PlaceIndex>;  // place of one mover, by step
 
   static int LastStep(const Task& task, const StepTables& tables);
   std::size_t Cell(int step, PlaceIndex place) const noexcept {
@@ -57,14 +57,14 @@ class Repair {
   void ForThoseAt(int step, PlaceIndex place, const See& see) const {
     for (MoverIndex i = first_at_[Cell(step, place)]; i != kNone; i = next_at_[Line(i, step)]) see(i);
   }
-  // Calls `see` with each mover that is in conflict with one that is at `from` in that step, and at `to` in the next.
+  // Calls `see` with each mover in conflict with a mover that is at `from` in that step, and at `to` in the next.
   template <typename See>
   void ForConflicts(int step, PlaceIndex from, PlaceIndex to, const See& see) const;
 
   const std::vector<std::int32_t>& Left(MoverIndex mover) const { return *At(left_, mover); }
   int Alone(MoverIndex mover) const { return At(Left(mover), At(task_.starts, mover)); }
   int Delay(MoverIndex mover) const { return At(arrivals_, mover) - Alone(mover); }
-  // Movers at the place after that step.
+  // Returns the number of visits of the place by other movers after that step.
   int TakenAfter(int step, PlaceIndex place) const;
 
   void Put(MoverIndex mover, const Steps& steps);
@@ -72,8 +72,8 @@ class Repair {
   void CountConflicts(MoverIndex mover);
   void ForgetConflicts(MoverIndex mover);
 
-  // The steps of one mover with the fewest conflicts, of these the shortest: with at most `conflicts`, and with an
-  // arrival before `bound`. Returns whether there are any, and found before `end_` states were looked at; they are in
+  // Finds the steps of one mover with the fewest conflicts, of these the shortest: with at most `conflicts`, and with
+  // an arrival before `bound`. Returns true if it has found some before `end_` states were expanded; they are in
   // `found_` then.
   bool Search(MoverIndex mover, int conflicts, int bound);
 
@@ -90,23 +90,23 @@ class Repair {
   Random random_;
   MoverIndex count_;
   std::size_t places_;
-  int last_;  // step, until which all have to be at their targets
+  int last_;  // last step: all movers have to be at their targets by then
   std::vector<std::int32_t> anywhere_;
   std::vector<const std::vector<std::int32_t>*> left_;  // by mover: steps to its target
   std::vector<PlaceIndex> where_;                       // by mover and step
-  std::vector<MoverIndex> first_at_;                    // by step and place, a list of who is there:
-  std::vector<MoverIndex> next_at_;                     // by mover and step
-  std::vector<int> arrivals_;                           // by mover, step
-  std::vector<Movers> in_conflict_;                     // by mover, with whom
-  std::int64_t conflicts_ = 0;                          // pairs of movers
+  std::vector<MoverIndex> first_at_;                    // by step and place: head of the list of movers there ...
+  std::vector<MoverIndex> next_at_;                     // by mover and step: the next one in that list
+  std::vector<int> arrivals_;                           // by mover: step
+  std::vector<Movers> in_conflict_;                     // by mover: the movers in conflict with it
+  std::int64_t conflicts_ = 0;                          // number of pairs of movers
   std::int64_t sum_ = 0, least_sum_ = 0, looked_at_ = 0, end_ = 0;
 
-  // Of the search: by step and place
-  std::vector<std::uint32_t> reached_;  // in the search of this number
+  // State of the search, by step and place
+  std::vector<std::uint32_t> reached_;  // number of the search that has reached the cell
   std::vector<std::int32_t> its_conflicts_, from_;
   std::uint32_t search_ = 0;
   std::vector<std::vector<std::vector<std::int32_t>>> open_;  // cells by conflicts and estimate
-  std::vector<int> taken_after_;                              // of the target, by step
+  std::vector<int> taken_after_;  // visits of the target by other movers after that step, by step
   Steps found_;
 };
 

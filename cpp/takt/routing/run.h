@@ -1,5 +1,5 @@
-// One run: a straight motion from rest to rest, jerk-limited and time-optimal, with the same limit for accelerating and
-// braking. Closed form: jerk, constant acceleration, jerk, constant velocity, and the mirror image of that.
+// A run: a straight motion from rest to rest, jerk-limited and time-optimal, with the same limit for acceleration and
+// deceleration. Closed form: jerk, constant acceleration, jerk, constant velocity, and the mirror image of the ramp.
 #pragma once
 
 #include <array>
@@ -7,9 +7,9 @@
 namespace takt::routing {
 
 struct Dynamics {
-  double velocity = 0;      // mm/s
-  double acceleration = 0;  // mm/s², of braking, too
-  double jerk = 0;          // mm/s³
+  double velocity = 0;      // [mm/s]
+  double acceleration = 0;  // [mm/s²] also of braking
+  double jerk = 0;          // [mm/s³]
 };
 
 class StraightRun {
@@ -18,15 +18,16 @@ class StraightRun {
   StraightRun(double length, const Dynamics& dynamics) noexcept;
 
   double length() const noexcept { return length_; }
-  double duration() const noexcept { return duration_; }  // s
+  double duration() const noexcept { return duration_; }  // [s]
 
-  // Returns the distance [mm] from its start after t [s].
+  // Returns the distance [mm] from the start after t [s].
   double At(double t) const noexcept;
-  // Returns where [mm] it would come to rest if it braked as hard as it may from t [s] on; never beyond its length.
+  // Returns the position [mm] at which a stop with the maximum dynamics from t [s] on would end; never beyond the
+  // length.
   double StopAt(double t) const noexcept;
-  // Returns when [s] it has gone s [mm].
+  // Returns the time [s] at which the distance s [mm] is covered.
   double TimeAt(double s) const noexcept;
-  // Returns the last time [s] at which it could still come to rest within s [mm].
+  // Returns the last time [s] from which a stop would still end within s [mm].
   double LastStopWithin(double s) const noexcept;
 
  private:

@@ -1,5 +1,5 @@
-// The quickest legs of one mover between those of all others. SIPP (Phillips and Likhachev, ICRA 2011) over runs:
-// states are a place and the time until which it is free; of each the earliest arrival is enough.
+// The fastest legs of one mover among those of all others. SIPP (Phillips and Likhachev, ICRA 2011) over runs: a state
+// is a place with the time until which it is free; the earliest arrival at each state is enough.
 #pragma once
 
 #include <cstdint>
@@ -18,14 +18,14 @@ class Sipp {
   struct Query {
     PlaceIndex start = 0, target = 0;
     const std::vector<double>* alone = nullptr;  // Grid::TimesTo(target)
-    double bound = kForever;                     // s, it has to be there before
-    double weight = 1;                           // above 1: sooner found, up to so much longer
-    std::int64_t most = 30'000;                  // states looked at before it is given up
+    double bound = kForever;                     // [s] the arrival has to be before
+    double weight = 1;           // of the estimate; above 1: faster search, suboptimal up to this factor
+    std::int64_t most = 30'000;  // states expanded before the search gives up
   };
-  // Requires: the mover itself is not in the timetable.
+  // Returns the legs to the target; nothing if none were found. Requires: the mover itself is not in the timetable.
   std::optional<Legs> Find(const Timetable& timetable, const Query& query);
 
-  std::int64_t expanded() const noexcept { return expanded_; }  // states in all
+  std::int64_t expanded() const noexcept { return expanded_; }  // states of all queries
 
  private:
   struct State {
@@ -37,7 +37,7 @@ class Sipp {
   struct Earliest {
     double free_until, time;
   };
-  // The earliest departure in [from, latest] on which nothing is in the way; infinite: none.
+  // Returns the earliest departure in [from, latest] [s] of a run without a conflict; infinite: none.
   double Departure(const Timetable& timetable, PlaceIndex place, Direction lane, int count, double from,
                    double latest) const;
   bool Better(PlaceIndex place, double free_until, double time);

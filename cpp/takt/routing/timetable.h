@@ -1,4 +1,4 @@
-// Legs of movers, and who has which place when.
+// Legs of movers, and the occupancy of places over time.
 #pragma once
 
 #include <algorithm>
@@ -11,24 +11,24 @@
 namespace takt::routing {
 
 inline constexpr double kForever = std::numeric_limits<double>::infinity();
-inline constexpr double kTimeRounding = 1e-9;  // s
+inline constexpr double kTimeRounding = 1e-9;  // [s]
 
-// One run of a mover.
+// A run of a mover.
 struct Leg {
-  double departure = 0;  // s
+  double departure = 0;  // [s]
   PlaceIndex from = 0, to = 0;
 };
-using Legs = std::vector<Leg>;  // of one mover, one after the other; empty: it stays where it is
+using Legs = std::vector<Leg>;  // of one mover, in order; empty: it stays at its start
 
-// When [s] it is where it stays.
+// Returns the time [s] of arrival at the last place; 0 without legs.
 double Arrival(const Grid& grid, const Legs& legs);
 
-// A place taken by a mover for a time.
+// The occupancy of a place by a mover for a time.
 struct Stay {
-  double from = 0, to = 0;  // s
+  double from = 0, to = 0;  // [s]
   MoverIndex who = kNone;
-  Direction lane = Direction::kNone;  // it passes; the run that it is on:
-  int count = 0, along = 0;           // how many places, and Grid::Along of its first one
+  Direction lane = Direction::kNone;  // of a run that passes the place; kNone: rest. Of that run:
+  int count = 0, along = 0;           // its steps, and Grid::Along of its first place
   double departure = 0;
 };
 
@@ -40,32 +40,32 @@ class Timetable {
   const std::vector<PlaceIndex>& places_of(MoverIndex who) const noexcept {
     return places_[static_cast<std::size_t>(who)];
   }
-  // It takes the place for a time. Before `from` = -1 nothing happens.
+  // Adds the occupancy of a place by a mover at rest. `from` = -1: from the beginning.
   void Rest(PlaceIndex place, double from, double to, MoverIndex who);
   void Add(MoverIndex who, PlaceIndex start, const Legs& legs);
   void Remove(MoverIndex who);
 
   // Returns the index of the first stay that ends after t.
   std::size_t FirstEndingAfter(PlaceIndex place, double t) const noexcept {
-    // Who comes later to a place also leaves it later.
+    // A mover that comes later to a place also leaves it later.
     const std::vector<Stay>& its = stays(place);
     const auto found =
         std::partition_point(its.begin(), its.end(), [t](const Stay& stay) { return stay.to <= t + kTimeRounding; });
     return static_cast<std::size_t>(found - its.begin());
   }
-  // Returns until when the place is free from t on; t itself or before, if it is not.
+  // Returns the time [s] until which the place is free from t on; t or less if it is occupied.
   double FreeUntil(PlaceIndex place, double t) const noexcept {
     const std::size_t i = FirstEndingAfter(place, t);
     return i < stays(place).size() ? stays(place)[i].from : kForever;
   }
-  // Returns when the last of its stays ends; -1 without any.
+  // Returns the end [s] of the last of its stays; -1 without any.
   double LastEnd(PlaceIndex place) const noexcept;
 
  private:
   void Insert(PlaceIndex place, const Stay& stay);
 
   const Grid& grid_;
-  std::vector<std::vector<Stay>> stays_;         // by place, by time
+  std::vector<std::vector<Stay>> stays_;         // by place, in order of time
   std::vector<std::vector<PlaceIndex>> places_;  // by mover; may name a place more than once
 };
 
