@@ -11,7 +11,7 @@ namespace takt::mover {
 
 namespace {
 
-// It has X and Y now, and not on top of what they do.
+// Returns true if the command now controls X and Y; relative external set points do not.
 bool TookOver(Ticket ticket, const State& s) {
   const bool alone = s.external.mode == SetpointMode::kAbsolute;
   const auto has = [&](Slot slot) { return s.tickets[slot] == ticket; };
@@ -27,7 +27,7 @@ ErrorId WhyNotBuffered(const Command& command, const State& s) {
   return s.state == planar::ObjectState::kEnabled ? ErrorId::kNone : ErrorId::kMoverDisabled;
 }
 
-// Of one that has dynamics.
+// Records which limit of a command with dynamics was reduced.
 void NoteLimit(Ticket ticket, const Command& command, State& s) {
   const bool has = std::visit(
       [](const auto& body) {
@@ -40,13 +40,13 @@ void NoteLimit(Ticket ticket, const Command& command, State& s) {
   if (record) record->limited_by = s.limited_by;
 }
 
-// It was refused for what is in the way, and that may move: a border does not.
+// Returns true if the command was refused because of an obstacle that may leave: a mover or a track, not a border.
 bool MayBeGone(const AdmissionResult& answer) {
   const ObjectKind kind = answer.object.kind;
   return answer.status.error == ErrorId::kCollision && (kind == ObjectKind::kMover || kind == ObjectKind::kTrack);
 }
 
-// In its group such a command waits rather than to be refused.
+// Returns true if the group of the mover lets the command wait for its area instead of refusing it.
 bool MayWait(const Context& c, const Command& command) {
   const std::uint32_t group = c.grounds.Watching(c.grounds.group_of_mover[c.index]);
   if (group == 0 || !c.grounds.grounds[group - 1].waits) return false;
@@ -58,12 +58,12 @@ bool MayWait(const Context& c, const Command& command) {
       command);
 }
 
-// What a mover is told whatever its part does; the rest would move it.
+// Commands that a mover accepts even while its part is moving; all others would move it.
 template <typename T>
 constexpr bool kAlways = kIsOneOf<T, Enable, Disable, Reset, Halt, HaltX, HaltY, HaltZ, HaltA, HaltB, HaltC,
                                   HaltOnTrack, StopExternalSetpointGeneration, Wait, Release>;
 
-// Does `what` within the terms of a command.
+// Calls `what` with the parameters that the terms of the command (TermsOf) give.
 template <typename What>
 AdmissionResult AskFor(const Context& c, Ticket ticket, const Command& command, State& s, const What& what) {
   if (!HasGoodNumbers(command)) return Refused(ErrorId::kParameter);
@@ -73,7 +73,7 @@ AdmissionResult AskFor(const Context& c, Ticket ticket, const Command& command, 
   const LimitedBy limited_by = s.limited_by;
   const AdmissionResult answer = what(CommandContext{within, ticket, s});
   if (answer.status.failed()) {
-    s.limited_by = limited_by;  // a refused command leaves it
+    s.limited_by = limited_by;  // unchanged by a refused command
   } else if (terms.sets) {
     s.formation.whole = terms.whole;
   }

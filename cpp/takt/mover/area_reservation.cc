@@ -12,9 +12,9 @@ namespace {
 
 using trajectory::Profile;
 
-constexpr double kBeyond = 1e-9;  // mm, deg: less is rounding
+constexpr double kBeyond = 1e-9;  // [mm, deg] differences below are rounding
 
-// What X and Y still pass besides the straight way from where they are to where they end.
+// Adds the corners of the area that X and Y still pass outside of the straight line from their position to the end.
 void Surround(const PlaneMotion& m, double t, planar::Move& move) {
   const auto corner = [&](double along, double across) {
     move.corners[move.corner_count++] = {m.origin_x + m.direction_x * along - m.direction_y * across,
@@ -39,7 +39,7 @@ void Surround(const PlaneMotion& m, double t, planar::Move& move) {
   if (below) corner(line.min, off);
 }
 
-// The rectangle of all that a motion passes that comes to rest, and from there goes on with X and Y each by itself.
+// Replaces the corners by the rectangle of a motion that comes to rest, and then continues with X and Y each by itself.
 void SurroundAll(const PlaneState& now, const planar::Place& rest, planar::Move& move) {
   planar::Place lower{now.x.position, now.y.position}, upper = lower;
   const auto add = [&](const planar::Place& p) {
@@ -81,7 +81,7 @@ bool IsWatched(const Context& c, std::uint32_t mover) {
   return c.grounds.Watching(c.grounds.group_of_mover[mover]) != 0;
 }
 
-// How a planet moves while its star does so.
+// Returns the move of a planet during that of its star.
 planar::Move MoveOfPlanet(const Context& star, std::uint32_t planet, const PlaneMove& plane,
                           const CoordinateMove& turn) {
   const PlaneState at = At(plane.motion, Elapsed(star, plane.begin));
@@ -97,7 +97,7 @@ void Take(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, 
   });
 }
 
-// Whom a part brings to where that leads.
+// Returns a mover that its part will bring into the area of the motion.
 ObjectInfo WhoComes(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, bool on_track) {
   const auto comes = [](const planar::MoverView& now) { return now.comes; };
   if (std::ranges::none_of(c.grounds.movers, comes)) return {};
@@ -200,12 +200,12 @@ void Stand(const Context& c, const State& s) noexcept {
   ShowRest(c, s);
   const std::uint32_t group = g.Watching(g.group_of_mover[c.index]);
   if (group == 0) return;
-  // What is not straight is looked at anew.
+  // Reservations that are not straight are computed anew.
   const planar::Reservation& own = g.grounds[group - 1].reserved.movers[c.index];
   const bool bends = own.move.corner_count > 0 || own.move.over || own.move.over_c;
   const State& leads = IsPlanet(s) ? StateOfStar(c, s) : s;
-  const bool led = leads.external.mode == SetpointMode::kRelative;  // then TakeStop looks
-  const bool returns = now.on_track && c.rider().off > 0;           // what TakeStopOff took is enough for that
+  const bool led = leads.external.mode == SetpointMode::kRelative;  // then TakeStop reserves
+  const bool returns = now.on_track && c.rider().off > 0;           // TakeStopOff has reserved the return, too
   if (returns) {
     planar::AdvanceMover(c.index, g);
     return;

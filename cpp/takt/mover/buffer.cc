@@ -17,7 +17,8 @@ constexpr std::uint32_t BitOf(std::size_t slot) {
   return 1u << slot;
 }
 
-// Nothing that was given before is in progress but what may be left behind on the way, and set points on top of all.
+// Returns true if no command given before `next` is in progress, apart from the slot `but`, a move that has been passed
+// (kPassing) and relative external set points.
 bool IsFree(const State& s, const Queued& next, Slot but) {
   for (std::size_t slot = kPlane; slot < kSlots; ++slot) {
     if (slot == kPassing || slot == but || (next.beside & BitOf(slot)) != 0) continue;
@@ -27,14 +28,14 @@ bool IsFree(const State& s, const Queued& next, Slot but) {
   return true;
 }
 
-// Calls this for the slots of Z, A, B and C that this command has.
+// Calls `what` with the bit of each slot of Z, A, B and C that the command holds.
 void EachBeside(Ticket ticket, const State& s, const auto& what) {
   for (std::size_t slot = kMoveZ; slot <= kMoveC; ++slot) {
     if (ticket != 0 && s.tickets[slot] == ticket) what(BitOf(slot));
   }
 }
 
-// One of X and Y, in the coordinate system where the mover is; nothing if it is none, or leads elsewhere.
+// Returns the move of X and Y in the coordinate system of the mover; nothing for other commands and other systems.
 std::optional<MoveToPosition> MoveOf(const Context& c, const Command& command, const State& s) {
   const auto* move = std::get_if<MoveToPosition>(&command);
   if (!move) return {};
@@ -48,14 +49,15 @@ void Pop(Buffer& buffer) {
   buffer.waiting[--buffer.count] = {};
 }
 
-// Hardly a corner: the line goes on.
+// Returns true if the next line continues the present one within 5 deg, so that there is no corner to blend.
 bool IsStraightOn(const PlaneMove& plane, const MoveToPosition& next) {
   const double x = next.x - plane.motion.end_x, y = next.y - plane.motion.end_y;
   const double ahead = plane.motion.direction_x * x + plane.motion.direction_y * y;
   return ahead > 0.996 * maths::Hypot(x, y);  // 5 deg
 }
 
-// There it goes on where the move in progress is to be braked for.
+// Returns true if `next` takes over now without a stop: where a blended corner is left, or straight on, just before the
+// move in progress would brake.
 bool LeadsInto(const Context& c, const MoveToPosition& next, const State& s) {
   const PlaneMove& plane = s.plane;
   if (plane.passes) return IsAtCorner(c, plane);
@@ -68,8 +70,8 @@ bool LeadsInto(const Context& c, const MoveToPosition& next, const State& s) {
   return left <= next.blending && left <= rest + 4 * now.velocity * c.cycle.period_s;
 }
 
-// Leads the move of X and Y in progress round the corner at its end. Looked at once: later there is less room, and it
-// takes some 10 to 70 plans.
+// Blends the corner at the end of the move of X and Y in progress. Tried once: later there is less room, and it takes
+// some 10 to 70 plans.
 void PrepareCorner(const Context& c, const Queued& queued, State& s) {
   PlaneMove& plane = s.plane;
   if (plane.tried || plane.waits || plane.turns) return;
@@ -93,7 +95,7 @@ void PrepareCorner(const Context& c, const Queued& queued, State& s) {
   plane.passes = true;
 }
 
-// It does not go round after all.
+// The corner is not blended after all: the mover stops there.
 void StopAtCorner(const Context& c, State& s) {
   PlaneMotion motion;
   const PlaneState now = At(s.plane.motion, Elapsed(c, s.plane.begin));
@@ -105,14 +107,14 @@ void StopAtCorner(const Context& c, State& s) {
   s.plane.passes = false;
 }
 
-// mm from where a mover is to its target, in its direction.
+// Returns the distance [mm] from a mover to its target, in its direction.
 double WayLeft(const planar::Network& network, const planar::Rider& r) {
   double left = r.target - r.at.position;
   for (std::uint32_t i = 0; i + 1 < r.route.count; ++i) left += network[r.route.tracks[i]].length;
   return r.direction * left;
 }
 
-// The way along tracks in progress is to be braked for now, and the next one goes on behind its end.
+// Returns true if the move along tracks in progress has to brake now, and the next one continues beyond its end.
 bool LeadsInto(const Context& c, const MoveOnTrack& next, const State& s) {
   const planar::Rider& rider = c.rider();
   if (s.mode != CommandMode::kOnTrack || s.tickets[kPassing] != 0) return false;
@@ -130,7 +132,7 @@ bool LeadsInto(const Context& c, const MoveOnTrack& next, const State& s) {
          WayLeft(c.streets.network, then) >= left;
 }
 
-// Whether the next one may begin, be it without a stop.
+// Returns true if the next command may begin, with or without a stop.
 bool IsNext(const Context& c, const Queued& next, const State& s) {
   if (IsFree(s, next, kSlots)) return true;
   if (s.tickets[kPlane] == 0 || !IsFree(s, next, kPlane)) return false;
@@ -146,7 +148,7 @@ void Wake(const Context& c, State& s) {
   End(c, kWait, FeedbackState::kDone, ErrorId::kNone, s);
 }
 
-// A release that is there already holds nobody back.
+// Ends Waits for a release, without a time, for which there is a release already.
 void PassReleases(const Context& c, State& s) {
   Buffer& b = s.buffer;
   while (b.count > 0 && b.releases > 0 && s.tickets[kWait] == 0) {
@@ -159,7 +161,7 @@ void PassReleases(const Context& c, State& s) {
   }
 }
 
-// The next one waits for this, if it is something.
+// Records the object for which the next command waits; an empty one: it does not wait.
 void HoldFor(const Context& c, const ObjectInfo& object, Buffer& b) {
   if (object && !b.held_by) b.held_since = c.cycle.count;
   b.held_by = object;
@@ -171,12 +173,12 @@ void HoldFor(const Context& c, const ObjectInfo& object, Buffer& b) {
   turn->since = mover ? b.held_since + 1 : 0;
 }
 
-// Returns the move of a command that is refused before its own is planned: it asks for no more than the mover covers.
+// Returns the move of a command that is refused before its own is planned: the area that the mover covers.
 planar::Move UnknownMove(const Context& c) {
   return {.target = c.grounds.movers[c.index].pose, .on_track = true};
 }
 
-// Gives the next one its turn. False: it was refused, or waits for `in_the_way`.
+// Begins the next command in its turn. Returns false if it was refused, or waits for `in_the_way`.
 bool BeginInTurn(const Context& c, const Queued& next, State& s, ObjectInfo& in_the_way) {
   planar::Turn* turn = planar::TurnOf(c.index, c.grounds);
   if (turn) {
@@ -189,7 +191,7 @@ bool BeginInTurn(const Context& c, const Queued& next, State& s, ObjectInfo& in_
   return begun;
 }
 
-// The next one waits for a part that is on its way.
+// Returns true if the next command waits for a part that is moving.
 bool HoldForPart(const Context& c, State& s) {
   const std::uint32_t part = PartAwaited(c, s.buffer.waiting[0].command, s);
   if (part == planar::kNoPart) return false;
@@ -197,8 +199,9 @@ bool HoldForPart(const Context& c, State& s) {
   return true;
 }
 
-// The mover in the way of the next one stands as it stood, and so is in the way still: asking takes a plan and a look
-// at the whole group. Now and then it is asked all the same, as the mover itself may have changed.
+// Returns true if the mover in the way of the next command rests at the pose at which it blocked it, and so still does:
+// a request takes a plan and a check of the whole group. The request is still repeated now and then, as this mover
+// itself may have changed.
 bool StandsInTheWay(const Context& c, const State& s) {
   constexpr std::uint64_t kAskAnyway = 64;  // cycles
   const Buffer& b = s.buffer;
@@ -211,7 +214,7 @@ bool StandsInTheWay(const Context& c, const State& s) {
          at.c == b.held_at.c;
 }
 
-// The next one begins, if it is its turn.
+// Begins the next command if it is its turn.
 void GiveTurn(const Context& c, State& s) {
   Buffer& b = s.buffer;
   if (b.count == 0) return;
@@ -219,7 +222,7 @@ void GiveTurn(const Context& c, State& s) {
   if (!IsNext(c, b.waiting[0], s)) return HoldFor(c, {}, b);
   if (HoldForPart(c, s) || StandsInTheWay(c, s)) return;
   const Queued next = b.waiting[0];
-  // What it takes over from without a stop is done when its end is passed; in the plane that is now.
+  // A move that is continued without a stop is done when its end is passed; in the plane that is now.
   const Ticket before = std::exchange(s.tickets[kPlane], 0);
   const std::uint64_t begun = s.begun[kPlane];
   const bool on_track = IsOnTrack(s);
@@ -233,7 +236,7 @@ void GiveTurn(const Context& c, State& s) {
   Pop(b);
   if (!begun_now) return AbortBuffered(c, s);
   EachBeside(next.ticket, s, [&](std::uint32_t bit) {
-    for (Queued& waiting : b.waiting) waiting.beside &= ~bit;  // for this one they do wait
+    for (Queued& waiting : b.waiting) waiting.beside &= ~bit;  // they do wait for this command
   });
   if (before == 0) return;
   s.tickets[kPassing] = before;

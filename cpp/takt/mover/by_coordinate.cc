@@ -18,11 +18,11 @@ using trajectory::Profile;
 
 namespace {
 
-constexpr double kRoom = 0.1;   // mm: to within so much it uses the room there is
-constexpr double kLittle = 1;   // mm: less room than that is none
+constexpr double kRoom = 0.1;   // [mm] accuracy to which the room is used
+constexpr double kLittle = 1;   // [mm] less room counts as none
 constexpr int kDoublings = 31;  // of kLittle, up to kFar
 
-// What X or Y may have by itself.
+// Returns the parameters of X or Y by itself.
 PlaneParams ParamsOfEach(const PlaneParams& p) {
   const auto as = [](const Limits& l) { return Dynamics{l.velocity, l.acceleration, l.deceleration, l.jerk}; };
   const Limits most = LimitsOfEach(p.maximum.limits());
@@ -36,8 +36,8 @@ Profile& Of(PlaneMotion& motion, Coordinate which) {
   return which == kX ? motion.along : motion.across;
 }
 
-// Within the goal's limits; with the maximum dynamics where a jerk that soft would take the acceleration away too late
-// to keep the coordinate's maximum velocity.
+// Plans to the goal within its limits, or with the maximum dynamics if the jerk of the goal would end the acceleration
+// too late to keep the maximum velocity of the coordinate.
 bool PlanToGoal(const Context& c, const KinematicState& from, const Goal& goal, Profile& out) {
   const Limits maximum = LimitsOfEach(c.params.xy.maximum.limits());
   const auto plan = [&](const Limits& limits) {
@@ -58,10 +58,10 @@ void PutNext(PlaneMove& move) {
                .y = move.goals[1].active ? move.goals[1].target : move.motion.end_y};
 }
 
-// How X and Y move if one of them is told to go to this goal, and how long that one takes.
+// The motion of X and Y after a command of one of them, and how long that one takes.
 struct Plan {
   PlaneMove move;
-  double duration = 0;  // s
+  double duration = 0;  // [s]
 };
 std::optional<Plan> PlanEach(const Context& c, const State& s, Coordinate which, const Goal& goal) {
   const PlaneMove& old = s.plane;
@@ -91,7 +91,7 @@ std::optional<Plan> PlanEach(const Context& c, const State& s, Coordinate which,
     plan.duration = Of(move.motion, which).duration();
     return plan;
   }
-  // It is too fast for that: it comes to rest on its line first.
+  // Too fast for independent motions: the mover first comes to rest on its line.
   const auto rests = [&](const Limits& limits) { return PlanRest(c.planner, old.motion, now, limits, move.motion); };
   if (!rests(StandardOf(c.params.xy)) || SpeedBound(move.motion) > maximum.velocity * (1 + 1e-9)) {
     if (!rests(maximum)) return {};
@@ -107,7 +107,7 @@ std::optional<Plan> PlanEach(const Context& c, const State& s, Coordinate which,
   return plan;
 }
 
-// Why X and Y may not move so: none.
+// Returns why X and Y may not move like this; kNone if they may.
 planar::Verdict WhyNotSo(const Context& c, const State& s, const PlaneMove& move) {
   if (const ErrorId why = DiagnoseCover(c, s, CoverOf(c, move, s.others.back())); why != ErrorId::kNone) {
     const AdmissionResult answer = RefusedThere(s, why);
@@ -121,10 +121,10 @@ Slot SlotOf(Coordinate which) {
   return which == kX ? kMoveX : kMoveY;
 }
 
-// X and Y move so from now on, by a command of one of them.
+// X and Y make this motion from now on, by a command of one of them.
 void Put(const CommandContext& g, Coordinate which, const PlaneMove& move, const Endless& endless) {
   State& s = g.s;
-  if (s.plane.turns) {  // that turn belonged to the move before
+  if (s.plane.turns) {  // that turn belonged to the preceding move
     CoordinateMove& turn = s.others.back();
     const CoordinateParams& c = g.c.params.c;
     PlanRest(g.c.planner, Now(g.c, turn), StandardOf(c), ParamsOf(g.c, s, kOthers.size() - 1), turn.profile);
@@ -147,7 +147,8 @@ AdmissionResult MoveEach(const CommandContext& g, Coordinate which, const Goal& 
   return {Status::Ok(), plan->duration};
 }
 
-// As far in a direction as there is room: what has room further on has it nearer, too, so halving finds where it ends.
+// Moves in a direction as far as there is room. If there is room for a target, there is room for nearer ones, so
+// bisection finds the end.
 AdmissionResult MoveEndlessly(const CommandContext& g, Coordinate which, double velocity, const Limits& limits) {
   const Context& c = g.c;
   const double sense = std::copysign(1.0, velocity);
@@ -186,13 +187,13 @@ AdmissionResult MoveEndlessly(const CommandContext& g, Coordinate which, double 
   return {Status::Ok(), best->duration};
 }
 
-// Dynamics of a command of X or Y by itself, no more than it may have.
+// Returns the dynamics of a command of X or Y by itself, clamped to its maximum.
 template <typename Command>
 Limits LimitsOfEachIn(const CommandContext& g, const Command& command) {
   return LimitsOf(command, ParamsOfEach(g.c.params.xy), g.s.limited_by);
 }
 
-// As LimitsOf wants it: a velocity has a sign.
+// Returns a command with the speed, as LimitsOf requires, instead of the signed velocity.
 template <typename Command>
 MoveToPosition Unsigned(const Command& command) {
   return {.velocity = command.velocity == 0 ? std::nullopt : std::optional(std::abs(command.velocity)),
@@ -221,7 +222,7 @@ AdmissionResult MoveOn(const CommandContext& g, Coordinate which, const auto& co
   return MoveEndlessly(g, which, command.velocity, limits);
 }
 
-// Both come to rest, on the line that they are on.
+// Returns the stop of X and Y on their present line.
 PlaneMove RestOnLine(const Context& c, const State& s, const Limits& limits) {
   PlaneMove move;
   move.begin = c.cycle.count;
@@ -234,7 +235,7 @@ PlaneMove RestOnLine(const Context& c, const State& s, const Limits& limits) {
   return move;
 }
 
-// It is coming to rest already, or stands, and only the other coordinate may go on from there.
+// The mover is already stopping, or at rest, and only the other coordinate may continue from there.
 Plan LeaveAtRest(const Context& c, const State& s, Coordinate which) {
   Plan plan;
   plan.duration = std::max(0.0, DurationOf(s.plane.motion) - Elapsed(c, s.plane.begin));
@@ -250,8 +251,8 @@ Plan LeaveAtRest(const Context& c, const State& s, Coordinate which) {
   return plan;
 }
 
-// Dynamics that would lead it where it must not be give way to the greatest ones: with these it comes to rest within
-// what it has reserved.
+// If the commanded dynamics would lead the mover where it must not be, the maximum ones are used: with these it comes
+// to rest within the area that it has reserved.
 AdmissionResult HaltEach(const CommandContext& g, Coordinate which, const auto& command) {
   State& s = g.s;
   const Context& c = g.c;

@@ -149,7 +149,7 @@ void DescribeHalt(Description<T>& d, Unit acceleration, Unit jerk) {
   d.template defaulted<&T::jerk>(jerk, kJerks, "Unset: the mover's standard.");
 }
 
-// X or Y by itself.
+// Arguments of a move of X or Y by itself.
 template <typename T>
 void DescribeEach(Description<T>& d) {
   d.template required<&T::position>(unit::mm, kPlaces, "Where to stop.");
@@ -306,7 +306,7 @@ void describe(Enumeration<SyncDirections>& e) {
 
 namespace {
 
-// What both gears have in common.
+// Arguments that both gears have in common.
 template <typename G>
 void DescribeSlave(Description<G>& d) {
   d.template required<&G::slave_sync_position>(

@@ -11,22 +11,23 @@ namespace {
 using trajectory::Limits;
 using trajectory::Profile;
 
-constexpr double kSlack = 1e-9;  // of a limit or window, deg or mm
+constexpr double kSlack = 1e-9;  // [deg, mm] of a limit or window
 
 bool Holds(const Profile& profile, const CoordinateParams& params) {
   if (!KeepsVelocity(profile, params.maximum.velocity)) return false;
   const Profile::Range range = profile.PositionRange();
-  // One that is outside already may come back.
+  // A coordinate that is already outside may come back.
   return range.min >= std::min(params.lower, profile.start().position) - kSlack &&
          range.max <= std::max(params.upper, profile.start().position) + kSlack;
 }
 
-// By how much the window is turned that begins at or below this position.
+// Returns the angle [deg] by which the window that begins at or below this position is turned.
 double WindowAt(const CoordinateParams& c, double position) {
   return kWindow * std::floor((position - c.lower + kSlack) / kWindow);
 }
 
-// To the nearest whole number; of two that are as near the one towards 0, so that half a turn leads to what was given.
+// Returns the nearest whole number; of two equally near ones that towards 0, so half a turn leads to the given
+// position.
 double RoundTowardsZero(double x) {
   return std::copysign(std::ceil(std::abs(x) - 0.5 - kSlack), x);
 }
@@ -68,7 +69,7 @@ bool PlanRest(trajectory::Planner& planner, const KinematicState& from, const Li
 CoordinateParams Windowed(const CoordinateParams& c, double position, bool bounded) noexcept {
   CoordinateParams params = c;
   if (bounded && InOneWindow(c, position, position)) {
-    // Wide windows overlap: that in whose middle it is most.
+    // Wide windows overlap: the one with the nearest centre.
     const double turned = kWindow * std::round((position - 0.5 * (c.lower + c.upper)) / kWindow);
     params.lower += turned;
     params.upper += turned;

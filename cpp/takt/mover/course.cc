@@ -16,7 +16,7 @@ using planar::Area;
 using planar::Course;
 using planar::kNobody;
 
-constexpr double kAhead = 1;  // mm, besides what braking takes: so much has to be clear at the least
+constexpr double kAhead = 1;  // [mm] that have to be clear beyond the braking distance
 
 planar::Guard& GuardOf(const Context& c) {
   return c.grounds.guard;
@@ -26,7 +26,8 @@ ObjectInfo OneInTheWay(std::uint32_t mover) {
   return mover == kNobody ? ObjectInfo{} : ObjectAt(ObjectKind::kMover, mover);
 }
 
-// All angles from here on as planned, or where set points come from outside, until it stops.
+// Returns the area without positions: with all angles from here on as planned, or, with external set points, until C
+// stops.
 Area KindOf(const Context& c, const State& s, const CoordinateMove& turn, const SetPoint& at) {
   Area kind{.places = {}, .count = 0, .mover = {c.params.width, c.params.height}, .margin = 0};
   const double turned = at[kC].position;
@@ -43,7 +44,8 @@ Area KindOf(const Context& c, const State& s, const CoordinateMove& turn, const 
   return kind;
 }
 
-// How far a mover is off its place on its track when this cycle begins, and gets until it rests and is back there.
+// Adds the displacement of a mover from its position on its track when this cycle begins, and until it rests and is
+// back.
 void AddOff(const Context& c, const State& s, const SetPoint& at, const SetPoint& more, Area& kind) {
   const planar::Rider& r = c.rider();
   if (r.off == 0 && s.external.mode == SetpointMode::kNone) return;
@@ -74,7 +76,7 @@ Course OfPlanet(const Context& c, std::uint32_t planet, const Course& star) {
   return course;
 }
 
-// Whom this mover, or one of its planets, would overlap.
+// Returns the mover that this one, or one of its planets, would overlap.
 std::uint32_t Find(const Context& c, const Course& course) {
   std::uint32_t found = GuardOf(c).Find(c.index, course);
   EachPlanet(c, [&](std::uint32_t i) {
@@ -88,8 +90,8 @@ void Put(const Context& c, const Course& course) {
   EachPlanet(c, [&](std::uint32_t i) { GuardOf(c).Put(i, OfPlanet(c, i, course)); });
 }
 
-// Returns how the mover brakes from this set point, its state at the beginning of this cycle; in the plane. A motion
-// that already stops with the greatest dynamics stays as it is.
+// Returns how the mover brakes in the plane from this set point, its state at the beginning of this cycle. A motion
+// that already stops with the maximum dynamics stays as it is.
 Escape EscapeFrom(const Context& c, const State& s, const SetPoint& at) {
   const bool brakes = s.external.mode == SetpointMode::kNone && (s.plane.waits || !s.plane.goes);
   const bool rests = Elapsed(c, s.plane.begin) >= DurationOf(s.plane.motion);
@@ -111,7 +113,7 @@ Course CourseOnTrack(const Context& c, const Area& kind) {
                           rests ? r.at.position : braking.highest, kind);
 }
 
-// Where it is when this cycle begins, and with such a rotation.
+// Returns the course from the beginning of this cycle on, with the rotation `turn`.
 Course CourseNow(const Context& c, const State& s, const CoordinateMove& turn) {
   if (!IsOnTrack(s)) return CourseOf(c, KindOf(c, s, turn, s.set_point), EscapeOf(c, s));
   Area kind = KindOf(c, s, turn, s.set_point);
@@ -159,7 +161,7 @@ void ShowRest(const Context& c, const State& s) noexcept {
                     figure.system == s.system && figure.body == now.body && figure.on_track == now.on_track &&
                     area.mover.width == c.params.width && area.margin == 0;
   const bool off = now.on_track && (c.rider().off > 0 || figure.kind.count > 0);
-  // What moves X and Y has told it.
+  // The star has set the course of a planet that moves.
   const bool led = IsPlanet(s) && !now.rests;
   if (!led && (turns || off || (now.rests && !same) || figure.on_track != now.on_track || known.count == 0))
     ShowCourse(c, s);
@@ -203,7 +205,7 @@ ObjectInfo TakeCourseOff(const Context& now, const State& s, const SetPoint& at)
   const std::uint32_t found =
       streets.traffic.FindAcross(c.cycle, streets.network, streets.riders, guard, c.index, kind, course);
   if (found == kNobody) {
-    guard.figure(c.index).kind = kind;  // movers that come later in this cycle see it
+    guard.figure(c.index).kind = kind;  // movers that are processed later in this cycle see it
     guard.Put(c.index, course);
   }
   return OneInTheWay(found);
@@ -231,8 +233,8 @@ void Hold(const Context& c, std::uint32_t other, State& s) noexcept {
   plane.motion = rest.motion;
   plane.begin = rest.begin;
   plane.hard = true;
-  // The rest of it is part of the course that the guard knows, though it may come out larger as seen from the next
-  // cycle: areas of what turns are bounds. So it stays the way to rest until a course is clear again.
+  // The rest of this stop is part of the course that the guard knows, but it may come out larger in the next cycle:
+  // areas of turning movers are bounds. So it stays the stop of the mover until a course is clear again.
   s.escape = {rest.motion, rest.begin, c.cycle.count + 1};
   plane.passes = false;
   if (plane.goes && plane.held_by == kNobody) plane.held_since = c.cycle.count;
@@ -241,7 +243,7 @@ void Hold(const Context& c, std::uint32_t other, State& s) noexcept {
 
 namespace {
 
-// The same where X and Y go on each by itself: as far as each takes to get to its speed.
+// The same if X and Y continue each by itself: over the braking distance of each from its commanded velocity.
 bool IsHeldEach(const Context& c, const planar::Place& here, const planar::Place& way, State& s) {
   const auto ahead = [](const Goal& goal, double left) {
     if (!goal.active) return 0.0;

@@ -16,21 +16,21 @@ namespace takt::mover {
 
 namespace {
 
-constexpr double kRounding = 1e-6;  // of the limits, for what programs add up
-constexpr double kStill = 1e-9;     // mm, deg
+constexpr double kRounding = 1e-6;  // of the limits, for rounding in the program that sends set points
+constexpr double kStill = 1e-9;     // [mm, deg] counts as no motion
 constexpr int kHalvings = 12;       // of shares
 
 double Length(double x, double y) {
   return maths::Hypot(x, y);
 }
 
-// Of one coordinate, or of two as a vector (the second one all 0 else).
+// Returns true if one coordinate, or two as a vector, keep the limits in this step. For one, all of y is 0.
 bool Keeps(const KinematicState& from_x, const KinematicState& from_y, const KinematicState& x, const KinematicState& y,
            const trajectory::Limits& limits, double period) {
   constexpr double kMore = 1 + kRounding;
   const double most = kMore * std::max(limits.acceleration, limits.deceleration);
   const double a = Length(x.acceleration, y.acceleration);
-  // Where the speed gets to even if the acceleration is taken away at once.
+  // The velocity that is reached even if the acceleration is ramped down at once.
   const double still = a / (2 * limits.jerk);
   const double speed = Length(x.velocity + still * x.acceleration, y.velocity + still * y.acceleration);
   const auto off = [&](const KinematicState& from, const KinematicState& to) {
@@ -41,7 +41,7 @@ bool Keeps(const KinematicState& from_x, const KinematicState& from_y, const Kin
          Length(off(from_x, x), off(from_y, y)) <= 0.5 * most * period * period + kStill;
 }
 
-// What was given last goes on with its acceleration.
+// Extrapolates the last external set point with its acceleration.
 void GoOn(double period, SetPoint& given) {
   for (KinematicState& k : given) {
     k.position += period * (k.velocity + 0.5 * period * k.acceleration);
@@ -49,14 +49,14 @@ void GoOn(double period, SetPoint& given) {
   }
 }
 
-// On a track, where the mover takes as much across its way besides: what is added keeps the limits by itself, and both
-// together are no more than a track alone may ask for.
+// On a track, where the mover needs lateral acceleration as well: the added set point keeps the limits by itself, and
+// both together keep what a track alone may require.
 bool AddsNoMore(const Context& c, const External& external, const SetPoint& to) {
   constexpr double kMore = 1 + kRounding;
   const trajectory::Limits limits = c.params.xy.maximum.limits();
   const SetPoint &was = external.taken, &is = external.given;
   const double most = Length(std::max(limits.acceleration, limits.deceleration), c.params.lateral());
-  // The speed as a vector that both motions reach before either can slow down: each acceleration ends at full jerk.
+  // The speed as a vector that both motions reach before they can slow down: each acceleration ends at full jerk.
   const KinematicState& way = c.rider().at;
   const double still = Length(is[kX].acceleration, is[kY].acceleration) / (2 * limits.jerk);
   const double more = std::max(0.0, way.acceleration * way.velocity) * std::abs(way.acceleration) / (2 * limits.jerk);
@@ -69,14 +69,15 @@ bool AddsNoMore(const Context& c, const External& external, const SetPoint& to) 
          Length(to[kX].acceleration, to[kY].acceleration) <= kMore * most;
 }
 
-// Where a coordinate comes past if it has to stop.
+// Returns the range of positions that a coordinate passes if it has to stop.
 trajectory::Profile::Range WayToRest(const Context& c, const KinematicState& from, const trajectory::Limits& limits) {
   trajectory::Profile stop;
   if (planar::Rests(from) || !c.planner.Stop(from, limits, stop).ok()) return {from.position, from.position};
   return stop.PositionRange();
 }
 
-// How far off its place on a track it may get with such a set point, be it that it has to stop: no more than this.
+// Returns an upper bound [mm] of the displacement from the position on the track after this set point, even if the
+// mover has to stop.
 double ReachOf(const Context& c, const PlaneState& off) {
   const planar::Brakes brakes{c.params.xy.maximum.limits().deceleration, c.params.xy.maximum.jerk};
   const double a = Length(off.x.acceleration, off.y.acceleration), t = a / brakes.jerk;
@@ -84,7 +85,7 @@ double ReachOf(const Context& c, const PlaneState& off) {
   return Length(off.x.position, off.y.position) + t * (v + a * t / 3) + planar::WayToRest(v + 0.5 * a * t, brakes);
 }
 
-// The others on tracks keep as much more away from it; there has to be room for that.
+// Sets the displacement by which the gaps of other movers on tracks to this one grow; kCollision if there is no room.
 ErrorId GetOff(const Context& c, const PlaneState& off, ObjectInfo& object) {
   planar::Rider& rider = c.rider();
   const double before = rider.off;
@@ -102,7 +103,8 @@ ErrorId GetOff(const Context& c, const PlaneState& off, ObjectInfo& object) {
 
 bool CanFollow(const Context& c, const State& s, const SetPoint& from, const SetPoint& to) noexcept {
   const double period = c.cycle.period_s;
-  // Relative ones leave to the mode what X, Y and C may do together; a formation turns within its window.
+  // With relative set points the mode decides whether X, Y and C may move together; a formation turns within its
+  // window.
   const double way = Length(to[kX].position - from[kX].position, to[kY].position - from[kY].position);
   const bool moves = s.mode == CommandMode::kExternalSetpointGeneration &&
                      (way > kStill || !planar::Rests(to[kX]) || !planar::Rests(to[kY]));
@@ -142,8 +144,8 @@ double ReachOf(const Context& c, const State& s) noexcept {
 
 namespace {
 
-// A star within the limits of its formation. Where it moves and turns, both share out the dynamics so that they could
-// stop from there, with what is left in equal parts.
+// A star within the limits of its formation. If it moves and turns, each gets a share of the dynamics with which it
+// could stop from there; the remainder is divided equally.
 bool CanFollowAsBody(const Context& c, const SetPoint& to, State& s) {
   const SetPoint& from = s.set_point;
   const Body& body = c.fleet.bodies[c.index];
@@ -155,7 +157,7 @@ bool CanFollowAsBody(const Context& c, const SetPoint& to, State& s) {
   const auto may_move = [&] {
     return Keeps(from[kX], from[kY], to[kX], to[kY], body.both.xy.maximum.limits(), c.cycle.period_s);
   };
-  // The share from which on something holds, or up to which.
+  // Returns bounds, from below and above, of the share up to which `holds_below` is true.
   const auto bound = [&](const auto& holds_below) {
     double below = 0, above = 1;
     for (int i = 0; i < kHalvings; ++i) {

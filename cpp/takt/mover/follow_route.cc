@@ -14,10 +14,10 @@ namespace takt::mover {
 
 namespace {
 
-constexpr double kApart = 1;              // mm that it is seen larger by
-constexpr double kPatience = 10;          // s that a planned motion is put off; then places are granted one by one
-constexpr std::uint32_t kAgainAfter = 8;  // cycles, where something was in the way
-constexpr double kSoon = 0.02;            // s
+constexpr double kApart = 1;              // [mm] added to the size of a mover
+constexpr double kPatience = 10;          // [s] delay of a planned motion, after which places are granted one by one
+constexpr std::uint32_t kAgainAfter = 8;  // cycles after an obstacle
+constexpr double kSoon = 0.02;            // [s]
 constexpr double kLookWithin = 16;        // cycles
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
@@ -25,14 +25,14 @@ const State& StateOf(const Context& c, std::size_t mover) {
   return c.fleet.states[mover];
 }
 
-// mm from the place that it has passed towards the next one.
+// Returns the position [mm] from the place that the mover has passed towards the next one.
 double Along(const State& s, const SurfaceRoute& r) {
   const Heading ahead = HeadingAt(r, r.passed);
   const Visit& from = r.visits[r.passed];
   return (s.set_point[kX].position - from.x) * ahead.x + (s.set_point[kY].position - from.y) * ahead.y;
 }
 
-// The larger side of the rectangle along X and Y around it, mm.
+// Returns the larger side [mm] of the bounding rectangle along X and Y.
 double SizeOf(const MoverParams& params, const State& s) {
   const auto [sine, cosine] = maths::SinCos(s.set_point[kC].position * (std::numbers::pi / 180));
   const double width = params.width * std::abs(cosine) + params.height * std::abs(sine);
@@ -40,7 +40,7 @@ double SizeOf(const MoverParams& params, const State& s) {
   return std::max(width, height) + kApart;
 }
 
-// No part of the mover covers the place of this visit any more.
+// Returns true if no part of the mover covers the place of this visit any more.
 bool HasLeft(const Context& c, std::uint32_t mover, std::uint64_t visit) {
   const SurfaceRoute& r = RouteOf(c, mover);
   const State& s = StateOf(c, mover);
@@ -84,7 +84,7 @@ double Departure(const SurfaceRoute& r, std::uint64_t leg) {
   return r.visits[leg].departure_time.value_or(0);
 }
 
-// The mover has passed this place, or rests there: which motion is the present one.
+// Updates which planned motion is the present one, after the mover has passed a place or come to rest.
 void NotePassed(SurfaceRoute& r, bool rests) {
   while (HasLeg(r)) {
     const std::uint64_t end = EndOfLeg(r, r.leg);
@@ -95,7 +95,7 @@ void NotePassed(SurfaceRoute& r, bool rests) {
   }
 }
 
-// Expected delay, s, of leaving the place of this visit.
+// Returns the expected delay [s] with which the place of this visit is left.
 double LateAt(const SurfaceRoute& r, std::uint64_t visit, double now) {
   if (!HasLeg(r)) return 0;
   const double late = r.leaves ? r.late : std::max(0.0, now - Departure(r, r.leg));
@@ -111,7 +111,7 @@ double LateAt(const SurfaceRoute& r, std::uint64_t visit, double now) {
   return std::max(0.0, free - Departure(r, std::min(leg, r.last())));
 }
 
-// The earliest start of the leg at which each of its places is free on arrival; infinite: not known.
+// Returns the earliest start [s] of the leg at which each of its places is free on arrival; infinite: not known.
 double BeginOfLeg(const Context& c, const SurfaceRoute& r, double now) {
   const double departure = Departure(r, r.leg);
   const std::uint64_t end = EndOfLeg(r, r.leg);
@@ -123,14 +123,15 @@ double BeginOfLeg(const Context& c, const SurfaceRoute& r, double now) {
     const SurfaceRoute& other = RouteOf(c, *before);
     if (!other.timed || !IsOnRoute(StateOf(c, *before)) || its == other.last()) return kUnknown;
     const double late = LateAt(other, its, now);
-    if (HeadingAt(other, its) == HeadingAt(r, visit - 1)) {  // it follows that one
+    if (HeadingAt(other, its) == HeadingAt(r, visit - 1)) {  // it follows that mover
       begin = std::max(begin, departure + late);
     } else {
       const double ahead = r.visits[visit].entry_time.value_or(departure) - departure;
-      const double seen = 2 * c.cycle.period_s;  // late, at most: when that has left, and when this one may stop
+      // [s] bound of the delay with which that exit, and an own stop, take effect
+      const double seen = 2 * c.cycle.period_s;
       begin = std::max(begin, other.visits[its].exit_time.value_or(kUnknown) + late - ahead + seen);
     }
-    if (begin > now + kSoon) break;  // not yet, in any case
+    if (begin > now + kSoon) break;  // too early in any case
   }
   return begin;
 }
@@ -152,7 +153,7 @@ trajectory::Limits LimitsFor(const Context& c, const RouteDynamics& dynamics) {
   return LimitsOf(MoveTo(dynamics, {}), c.params.xy, unused);
 }
 
-// Sends it straight on to the place of this visit.
+// Sends the mover straight on to the place of this visit.
 void Send(const Context& c, std::uint64_t visit, State& s, SurfaceRoute& r) {
   const Visit& to = r.visits[visit];
   const AdmissionResult answer = MoveAlong(c, MoveTo(r.dynamics, to), s);
@@ -163,7 +164,7 @@ void Send(const Context& c, std::uint64_t visit, State& s, SurfaceRoute& r) {
     r.aim_y = to.y;
     return;
   }
-  // A refused move changes nothing, and a mover that is in the way may leave.
+  // A refused move changes nothing, and another mover in the way may leave.
   const bool waits = answer.status.error == ErrorId::kCollision && answer.object.kind == ObjectKind::kMover;
   if (waits) {
     r.pause = kAgainAfter;
@@ -175,14 +176,15 @@ void Send(const Context& c, std::uint64_t visit, State& s, SurfaceRoute& r) {
 // Returns the distance [mm] that a leader covers from rest while a follower brakes from full speed, on average.
 double LeadOf(const trajectory::Limits& l) {
   const double ramp = l.acceleration / l.jerk;
-  const double time = 1.05 * ((l.velocity / l.acceleration + ramp) / 2 + ramp);  // it may speed up yet
+  const double time = 1.05 * ((l.velocity / l.acceleration + ramp) / 2 + ramp);  // it may still accelerate
   if (time < ramp) return l.jerk * time * time * time / 6;
   const double since = time - ramp / 2;
   return std::min(l.acceleration * (since * since / 2 + ramp * ramp / 24), l.velocity * time);
 }
 
-// It rests behind a mover with the same heading, and would have to brake for it. The guard lets it move no further than
-// it could stop behind where that is now: so it starts later by the time that takes at full speed.
+// Returns true if the mover rests behind a mover with the same heading, and would have to brake for it. The guard lets
+// it move only as far as it could stop behind the present position of that mover: so it starts later by the time of a
+// stop from full speed.
 bool WouldRunUp(const Context& c, const State& s, const SurfaceRoute& r, std::uint64_t from) {
   const Visit& to = r.visits[from + 1];
   const std::optional<std::uint32_t> before = Before(c, to);
@@ -194,13 +196,13 @@ bool WouldRunUp(const Context& c, const State& s, const SurfaceRoute& r, std::ui
   return lead < PitchAt(r, from) + LeadOf(LimitsFor(c, r.dynamics));
 }
 
-// Ends a motion that was started by time at the last place that is granted.
+// Ends a motion that was started by time at the last granted place.
 void StopWhereGranted(const Context& c, State& s, SurfaceRoute& r) {
   Disturb(r);
   if (r.sent > r.granted) Send(c, r.granted, s, r);
 }
 
-// Starts and supervises a planned motion. False: places are granted one by one.
+// Starts and supervises a planned motion. Returns false if places are to be granted one by one.
 bool GoByTime(const Context& c, double now, bool rests, State& s, SurfaceRoute& r) {
   if (!HasLeg(r)) return false;
   const std::uint64_t end = EndOfLeg(r, r.leg);
@@ -221,7 +223,7 @@ bool GoByTime(const Context& c, double now, bool rests, State& s, SurfaceRoute& 
     return true;
   }
   if (r.late == kUnknown) return false;
-  if (r.granted < end && r.passed < end) {  // a cycle later it could not stop any more
+  if (r.granted < end && r.passed < end) {  // a cycle later it could no longer stop
     const double left = Distance(r.visits[r.passed], r.visits[r.granted]);
     if (RestsAt(c, s, r, r.dynamics, c.cycle.period_s) > left + kNear) StopWhereGranted(c, s, r);
   }
@@ -233,7 +235,7 @@ bool AimsAt(const SurfaceRoute& r, const Visit& place) {
 }
 
 void GoStraightOn(const Context& c, bool rests, State& s, SurfaceRoute& r) {
-  // Its motion leads further than its route does now.
+  // The motion leads further than the route does now.
   const std::uint64_t bound = std::min(r.sent, r.granted);
   const bool ends_here = bound <= r.passed || bound < r.sent;
   if (!rests && ends_here && r.aims && !AimsAt(r, r.visits[bound])) return Send(c, bound, s, r);

@@ -20,7 +20,7 @@ namespace {
 using planar::ObjectState;
 using trajectory::Limits;
 
-constexpr int kShares = 8;  // the dynamics are split into, where both begin at once
+constexpr int kShares = 8;  // fractions of the dynamics that are tried where both begin at once
 
 ObjectInfo MoverNumbered(std::uint32_t index) {
   return {ObjectKind::kMover, index + 1};
@@ -37,14 +37,16 @@ Dynamics DynamicsOf(const Limits& l) {
   return {l.velocity, l.acceleration, l.deceleration, l.jerk};
 }
 
-// How the body may turn by what a planet at this distance can do in the plane; in deg.
+// Returns the limits [deg] of the rotation of the body with which a planet at this distance keeps its limits in the
+// plane.
 Limits TurningAt(double distance, const Limits& l) {
   const double v = l.velocity / distance, a = std::min(l.acceleration, l.deceleration) / distance / std::numbers::sqrt2;
   const double j = std::sqrt(3.0 / 20) * l.jerk / distance;
   return trajectory::ShareOf(1 / kDegree, {std::min({v, std::sqrt(a), maths::Cbrt(j)}), a, a, j});
 }
 
-// The window of C that leaves most to both; the star is `here`, within that of `c`.
+// Restricts C of the body to the window of a planet that leaves most to both; the star is at `here`, within that of
+// `c`.
 void KeepWindow(const CoordinateParams& its, const FormationState& f, double here, CoordinateParams& c) {
   const double lower = its.lower - f.c, upper = its.upper - f.c;
   const double least = std::ceil((here - upper - 1e-9) / kWindow), most = std::floor((here - lower + 1e-9) / kWindow);
@@ -54,7 +56,8 @@ void KeepWindow(const CoordinateParams& its, const FormationState& f, double her
   c.upper = std::min(c.upper, std::max(here, upper + off));
 }
 
-// What the planets leave of a star's parameters, if turning has this share of the dynamics, and X and Y that one.
+// Computes the parameters that the planets leave to a star, if turning has the share `turning` of the dynamics, and X
+// and Y the share `moving`.
 void MakeParams(const Context& c, double turning, double moving, MoverParams& body) {
   const MoverParams& own = c.fleet.params[c.index];
   const double turned = c.fleet.states[c.index].set_point[kC].position, middle = (own.c.lower + own.c.upper) / 2;
@@ -81,7 +84,7 @@ void Share(const Context& c, double turning, Body& body) {
   MakeParams(c, turning, 1 - turning, body.both);
 }
 
-// As the planets of a star are now.
+// Updates the body of a star from its present planets.
 void MakeBody(const Context& c) {
   Body& body = c.fleet.bodies[c.index];
   body.planets.clear();
@@ -92,7 +95,7 @@ void MakeBody(const Context& c) {
   Share(c, c.fleet.states[c.index].formation.share, body);
 }
 
-// The share for turning with which a move from rest takes least.
+// Returns the share for turning with which a move from rest has the shortest duration.
 double QuickestShare(const Context& c, const MoveToPosition& move, const planar::Place& to, const State& s,
                      Body& body) {
   const KinematicState turned = s.set_point[kC];
@@ -115,7 +118,7 @@ double QuickestShare(const Context& c, const MoveToPosition& move, const planar:
   return best;
 }
 
-// A planet that does not go on, or is told to halt.
+// Returns a planet that cannot continue, or has been commanded to halt; kNoStar: none.
 std::uint32_t LostPlanet(const Context& c) {
   std::uint32_t lost = kNoStar;
   EachPlanet(c, [&](std::uint32_t i) {
@@ -137,7 +140,7 @@ bool TurnsAlone(const Command& command) {
   return std::visit([]<typename T>(const T&) { return kIsOneOf<T, MoveC, MoveRelativeC, MoveVelocityC>; }, command);
 }
 
-// It stands where it is, for itself.
+// Takes a planet out of its formation, at rest where it is.
 void Leave(const Context& c, State& s) {
   const Context star = StarOf(c, s);
   s.formation = {};
@@ -198,7 +201,7 @@ Terms TermsOf(const Context& c, const Command& command, State& s) noexcept {
   Body& body = c.fleet.bodies[c.index];
   if (moves || turns) {
     if (both && s.formation.whole) return {.params = c.params, .error = ErrorId::kFormationShare};
-  } else {  // there it is turned as it is now
+  } else {  // at rest: the windows follow from the present angles
     if (both) s.formation.share = QuickestShare(c, *move, to, s, body);
     MakeBody(c);
   }

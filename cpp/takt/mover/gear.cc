@@ -18,7 +18,8 @@ using trajectory::Limits;
 
 namespace {
 
-// A place of a track on the way of a mover, counted over all tracks. On a loop: one of them.
+// A position on a track on the path of a mover, which is counted over all tracks. On a loop: one of the equivalent
+// ones.
 struct SyncPlace {
   std::uint32_t track = kNoTrack;
   double position = 0;
@@ -26,7 +27,8 @@ struct SyncPlace {
   double modulo_tolerance = 0;
 };
 
-// Where a track begins on the way of a mover: on that to come, or else on what it still knows of that behind it.
+// Finds where a track begins on the path of a mover: on its route, or else on the tracks that it remembers to have
+// passed.
 bool BeginOf(const planar::Network& network, const Rider& r, std::uint32_t track, double& begin) {
   begin = r.origin;
   for (const std::uint32_t on : r.route.all()) {
@@ -59,8 +61,8 @@ planar::Verdict Find(const planar::Network& network, const Rider& r, const SyncP
   return {};
 }
 
-// Tracks from the mover's own one on. kTrail: the one that does not begin where the one before it ends, or has no
-// geometry; its own track, if that is on none of them.
+// Computes the route along the trail, from the mover's own track on. kTrail: the track that does not begin at the end
+// of the preceding one, occurs twice or has no geometry; the mover's own track, if the trail does not contain it.
 planar::Verdict RouteAlong(const TrackNetworkState& streets, const Trail& trail, std::uint32_t own, Route& out) {
   const planar::Network& network = streets.network;
   out = {};
@@ -86,7 +88,7 @@ planar::Verdict RouteAlong(const TrackNetworkState& streets, const Trail& trail,
   return {};
 }
 
-// As far as a track; what is missing is filled with the shortest way.
+// Cuts or extends the route to end with the track `to`; missing tracks are those of the shortest path.
 bool Lengthen(const Context& c, std::uint32_t to, Route& route) {
   for (std::uint32_t i = 0; i < route.count; ++i) {
     if (route.tracks[i] == to) {
@@ -114,7 +116,7 @@ SyncPlace SlavePlace(const State& s, const TrackNetworkState& streets, const Gea
           command.modulo_tolerance_slave_sync_position};
 }
 
-// The mover goes along from now on, as `next` says.
+// Couples the mover to its master, as `next` says.
 template <typename Gear>
 AdmissionResult Couple(const CommandContext& g, const Gear& command, Rider& next, std::uint32_t axis) {
   State& s = g.s;
@@ -138,7 +140,7 @@ AdmissionResult Couple(const CommandContext& g, const Gear& command, Rider& next
   return {};
 }
 
-// The gear is over, and the mover comes to rest.
+// Ends the gear with an error, and brings the mover to rest.
 void Lose(const Context& c, ErrorId error, State& s) {
   c.rider().aim = planar::Aim::kRest;
   c.rider().softly = false;
@@ -177,7 +179,7 @@ AdmissionResult CarryOut(const CommandContext& g, const GearInPosOnTrack& comman
   double begin = 0, slave_sync = 0;
   const planar::Verdict sync = Find(streets.network, next, place, begin, slave_sync);
   if (sync.error != ErrorId::kNone) return Refused(sync);
-  // Of an axis that turns, the place nearest to where it is.
+  // Of a periodic axis, the equivalent position nearest to its present one.
   double master_sync = command.master_sync_position + master->origin;
   if (master->turn > 0) {
     master_sync += master->turn * std::round((master->at.position - master_sync) / master->turn);

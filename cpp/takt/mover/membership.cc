@@ -1,4 +1,4 @@
-// Into a group of movers and out of it.
+// Membership of a mover in a group.
 #include "takt/mover/admission.h"
 #include "takt/mover/area_reservation.h"
 

@@ -22,19 +22,20 @@ namespace {
 
 using planar::ObjectState;
 
-// As the next cycle begins.
+// Returns the context at the beginning of the next cycle.
 Context NextTo(const Context& c) {
   Context next = c;
   ++next.cycle.count;
   return next;
 }
 
-// On a track X and Y have moved when this cycle began, or move in it.
+// Returns true if X and Y of a mover on a track were moving when this cycle began, or move in it.
 bool MovesOnTrack(const Context& c, const State& s) {
   return GoesAlongTrack(c, s) || !planar::Rests(s.set_point[kX]) || !planar::Rests(s.set_point[kY]);
 }
 
-// At rest on its old line it continues to its target; off its pose on a track, once it rests there.
+// Begins the motion that waits for a stop: to the target, at rest on the old line; back onto the track, at rest along
+// it.
 void GoOn(const Context& c, State& s) {
   if (!s.plane.waits || Elapsed(c, s.plane.begin) < DurationOf(s.plane.motion)) return;
   if (IsOnTrack(s) ? MovesOnTrack(c, s) : IsHeld(c, s)) return;
@@ -54,8 +55,8 @@ void GoOn(const Context& c, State& s) {
   s.plane.waits = s.plane.hard = false;
 }
 
-// Where X and Y are at the end of this cycle as planned. On a track they are where that says, with what they are still
-// off it: here is its place.
+// Returns X and Y at the end of this cycle as planned; on a track, the state there plus the remaining displacement from
+// it.
 PlaneState PlaneOf(const Context& c, const State& s) {
   if (IsOnTrack(s)) {
     const KinematicState& way = c.rider().at;
@@ -74,7 +75,7 @@ PlaneState PlaneOf(const Context& c, const State& s) {
   return At(s.plane.motion, Elapsed(c, s.plane.begin) + c.cycle.period_s);
 }
 
-// Where the mover is at the end of this cycle as planned, without set points from outside.
+// Returns the set point at the end of this cycle as planned, without external set points.
 SetPoint Planned(const Context& c, const State& s) {
   SetPoint at;
   const PlaneState plane = PlaneOf(c, s);
@@ -87,14 +88,14 @@ SetPoint Planned(const Context& c, const State& s) {
   return at;
 }
 
-// X, Y or C, in the plane and by itself.
+// Returns true if X, Y or C moves, from the set point of the state to `at`.
 bool Moves(const State& s, const SetPoint& at) {
   return std::ranges::any_of(std::array{kX, kY, kC}, [&](Coordinate i) {
     return at[i].position != s.set_point[i].position || !planar::Rests(at[i]) || !planar::Rests(s.set_point[i]);
   });
 }
 
-// In the plane it brakes rather than to get onto a course that another mover is on.
+// In the plane, brakes the mover instead of letting it enter the course of another mover.
 void MindOthers(const Context& c, SetPoint& at, State& s) {
   if (IsOnTrack(s) || !Moves(s, at)) return;
   const ObjectInfo other = TakeCourse(c, at, s);
@@ -124,7 +125,7 @@ void MoveOn(const Context& c, State& s) {
   if (s.external.mode == SetpointMode::kNone && IsOver(NextTo(c), s.plane)) c.rider().off = 0;
 }
 
-// The mode that goes with how the mover is turned, where it rests.
+// Returns the mode that matches the angle of the mover at rest.
 CommandMode Settled(const Context& c, const State& s) {
   const double turned = s.set_point[kC].position;
   const bool inside = InOneWindow(c.params.c, turned, turned);
@@ -140,7 +141,7 @@ CommandMode Settled(const Context& c, const State& s) {
   }
 }
 
-// A move onto or from a track is over.
+// Ends a move onto or from a track.
 void EndOfWay(const Context& c, State& s) {
   if (s.mode == CommandMode::kJoiningTrack) {
     s.mode = CommandMode::kOnTrack;
@@ -152,7 +153,7 @@ void EndOfWay(const Context& c, State& s) {
   }
 }
 
-// When this cycle begins: X or Y is where its own command wanted it, or at rest.
+// Returns true if X or Y has reached the goal of its own command, or rest, when this cycle begins.
 bool IsOver(const Context& c, const State& s, Coordinate which) {
   const PlaneMove& p = s.plane;
   const double t = Elapsed(c, p.begin);
@@ -160,7 +161,7 @@ bool IsOver(const Context& c, const State& s, Coordinate which) {
   return t >= (p.each ? which == kX ? p.motion.along.duration() : p.motion.across.duration() : DurationOf(p.motion));
 }
 
-// Commands that have what they wanted. The next cycle begins where this one ends.
+// Ends the commands that have reached their goals. The next cycle begins where this one ends.
 void Finish(const Context& now, State& s) {
   const Context c = NextTo(now);
   const auto done = [&](Slot slot) { End(now, slot, FeedbackState::kDone, ErrorId::kNone, s); };
@@ -207,7 +208,7 @@ void Change(const Context& c, State& s) {
       if (rests) Enter(c, ObjectState::kError, s);
       return;
     case ObjectState::kResetting:
-      // That of its part comes first; and it gets back to Enabled only on one that is.
+      // The reset of its part comes first, and the mover returns to Enabled only on an enabled part.
       if (!IsPartSound(c, s)) return;
       s.aborts |= !CanPartBeReady(c, s);
       if (!s.aborts && !IsPartReady(c, s)) return;
@@ -220,7 +221,7 @@ void Change(const Context& c, State& s) {
   }
 }
 
-// What is measured is held against the set point of the cycle before; not in the cycle in which the mover leaves
+// Compares the actual position with the set point of the preceding cycle; not in the cycle in which the mover leaves
 // Disabled, where set_position may have moved the set point since the measurement.
 void Watch(const Context& c, const Inputs& inputs, State& s) {
   if (!c.params.deviation || s.state == ObjectState::kDisabled) return;
@@ -252,7 +253,7 @@ void Block(ObjectKind kind, std::uint32_t index, Outputs& out) {
   out.blocker = index + 1;
 }
 
-// On a track: what keeps it from going on.
+// On a track: publishes why the mover does not move on.
 void PublishWaiting(const Context& c, const State& s, Outputs& out) {
   const planar::Rider& rider = c.rider();
   out.delay = DelayOf(rider.waits);
@@ -272,20 +273,20 @@ void PublishWaiting(const Context& c, const State& s, Outputs& out) {
   }
 }
 
-// It is where its master wants it, and stands because that mover is held up.
+// Returns true if a geared mover is at rest, and its master, a mover, is delayed.
 bool IsHeldUpWithMaster(const Context& c, const State& s) {
   const planar::Rider& rider = c.rider();
   if (!IsGeared(c, s) || rider.gear.master == planar::kNobody || !planar::Rests(rider.at)) return false;
   return c.streets.riders[rider.gear.master].waits != planar::Waits::kNot;
 }
 
-// It is to be enabled, or reset, which the part below it does not let it yet.
+// Returns true if the part below the mover delays its enabling or its reset.
 bool IsHeldUpByPart(const Context& c, const State& s) {
   const bool wants = s.state == ObjectState::kEnabling || s.state == ObjectState::kResetting;
   return wants && s.part != planar::kNoPart && !IsPartReady(c, s);
 }
 
-// The next command waits in its turn.
+// Publishes what the next buffered command waits for.
 void PublishHeld(const Buffer& buffer, Outputs& out) {
   const ObjectInfo& object = buffer.held_by;
   const bool mover = object.kind == ObjectKind::kMover;
@@ -295,7 +296,7 @@ void PublishHeld(const Buffer& buffer, Outputs& out) {
   Block(object.kind, object.number - 1, out);
 }
 
-// Whether movers wait for one another, this one among them or ahead of it, where they do not all ride on tracks.
+// Publishes a deadlock: movers that wait for one another, this one among them or behind them, if not all are on tracks.
 void PublishDeadlock(const Context& c, Outputs& out) {
   if (out.waits_for == 0 || out.deadlocked || out.delay == Delay::kDeadlock) return;
   std::uint32_t at = c.index;
@@ -310,7 +311,7 @@ void PublishDeadlock(const Context& c, Outputs& out) {
   out.delay = Delay::kDeadlock;
 }
 
-// Why the mover does not go on.
+// Publishes why the mover does not move on.
 void PublishDelay(const Context& c, const State& s, Outputs& out) {
   const planar::Rider& rider = c.rider();
   if (s.tickets[kWait] != 0) {
@@ -348,7 +349,7 @@ void PublishDelay(const Context& c, const State& s, Outputs& out) {
   }
 }
 
-// Where it goes, and what nobody else may come into.
+// Publishes the target, and the reserved area.
 void PublishWay(const Context& c, const State& s, Outputs& out) {
   const planar::Pose goal = GoalOf(c, s);
   out.target_x = goal.place.x;

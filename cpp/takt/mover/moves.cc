@@ -1,4 +1,4 @@
-// Moves of one's own: X and Y in the plane, and the other coordinates.
+// Moves of X and Y in the plane, and of the other coordinates.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -17,7 +17,7 @@ using trajectory::Limits;
 
 namespace {
 
-// As slow as a motion from rest that takes `share` of the time.
+// Returns the limits with which a motion from rest takes 1 / `share` of the time.
 Limits Slower(const Limits& l, double share) {
   const double square = share * share;
   return {share * l.velocity, square * l.acceleration, square * l.deceleration, square * share * l.jerk};
@@ -31,7 +31,8 @@ MoveToPosition WithLimits(MoveToPosition move, const Limits& limits) {
   return move;
 }
 
-// From one motion to another place: at once if that is quicker, else by way of rest. Nothing: no such motion.
+// Plans from the motion in progress to another target: at once if that is faster, else after a stop. Returns nothing if
+// there is no such motion.
 std::optional<PlaneMove> PlanPlane(const CommandContext& g, const MoveToPosition& to, const Limits& limits,
                                    double& duration) {
   const Context& c = g.c;
@@ -48,7 +49,7 @@ std::optional<PlaneMove> PlanPlane(const CommandContext& g, const MoveToPosition
       duration = DurationOf(round.motion);
       return round;
     }
-    // Where it cannot go round, it can stop.
+    // If the corner cannot be blended, the mover can stop there.
     PlaneMotion line;
     if (PlanMove(c.planner, now, from.corner_x, from.corner_y, from.limits, round.motion) &&
         PlanMove(c.planner, corner, to.x, to.y, limits, line)) {
@@ -125,7 +126,7 @@ AdmissionResult MoveTo(const CommandContext& g, const MoveToPosition& command) n
     if (!plan(StandardOf(free))) return Refused(ErrorId::kPlanning);
     const trajectory::Profile::Range range = turn.profile.PositionRange();
     if (!InOneWindow(g.c.params.c, range.min, range.max)) return Refused(ErrorId::kOutsideWindow);
-    // From rest both arrive together.
+    // From rest, both arrive at the same time.
     const double turns = turn.profile.duration();
     if (IsOver(g.c, s.plane) && IsOver(g.c, s.others.back()) && turns > 0 && duration > 0) {
       if (turns > duration) {
@@ -138,7 +139,7 @@ AdmissionResult MoveTo(const CommandContext& g, const MoveToPosition& command) n
     }
     duration = std::max(duration, turn.profile.duration());
     turn.begin = g.c.cycle.count;
-  } else if (s.plane.turns) {  // that turn belonged to the move before
+  } else if (s.plane.turns) {  // that turn belonged to the preceding move
     PlanRest(g.c.planner, turned, StandardOf(free), ParamsOf(g.c, s, kOthers.size() - 1), turn.profile);
     turn.begin = g.c.cycle.count;
   }
@@ -180,11 +181,11 @@ AdmissionResult CarryOut(const CommandContext& g, const MoveB& command) noexcept
 
 namespace {
 
-// C is its own to turn, as `ask` says.
+// Returns why C cannot be commanded alone, as `ask` says; kNone if it can.
 ErrorId WhyNotTurn(const State& s, Ask ask) {
   const ErrorId why = Diagnose(s, ask);
   if (why != ErrorId::kNone) return why;
-  return s.plane.turns ? ErrorId::kCommandMode : ErrorId::kNone;  // then C belongs to another move
+  return s.plane.turns ? ErrorId::kCommandMode : ErrorId::kNone;  // C belongs to another move then
 }
 
 bool IsInside(const Context& c, const CoordinateMove& turn) {
@@ -192,7 +193,7 @@ bool IsInside(const Context& c, const CoordinateMove& turn) {
   return InOneWindow(c.params.c, range.min, range.max);
 }
 
-// Why C may not move so; a good answer: it may.
+// Returns why C may not make this motion; Ok if it may.
 AdmissionResult WhyNotTurning(const CommandContext& g, const CoordinateMove& move) {
   const State& s = g.s;
   if (!IsInside(g.c, move) && (IsStar(g.c) || !IsPlaneResting(g.c, s))) return Refused(ErrorId::kOutsideWindow);
@@ -207,7 +208,7 @@ AdmissionResult WhyNotTurning(const CommandContext& g, const CoordinateMove& mov
   return {};
 }
 
-// From now on C moves so.
+// C makes this motion from now on.
 AdmissionResult PutTurn(const CommandContext& g, const CoordinateMove& move, const Endless& endless) {
   State& s = g.s;
   if (!IsInside(g.c, move)) {
@@ -223,7 +224,7 @@ AdmissionResult PutTurn(const CommandContext& g, const CoordinateMove& move, con
   return {Status::Ok(), move.profile.duration()};
 }
 
-// To `target`, a position that depends on where C is and would come to rest.
+// Turns to `target`, a function of the state of C and of the limits.
 template <typename Command, typename Target>
 AdmissionResult TurnTo(const CommandContext& g, const Command& command, Ask ask, const Target& target,
                        const Endless& endless = {}) {
@@ -240,8 +241,8 @@ AdmissionResult TurnTo(const CommandContext& g, const Command& command, Ask ask,
   return PutTurn(g, move, endless);
 }
 
-// Dynamics that would turn it further than it may give way to the greatest ones: with these it comes to rest within
-// what it has reserved.
+// If the commanded dynamics would turn the mover further than it may, the maximum ones are used: with these it comes to
+// rest within the area that it has reserved.
 AdmissionResult HaltTurn(const CommandContext& g, const MoveC& command) {
   State& s = g.s;
   if (const ErrorId why = WhyNotTurn(s, Ask::kMoveC); why != ErrorId::kNone) return Refused(why);
@@ -255,7 +256,7 @@ AdmissionResult HaltTurn(const CommandContext& g, const MoveC& command) {
   return PutTurn(g, move, {});
 }
 
-// Z, A or B comes to rest.
+// Brings Z, A or B to rest.
 AdmissionResult HaltOne(const CommandContext& g, const MoveToPosition& command, std::size_t other) {
   State& s = g.s;
   if (const ErrorId why = Diagnose(s, Ask::kMoveAuxiliary); why != ErrorId::kNone) return Refused(why);

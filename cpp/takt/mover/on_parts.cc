@@ -23,7 +23,7 @@ const planar::PartNow* PartNowOf(const Context& c, const State& s) {
 }
 
 struct Angles {
-  double least = 0, most = 0;  // deg
+  double least = 0, most = 0;  // [deg]
 };
 
 Angles AnglesOf(const Context& c, const CoordinateMove& turn) {
@@ -46,8 +46,8 @@ void Add(const Area& kind, std::initializer_list<planar::Place> places, Cover& o
   for (const planar::Place& place : places) area.places[area.count++] = place;
 }
 
-// The rest of a motion: a rectangle in its frame, all that it can come to along and across as long as there is
-// anything across; then a line.
+// Adds the rest of a motion: while it has a motion across, the rectangle in its frame of all positions along and
+// across; then a line.
 void Add(const Area& kind, const PlaneMotion& m, double t, Cover& out) {
   if (t >= DurationOf(m)) return Add(kind, {{m.end_x, m.end_y}}, out);
   const auto at = [&](double along, double across) {
@@ -71,7 +71,7 @@ void Add(const Context& c, const Area& kind, const PlaneMove& move, Cover& out) 
   const planar::Place rest{move.motion.end_x, move.motion.end_y}, next{move.next.x, move.next.y};
   if (move.waits && move.each) Add(kind, {rest, {next.x, rest.y}, next, {rest.x, next.y}}, out);
   if (move.waits && !move.each) Add(kind, {rest, next}, out);
-  // If nothing takes over before the corner it goes on to that.
+  // If no command takes over before the corner, the mover continues to it.
   if (move.passes) {
     const PlaneMotion& m = move.motion;
     const double along = m.along.end().position;
@@ -80,7 +80,7 @@ void Add(const Context& c, const Area& kind, const PlaneMove& move, Cover& out) 
   }
 }
 
-// It stops with its maximum dynamics, as after a fault.
+// Adds a stop with the maximum dynamics, as after a fault.
 void AddStop(const Context& c, const SetPoint& at, Cover& out) {
   PlaneMotion rest;
   const trajectory::Limits limits = c.params.xy.maximum.limits();
@@ -194,9 +194,9 @@ ErrorId DiagnoseCover(const Context& c, const State& s, const Cover& cover) noex
 
 namespace {
 
-constexpr double kFlush = 0.01;  // mm: so exactly a way is held against the border
+constexpr double kFlush = 0.01;  // [mm] accuracy to which a path is checked against the border
 
-// By halves, until what the bend adds is small enough to leave out.
+// By bisection, until the bend departs so little from its chord that it can be neglected.
 ErrorId DiagnoseCover(const planar::Parts& parts, std::uint32_t system, const planar::Road& road, double from,
                       double to, const Area& kind) {
   const double length = to - from, curvature = 1.01 * planar::PeakCurvature(*road.track, from, to);

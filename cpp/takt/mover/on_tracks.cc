@@ -1,4 +1,4 @@
-// Onto tracks, along them, and off them.
+// Moves onto tracks, along them, and off them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,7 +26,7 @@ ObjectInfo TrackOf(std::uint32_t index) {
   return {ObjectKind::kTrack, index + 1};
 }
 
-// As its geometry and its ranges have been made for.
+// Returns true if the mover is no larger than those for which geometry and ranges of the track have been made.
 bool IsSmallEnough(const MoverParams& mover, const TrackView& track) {
   return std::max(mover.width, mover.height) <= std::max(track.width, track.height) &&
          std::min(mover.width, mover.height) <= std::min(track.width, track.height);
@@ -36,7 +36,7 @@ planar::Verdict WithoutGeometry(std::uint32_t track) {
   return {ErrorId::kTrackGeometry, TrackOf(track), static_cast<double>(planar::Problem::kEmpty)};
 }
 
-// Of a track that is not enabled: its part may be on its way.
+// Returns why a track is not enabled: its part may be moving.
 planar::Verdict WhyNotEnabled(const Context& c, std::uint32_t track) {
   const std::uint32_t part = c.streets.tracks[track].part;
   if (part != planar::kNoPart && IsOnItsWay(c, part)) {
@@ -45,8 +45,8 @@ planar::Verdict WhyNotEnabled(const Context& c, std::uint32_t track) {
   return {ErrorId::kTrackDisabled, TrackOf(track)};
 }
 
-// Of two tracks that are linked only where their parts meet: the part that has to go there. One that is on its way
-// before one that only could go. kNoPart: none can.
+// Returns the part that has to move so that two tracks meet, which are linked only at certain positions of their parts;
+// a part that is moving rather than one that only can move. kNoPart: none can.
 std::uint32_t PartBetween(const Context& c, std::uint32_t from, std::uint32_t to) {
   const planar::Parts& parts = *c.streets.parts;
   const std::array both = {c.streets.tracks[to].part, c.streets.tracks[from].part};
@@ -58,8 +58,8 @@ std::uint32_t PartBetween(const Context& c, std::uint32_t from, std::uint32_t to
   return found == both.end() ? planar::kNoPart : *found;
 }
 
-// The first part that is not where a way from one track to another needs it, over as few tracks as can be; kNoPart:
-// wherever the parts are, there is no such way.
+// Returns the first part that is not where the path from one track to another needs it, of the path over the fewest
+// tracks. kNoPart: there is no such path at any positions of the parts.
 std::uint32_t PartOnTheWay(const Context& c, std::uint32_t from, std::uint32_t to) {
   TrackNetworkState& streets = c.streets;
   planar::RouteSearch& search = streets.search;
@@ -100,7 +100,7 @@ planar::Verdict NoWayTo(const Context& c, const planar::Destination& to, const p
   return {ErrorId::kNoRoute, TrackOf(to.track), static_cast<double>(why)};
 }
 
-// To a place, as a command onto or from a track says.
+// Moves to a position with the dynamics of a command onto or from a track.
 AdmissionResult MoveAs(const auto& command, const CommandContext& g, double x, double y, double c) {
   return MoveTo(g, {.x = x,
                     .y = y,
@@ -143,7 +143,7 @@ AdmissionResult CarryOut(const CommandContext& g, const JoinTrack& command) noex
   const planar::Place from{s.set_point[kX].position, s.set_point[kY].position};
   planar::Nearest nearest = planar::NearestTo(*streets.network[track].track, from - spot.origin);
   nearest.place = nearest.place + spot.origin;
-  // The place is its own from now on.
+  // The mover occupies its position on the track from now on.
   planar::Rider& rider = g.c.rider();
   rider = {};
   rider.on = true;
@@ -183,13 +183,13 @@ AdmissionResult CarryOut(const CommandContext& g, const LeaveTrack& command) noe
   double x = command.x, y = command.y;
   if (const ErrorId why = ToMoverSystem(g.c, s, command.reference, x, y); why != ErrorId::kNone) return Refused(why);
   s.plane = {};
-  // Without what set points from outside add.
+  // Without the displacement by external set points.
   const planar::Place at = streets.At(s.track, g.c.rider().at.position).place;
   s.plane.motion = StandingAt(at.x, at.y);
   s.plane.begin = g.c.cycle.count;
   const AdmissionResult answer = MoveAs(command, g, x, y, command.c);
   if (answer.status.failed()) {
-    s.plane = {};  // it stays on its place
+    s.plane = {};  // it stays at its position on the track
     return answer;
   }
   s.mode = CommandMode::kLeavingTrack;

@@ -17,10 +17,10 @@ using trajectory::Limits;
 using trajectory::Planner;
 using trajectory::Profile;
 
-constexpr double kNothing = 1e-9;  // of a limit: nothing across
-constexpr int kTriedShares = 8;    // that are tried
-constexpr int kTries = 4;          // of ways before a corner
-constexpr int kWayHalvings = 30;   // of a way
+constexpr double kNothing = 1e-9;  // of a limit: below, no motion across
+constexpr int kTriedShares = 8;    // number of shares tried
+constexpr int kTries = 4;          // number of distances before a corner tried
+constexpr int kWayHalvings = 30;   // bisections of a distance
 
 struct Direction {
   double x = 1, y = 0;
@@ -38,7 +38,7 @@ Framed InFrame(const PlaneState& s, const Direction& d, double origin_x, double 
   return {{along(x, y), along(s.x.velocity, s.y.velocity), along(s.x.acceleration, s.y.acceleration)},
           {across(x, y), across(s.x.velocity, s.y.velocity), across(s.x.acceleration, s.y.acceleration)}};
 }
-// From where it is.
+// With the origin at its position.
 Framed InFrame(const PlaneState& s, const Direction& d) {
   return InFrame(s, d, s.x.position, s.y.position);
 }
@@ -49,7 +49,7 @@ std::optional<Direction> DirectionOf(double x, double y) {
   return Direction{x / length, y / length};
 }
 
-// Where a velocity ends when the acceleration is taken away at once.
+// Returns the velocity at which a ramp-down of the acceleration, begun at once, ends.
 double Unavoidable(const KinematicState& s, double jerk) {
   return s.velocity + s.acceleration * std::abs(s.acceleration) / (2 * jerk);
 }
@@ -72,7 +72,7 @@ void PutEnd(PlaneMotion& m) {
   m.end_y = m.origin_y + m.direction_y * along + m.direction_x * across;
 }
 
-// Whether a coordinate can begin so with this share of the limits, and stay within them.
+// Returns true if a coordinate can begin in this state with this share of the limits, and stay within them.
 bool Fits(const KinematicState& s, double share, const Limits& l) {
   constexpr double kRounding = 1 + 1e-9;
   const double velocity = kRounding * share * l.velocity;
@@ -84,7 +84,7 @@ double Least(const KinematicState& s, const Limits& l) {
   return std::max(std::abs(s.velocity) / l.velocity, std::abs(s.acceleration) / l.acceleration);
 }
 
-// Onto the line to a place `distance` away with this share across.
+// Plans onto the line to a point at `distance` [mm], with this share across.
 bool PlanOntoLine(Planner& planner, const Framed& from, double distance, double share, const Limits& limits,
                   PlaneMotion& motion) {
   const double rest = std::sqrt(std::max(0.0, 1 - share * share));
@@ -182,7 +182,7 @@ bool PlanMove(Planner& planner, const PlaneState& from, double x, double y, cons
   if (Negligible(framed.across, limits)) {
     found = planner.ToPosition(framed.along, distance, 0, limits, best.along).ok();
   } else {
-    Limits even = limits;  // one profile brakes while the other speeds up
+    Limits even = limits;  // one profile brakes while the other accelerates
     even.acceleration = even.deceleration = std::min(limits.acceleration, limits.deceleration);
     const double least = Least(framed.across, even);
     const double most = std::sqrt(std::max(0.0, 1 - maths::Power(Least(framed.along, even), 2)));
@@ -219,7 +219,7 @@ bool PlanCorner(Planner& planner, double x, double y, double most, const Limits&
                 PlaneMotion& motion, Corner& best) noexcept {
   const PlaneState corner{{motion.end_x, 0, 0}, {motion.end_y, 0, 0}};
   const auto direction = DirectionOf(x - motion.end_x, y - motion.end_y);
-  // What is left of the first line once the mover is on it.
+  // The rest of the first line once the motion across is over.
   const double on_line = std::max(t, motion.across.duration());
   const double end = motion.along.end().position;
   if (!direction || on_line >= motion.along.duration()) return false;
@@ -235,7 +235,7 @@ bool PlanCorner(Planner& planner, double x, double y, double most, const Limits&
   bool found = false;
   double least = 0;
   PlaneMotion passing;
-  // Where the mover is too fast already to slow down so far before the corner, it is nearer to it.
+  // If the mover is already too fast to slow down that far before the corner, shorter distances are tried.
   for (int i = 0; i < kTries * (kTriedShares + 1); ++i) {
     const int part = i % (kTriedShares + 1);
     if (part == 0 && found) break;
@@ -249,8 +249,8 @@ bool PlanCorner(Planner& planner, double x, double y, double most, const Limits&
     double highest = std::min(limits.velocity, then.velocity);
     if (sine > kNothing) highest = std::min(highest, share * then.velocity / sine);
     if (std::abs(cosine) > kNothing) highest = std::min(highest, rest * then.velocity / std::abs(cosine));
-    // From so far before, it can stop at the corner; it gets rid of what is across before the second line, and of what
-    // leads away from it.
+    // The speed at a distance before the corner from which the mover can stop at the corner, stop its motion across
+    // before the second line, and stop its motion against the direction of that line.
     const auto allowed = [&](double way) {
       double speed = std::min(highest, planar::SpeedForWay(way, brakes(1, limits)));
       if (sine > kNothing) speed = std::min(speed, planar::SpeedForWay(way * sine, brakes(share, even)) / sine);
@@ -261,7 +261,7 @@ bool PlanCorner(Planner& planner, double x, double y, double most, const Limits&
     const auto reached = [&](double way) {
       return planar::SpeedBefore(left - way, now, {limits.acceleration, limits.jerk});
     };
-    // Further before it may be quicker, but has less way to get so quick.
+    // Further away the allowed speed is higher, but the distance to reach it is shorter.
     double before = std::min(most, left), nearer = 0;
     for (int k = 0; k < kWayHalvings && reached(before) < allowed(before); ++k) {
       const double middle = 0.5 * (nearer + before);
@@ -305,7 +305,8 @@ bool PlanRest(Planner& planner, const PlaneMotion& motion, double t, const Limit
     if (!planner.Stop(begin(motion.along), ShareOf(along, limits), rest.along).ok()) return false;
     if (rest.share > 0) {
       if (!planner.Stop(begin(motion.across), ShareOf(rest.share, limits), rest.across).ok()) return false;
-      // As the motion itself may have reckoned with: else this would lead beyond its end.
+      // The motion itself may use the full limits once across is over; without them, the stop would lead beyond its
+      // end.
       Profile harder = rest.along, then;
       harder.Cut(rest.across.duration());
       if (rest.across.duration() < rest.along.duration() && planner.Stop(harder.end(), limits, then).ok() &&

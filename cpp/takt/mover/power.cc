@@ -1,4 +1,4 @@
-// Enabled or not, and where; and coming to rest.
+// Power, set_position and halts.
 #include "takt/mover/admission.h"
 #include "takt/mover/course.h"
 #include "takt/mover/formation.h"
@@ -81,7 +81,7 @@ AdmissionResult CarryOut(const CommandContext& g, const SetPosition& command) no
 
 namespace {
 
-// The star sees it and brings all of the formation to rest, which goes on.
+// Halts a planet: the star detects it and brings the whole formation to rest; the formation persists.
 AdmissionResult HaltPlanet(const CommandContext& g) {
   for (const Slot slot : {kMoveZ, kMoveA, kMoveB, kWait}) End(g.c, slot, FeedbackState::kAborted, ErrorId::kNone, g.s);
   AbortBuffered(g.c, g.s);

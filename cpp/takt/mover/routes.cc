@@ -18,9 +18,9 @@ namespace takt::mover {
 
 namespace {
 
-constexpr double kRounded = 1e-6;  // s
+constexpr double kRounded = 1e-6;  // [s]
 
-// The last visit that a mover gets to when those that are to begin have begun.
+// Returns the last visit of a mover once the drafts that are to begin have begun.
 std::uint64_t LastOf(const SurfaceRoute& r) {
   return r.takes ? r.draft.last() : r.last();
 }
@@ -37,7 +37,7 @@ bool IsBeside(const Visit& a, const Visit& b) {
   return std::max(x, y) > 2 * kNear && std::min(x, y) <= 1e-6;
 }
 
-// Why a mover on its way cannot change over to its draft.
+// Returns why a mover on its route cannot change to its draft.
 RouteProblem WhyNotChange(const Context& c, const State& s, const SurfaceRoute& r, const RouteDynamics& dynamics) {
   const std::uint64_t at = r.draft.first();
   if (at < r.passed || at > r.last()) return RouteProblem::kNumber;
@@ -45,7 +45,7 @@ RouteProblem WhyNotChange(const Context& c, const State& s, const SurfaceRoute& 
   if (maths::Hypot(place.x - as_told.x, place.y - as_told.y) > 1e-6) return RouteProblem::kElsewhere;
   if (at - r.passed > kMostKept) return RouteProblem::kTooLate;
   if (r.sent <= at) return RouteProblem::kNone;
-  const double left = Distance(r.visits[r.passed], place);  // straight on: it was sent further
+  const double left = Distance(r.visits[r.passed], place);  // straight on, as it was sent further
   return RestsAt(c, s, r, dynamics) <= left + kNear ? RouteProblem::kNone : RouteProblem::kTooLate;
 }
 
@@ -53,10 +53,10 @@ bool IsAt(const State& s, const Visit& place) {
   return maths::Hypot(s.set_point[kX].position - place.x, s.set_point[kY].position - place.y) <= 2 * kNear;
 }
 
-// Why a mover that is not on its way cannot begin its draft.
+// Returns why a mover that is not on its route cannot begin its draft.
 RouteProblem WhyNotBegin(const Context& c, const State& s, const SurfaceRoute& r) {
   const std::uint64_t at = r.draft.first();
-  // Where it has gone on as it braked; others wait for what it has not left.
+  // The place to which it has moved on while braking; other movers wait for the places that it has not left.
   const bool on_old = at > r.passed && at <= r.last() && IsAt(s, r.visits[at]);
   if (at != r.passed && !on_old) return RouteProblem::kNumber;
   if (!IsPlaneResting(c, s)) return RouteProblem::kMoves;
@@ -69,7 +69,7 @@ ErrorId WhyNotAble(const State& s) {
   return free ? ErrorId::kNone : ErrorId::kCommandMode;
 }
 
-// Each straight motion has a departure and an arrival, one after the other.
+// Returns true if each straight motion has a departure and an arrival, in order.
 bool HasGoodTimes(const Visits& visits) {
   if (!visits[visits.first()].departure_time) return true;
   double last = 0;
@@ -98,7 +98,7 @@ RouteProblem WhyNotVisits(const SurfaceRoutes& routes, const SurfaceRoute& r) {
   return HasGoodTimes(r.draft) ? RouteProblem::kNone : RouteProblem::kTimes;
 }
 
-// What it is bound for already must come free as things go on.
+// Returns why a place for which the mover is already bound would not become free.
 RouteProblem WhyNotKept(const Context& c, const SurfaceRoute& r) {
   for (std::uint64_t k = r.passed + 1; k <= r.draft.first(); ++k) {
     const std::optional<std::uint32_t> before = Before(c, r.visits[k]);
@@ -110,7 +110,7 @@ RouteProblem WhyNotKept(const Context& c, const SurfaceRoute& r) {
   return RouteProblem::kNone;
 }
 
-// A mover keeps its route behind those that change over: what they leave before, they leave still.
+// Returns true if a mover can keep its route behind those that change theirs: these still leave the places in question.
 bool StaysBehind(const Context& c, const SurfaceRoute& r) {
   for (std::uint64_t k = r.passed + 1; k <= r.last(); ++k) {
     const std::optional<std::uint32_t> before = Before(c, r.visits[k]);
@@ -122,7 +122,7 @@ bool StaysBehind(const Context& c, const SurfaceRoute& r) {
   return true;
 }
 
-// Notes which movers begin what they were told.
+// Determines which movers begin their drafts.
 planar::Verdict FindThoseThatBegin(const Everyone& all, std::span<const std::uint32_t> listed) {
   for (SurfaceRoute& r : all.routes.of) r.takes = listed.empty() && r.draft_ticket != 0;
   for (const std::uint32_t number : listed) {
@@ -163,7 +163,7 @@ void BeginDraft(const Context& c, const RouteDynamics& dynamics, State& s, Surfa
     kept.arrival_time.reset();
     r.draft.Put(k, kept);
   }
-  if (on_way) {  // what comes before that place is as it was
+  if (on_way) {  // the visit before this one at that place is unchanged
     Visit junction = r.draft[at];
     junction.after = r.visits[at].after;
     junction.after_visit = r.visits[at].after_visit;
@@ -171,7 +171,7 @@ void BeginDraft(const Context& c, const RouteDynamics& dynamics, State& s, Surfa
   }
   std::swap(r.visits, r.draft);
   r.draft.Clear(0);
-  if (!on_way) r.passed = at;  // those before are over
+  if (!on_way) r.passed = at;  // earlier visits are over
   r.begin = r.passed;
   r.granted = on_way ? std::min(r.granted, at) : at;
   r.sent = on_way ? std::min(r.sent, at) : at;
@@ -228,7 +228,7 @@ AdmissionResult CarryOut(const CommandContext& g, const ContinueRoute&) noexcept
   if (r.visits.empty() || r.system != s.system) return RefusedRoute(RouteProblem::kNoRoute);
   if (!IsPlaneResting(g.c, s)) return RefusedRoute(RouteProblem::kMoves);
   const std::uint64_t passed = r.passed, sent = std::exchange(r.sent, r.granted);
-  Look(g.c, s, r);  // it may have gone on while it braked
+  Look(g.c, s, r);  // it may have passed places while braking
   if (OffRoute(s, r) > kNear) {
     r.passed = passed;
     r.sent = sent;
@@ -249,7 +249,7 @@ planar::Verdict Start(const Everyone& all, const StartRoutes& command) noexcept 
   planar::Verdict why = FindThoseThatBegin(all, command.movers.all());
   if (why.error == ErrorId::kNone) why = WhyNotStart(all, dynamics);
   if (why.error != ErrorId::kNone) return why;
-  // One that was taken off its route cannot go on behind visits that come no more.
+  // A mover that was taken off its route cannot resume it behind visits that no longer take place.
   for (std::size_t i = 0; i < all.routes.of.size(); ++i) {
     SurfaceRoute& r = all.routes.of[i];
     if (!r.takes && !IsOnRoute(all.states[i]) && !StaysBehind(all.of(i), r)) r.visits.Clear(r.passed);
@@ -264,7 +264,7 @@ namespace {
 
 constexpr std::uint64_t kGoesOn = std::numeric_limits<std::uint64_t>::max();
 
-// Where movers come to rest that are held, and those behind them (`held_at`).
+// Finds where movers that are held, and those behind them, come to rest (`held_at`).
 void FindRests(const Everyone& all) {
   auto& of = all.routes.of;
   const auto ahead = [&](const Context& c, const Visit& visit) -> SurfaceRoute* {
@@ -280,7 +280,7 @@ void FindRests(const Everyone& all) {
         if (!other || other->passed > its || other->held_at > its) continue;
         if (!rests) {
           r.held_at = StopsAt(c, s, r);
-        } else if (its < other->granted) {  // that one gets as far as to leave its place
+        } else if (its < other->granted) {  // the other mover moves on until it has left the place
           other->held_at = its + 1;
         } else {
           continue;

@@ -79,18 +79,18 @@ CoordinateParams ParamsOf(const Context& c, const State& s, std::size_t other) n
 
 namespace {
 
-// How X, Y and C, and the others come to rest.
+// The stops of X and Y, and of the others.
 struct Rest {
   PlaneMove plane;
   std::array<CoordinateMove, kOthers.size()> others;
 };
 
 bool MoveAlike(const KinematicState& a, const KinematicState& b) {
-  constexpr double kAlike = 1e-9;  // mm/s, mm/s²: rounding
+  constexpr double kAlike = 1e-9;  // [mm/s, mm/s²] rounding
   return std::abs(a.velocity - b.velocity) <= kAlike && std::abs(a.acceleration - b.acceleration) <= kAlike;
 }
 
-// A motion on the plane that begins now, and does not lead off the stators.
+// Returns true if a motion in the plane that begins now does not leave the stators.
 bool Stays(const Context& c, const State& s, const PlaneMotion& motion) {
   if (c.streets.parts->none() || IsOnTrack(s)) return true;
   PlaneMove move;
@@ -99,8 +99,8 @@ bool Stays(const Context& c, const State& s, const PlaneMotion& motion) {
   return DiagnoseCover(c, s, CoverOf(c, move, s.others.back())) == ErrorId::kNone;
 }
 
-// On a track: what set points from outside have added comes to rest by itself, and goes back to nothing once the mover
-// rests there.
+// On a track: plans the stop of the displacement by external set points, and its return to 0 once the mover rests along
+// the track.
 PlaneMove PlanBack(const Context& c, const State& s) {
   PlaneMove back;
   back.begin = c.cycle.count;
@@ -124,7 +124,8 @@ bool PlanStop(const Context& c, const State& s, const SetPoint& at, const trajec
   if (s.external.mode == SetpointMode::kNone) {
     return PlanRest(c.planner, s.plane.motion, Elapsed(c, s.plane.begin), limits, rest);
   }
-  // As long as nothing from outside moves it, it brakes along what it does, and so within what it has reserved.
+  // While external set points do not move it, the mover brakes along its planned motion, and so within what it has
+  // reserved.
   const PlaneState planned = At(s.plane.motion, Elapsed(c, s.plane.begin));
   const bool beside =
       s.external.mode == SetpointMode::kRelative && MoveAlike(planned.x, at[kX]) && MoveAlike(planned.y, at[kY]);
@@ -136,7 +137,7 @@ bool PlanStop(const Context& c, const State& s, const SetPoint& at, const trajec
 
 namespace {
 
-// Within `plane`, or all with the maximum (null).
+// Plans a stop of X and Y within `plane`; null: all with the maximum dynamics.
 Rest PlanRest(const Context& c, const trajectory::Limits* plane, const State& s) {
   const trajectory::Limits maximum = c.params.xy.maximum.limits();
   const SetPoint& at = s.set_point;
@@ -155,7 +156,7 @@ Rest PlanRest(const Context& c, const trajectory::Limits* plane, const State& s)
   }
   for (std::size_t i = 0; i < kOthers.size(); ++i) {
     const CoordinateParams params = ParamsOf(c, s, i);
-    // C turns no further than it was to, where that counts.
+    // With parts, C stops with the maximum dynamics, so it turns no further than planned.
     const bool hard = plane == nullptr || (kOthers[i] == kC && !c.streets.parts->none());
     const trajectory::Limits limits = hard ? params.maximum.limits() : StandardOf(params);
     all.others[i] = s.others[i];
@@ -193,15 +194,15 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
     s.mode = CommandMode::kFreeMovement;
   }
   Rest rest = PlanRest(c, plane, s);
-  if (IsPlanet(s)) {  // X, Y and C are the star's
+  if (IsPlanet(s)) {  // X, Y and C belong to the star
     std::copy_n(rest.others.begin(), rest.others.size() - 1, s.others.begin());
     return;
   }
-  // As hard as it can it stays within what it has reserved.
+  // With the maximum dynamics the mover stays within what it has reserved.
   const bool hard = !plane || InTheWay(c, rest.plane, rest.others.back(), IsOnTrack(s)) ||
                     LeadsAway(c, *plane, rest.others.back(), s);
   if (plane && hard) rest = PlanRest(c, nullptr, s);
-  // As the guard knows it.
+  // The stop that the guard knows.
   if (hard && !IsOnTrack(s) && s.escape.cycle == c.cycle.count) {
     rest.plane.motion = s.escape.motion;
     rest.plane.begin = s.escape.begin;

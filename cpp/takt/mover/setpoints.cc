@@ -1,4 +1,4 @@
-// Set points from outside.
+// External set points.
 #include "takt/mover/admission.h"
 #include "takt/mover/follow_route.h"
 #include "takt/mover/on_parts.h"
@@ -15,7 +15,7 @@ AdmissionResult CarryOut(const CommandContext& g, const StartExternalSetpointGen
   if (alone ? !IsResting(g.c, s) : IsOnRoute(s)) return Refused(ErrorId::kCommandMode);
   s.external = {};
   s.external.mode = command.mode;
-  if (alone) {  // it stands, until the first one comes
+  if (alone) {  // at rest, until the first set point arrives
     s.external.given = s.external.taken = s.set_point;
     s.mode = CommandMode::kExternalSetpointGeneration;
   }

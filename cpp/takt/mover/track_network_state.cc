@@ -32,7 +32,7 @@ void LinkAll(std::span<const TrackView> tracks, planar::Network& network) {
   planar::NameNodes(network);
 }
 
-// A mover that stands goes on over no link that is none any more, and has come over none.
+// Cuts the route of a mover at rest, and the tracks that it has passed, at links that no longer exist.
 void CutRoute(const planar::Network& network, planar::Rider& rider) {
   if (!rider.on) return;
   const auto linked = [&](std::uint32_t from, std::uint32_t to) {
@@ -83,7 +83,7 @@ void Refresh(std::span<const TrackView> now, TrackNetworkState& s) noexcept {
   if (!std::ranges::equal(now, s.tracks, SameShape)) {
     LinkAll(now, s.network);
     for (planar::Rider& rider : s.riders) CutRoute(s.network, rider);
-    // Those that meet a track which is another now are looked at, too.
+    // Tracks that meet a changed track are updated, too.
     const auto changed = [&](std::uint32_t i) {
       for (std::uint32_t k = 0; k < now.size(); ++k) {
         const bool meets = now[k].start_node == now[i].start_node || now[k].end_node == now[i].end_node;

@@ -9,7 +9,7 @@ std::vector<std::size_t> Assign(const std::vector<std::vector<double>>& costs) {
   if (costs.empty()) return {};
   const std::size_t rows = costs.size(), columns = costs.front().size();
   constexpr double kImpossible = 1e12;  // finite, so that potentials are
-  // Row and column 0 stand for "none".
+  // Row and column 0 mean "none".
   std::vector<double> row_potential(rows + 1), column_potential(columns + 1);
   std::vector<std::size_t> row_of(columns + 1, 0), before(columns + 1, 0);
   for (std::size_t row = 1; row <= rows; ++row) {
@@ -17,7 +17,7 @@ std::vector<std::size_t> Assign(const std::vector<std::vector<double>>& costs) {
     std::vector<bool> reached(columns + 1, false);
     row_of[0] = row;
     std::size_t column = 0;
-    do {  // one more column, the cheapest, on the alternating tree
+    do {  // adds the cheapest column to the alternating tree
       reached[column] = true;
       const std::size_t at = row_of[column];
       double delta = std::numeric_limits<double>::infinity();

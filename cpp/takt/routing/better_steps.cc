@@ -8,10 +8,10 @@
 namespace takt::routing {
 namespace {
 
-constexpr std::int64_t kStates = 16;         // that take as long as one of Improving
-constexpr std::int64_t kCellsPerState = 16;  // of tables that are made
+constexpr std::int64_t kStates = 16;         // states of repair that take as long as one of Improving
+constexpr std::int64_t kCellsPerState = 16;  // cells of tables whose setup takes as long as one state
 constexpr std::int64_t kMostCells = 2'000'000;
-constexpr std::int64_t kLeastPerMover = 250;  // states; with less repair finds none
+constexpr std::int64_t kLeastPerMover = 250;  // states; repair finds none with less
 constexpr std::int64_t kMostEffort = 100'000'000'000;
 constexpr std::int64_t kTailEffort = 5'000;  // configurations
 constexpr std::int64_t kTailCost = 4;        // states, by mover and step
@@ -50,7 +50,7 @@ void BetterSteps::FindSome(const Offer& offer) {
     if (!found) continue;
     const std::vector<Configuration> steps = one->steps();
     spent_ += Size(steps);
-    const bool as_if_alone = one->sum() == one->least_sum();  // they cannot be fewer
+    const bool as_if_alone = one->sum() == one->least_sum();  // no sum can be less
     if (const double sum = offer(steps); sum < least) {
       least = sum;
       best_ = std::move(one);
@@ -60,8 +60,8 @@ void BetterSteps::FindSome(const Offer& offer) {
 }
 
 void BetterSteps::ImproveBest(const Offer& offer) {
-  constexpr int kParts = 8;       // each with less heat than the one before
-  constexpr double kHeat = 0.02;  // of the mean of steps alone
+  constexpr int kParts = 8;       // each with less heat than the preceding one
+  constexpr double kHeat = 0.02;  // of the mean number of steps of a mover alone
   const double heat = kHeat * static_cast<double>(best_->least_sum()) / static_cast<double>(movers());
   for (int k = 1; k <= kParts && best_->sum() > best_->least_sum(); ++k) {
     best_->Improve(budget_ / kParts, heat * (kParts - k) / kParts);

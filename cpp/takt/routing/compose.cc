@@ -19,9 +19,9 @@ struct PassageId {
 struct Passage {
   PlaceIndex place = 0;
   std::size_t step = 0;
-  PassageId before{};    // who is at the place before it
-  double left = -1;      // s, when it gives the place back; below 0: not known yet
-  double departure = 0;  // of the run that leaves it
+  PassageId before{};    // the preceding passage of the place
+  double left = -1;      // [s] when the place is freed; negative: not known yet
+  double departure = 0;  // [s] of the run that leaves the place
   Direction lane = Direction::kNone;
   int count = 0, along = 0;
 };
@@ -46,7 +46,7 @@ class Composer {
 
   std::optional<std::vector<Legs>> Run() {
     std::vector<Legs> legs(passages_.size());
-    std::vector<std::size_t> at(passages_.size(), 0);  // the visit that each is at, from this time on:
+    std::vector<std::size_t> at(passages_.size(), 0);  // the present passage of each mover, since:
     std::vector<double> since(passages_.size(), 0);
     using Entry = std::pair<double, MoverIndex>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
@@ -104,7 +104,7 @@ class Composer {
     return !before || before->left >= 0;
   }
 
-  // The earliest departure, not before `at`, of a run from one visit to another.
+  // Returns the earliest departure [s], not before `at`, of a run from one passage to another.
   double Departure(MoverIndex mover, std::size_t from, std::size_t to, double at) noexcept {
     const std::vector<Passage>& its = passages_[static_cast<std::size_t>(mover)];
     const int count = static_cast<int>(to - from);
@@ -120,12 +120,13 @@ class Composer {
       }
       at = std::max(
           {at, before->departure - entry, before->departure + grid_.Lag(before->count, count, before->along - along)});
-      if (k == to) at = std::max(at, before->left - grid_.Duration(count));  // it rests there
+      if (k == to) at = std::max(at, before->left - grid_.Duration(count));  // the mover rests there
     }
     return at;
   }
 
-  // All at once, or with one stop on the way, which frees the places before it earlier.
+  // Returns the end of the next run: the last passage, or a stop on the way, which frees the places before it earlier,
+  // if the arrival is earlier then.
   std::size_t BestStop(MoverIndex mover, std::size_t first, std::size_t last, double at) noexcept {
     const auto duration = [&](std::size_t a, std::size_t b) { return grid_.Duration(static_cast<int>(b - a)); };
     std::size_t best = last;

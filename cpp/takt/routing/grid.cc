@@ -9,9 +9,10 @@
 namespace takt::routing {
 namespace {
 
-constexpr double kSampled = 5e-4;        // s, at least
-constexpr double kMostSamples = 20'000;  // of the longest run: slow movers take no more time and memory than fast ones
-constexpr double kNoLag = -1e6;          // s: it ends behind where the leader starts
+constexpr double kSampled = 5e-4;  // [s], at least
+// of the longest run at most: bounds time and memory for slow movers
+constexpr double kMostSamples = 20'000;
+constexpr double kNoLag = -1e6;  // [s] the run ends behind the start of the leader
 
 }  // namespace
 
@@ -134,10 +135,11 @@ double Grid::Lag(int leader, int follower, int ahead) const {
   const Lane& back = lane(follower);
   const double behind = mover_size_ - ahead * pitch_;
   double lag = kNoLag;
-  // Both functions rise, so between two samples no more is needed than with the time of one and the place of the next.
+  // Both functions increase, so the time of one sample and the position of the next one give a bound between two
+  // samples.
   std::size_t k = 0;
   for (std::size_t i = 0; i < back.stop.size(); ++i) {
-    const double place = back.stop[i] + behind;  // where the leader has to be by then
+    const double place = back.stop[i] + behind;  // position that the leader must have reached by then
     if (place <= 0) continue;
     while (k < front.at.size() && front.at[k] < place) ++k;
     const double there = std::min(static_cast<double>(k) * sampled_, front.duration);

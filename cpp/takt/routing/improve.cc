@@ -11,9 +11,9 @@ namespace takt::routing {
 namespace {
 
 constexpr std::int64_t kMostStates = 20'000;  // for one mover of an improvement
-constexpr double kGain = 1e-6;                // s
+constexpr double kGain = 1e-6;                // [s]
 
-// The shortest time in which a mover can leave a place.
+// Returns the shortest time [s] after which a mover can have left a place.
 double LeavesAfter(const Grid& grid, PlaceIndex place) {
   double least = kForever;
   for (const Direction direction : kDirections) {
@@ -119,7 +119,7 @@ class Improver {
   static void Add(std::vector<MoverIndex>& movers, MoverIndex one) {
     if (std::find(movers.begin(), movers.end(), one) == movers.end()) movers.push_back(one);
   }
-  // At random, those with much delay rather than others.
+  // Draws a mover at random, with a probability that grows with its delay.
   MoverIndex Delayed() {
     constexpr double kAnyway = 1e-4;
     double sum = 0;
@@ -131,7 +131,7 @@ class Improver {
     }
     return count_ - 1;
   }
-  // Movers with stays on its quickest way alone, while it could be there.
+  // Returns movers that occupy places of the fastest path of the mover alone while it could be there.
   std::vector<MoverIndex> InTheWayOf(MoverIndex mover) {
     std::vector<MoverIndex> found;
     const std::vector<double>& alone = alone_.To(At(now_.targets, mover));
@@ -165,7 +165,7 @@ class Improver {
     random_.Shuffle(found);
     return found;
   }
-  // Movers that come to the same places, by their present legs.
+  // Adds movers that visit the same places in the present plan.
   void AddThoseMet(std::vector<MoverIndex>& movers, std::size_t most) {
     for (int guard = 0; guard < 100 && movers.size() < most; ++guard) {
       const auto& places = timetable_.places_of(movers[random_.Below(movers.size())]);
@@ -176,7 +176,7 @@ class Improver {
     }
   }
 
-  // Plans these one after the other. What is worse than before, by more than the heat allows, is taken back.
+  // Replans these movers one after the other; undone if the sum gets worse by more than the heat allows.
   void PlanAnew(const std::vector<MoverIndex>& movers, double weight) {
     double before = 0, alone = 0;
     std::vector<PlaceIndex> old_targets;
@@ -210,7 +210,7 @@ class Improver {
       timetable_.Remove(i);
       std::optional<Legs> legs;
       if (At(task_.targets, i) == kNone && timetable_.stays(start).empty()) {
-        At(now_.targets, i) = start;  // nobody needs its place any more
+        At(now_.targets, i) = start;  // no other mover needs its place any more
         legs.emplace();
       } else {
         legs = sipp_.Find(timetable_, {.start = start,
@@ -276,7 +276,7 @@ std::optional<Plan> PlanInTurn(const Grid& grid, const Task& task, Alone& alone,
   Sipp sipp(grid);
   for (int i = 0; i < tries && sipp.expanded() < effort; ++i) {
     Timetable timetable(grid, count);
-    // All others have to leave their starts first.
+    // All movers occupy their starts until they can have left them.
     for (MoverIndex k = 0; k < static_cast<MoverIndex>(count); ++k) {
       timetable.Rest(At(task.starts, k), -1, LeavesAfter(grid, At(task.starts, k)), k);
     }

@@ -10,9 +10,9 @@
 namespace takt::routing {
 namespace {
 
-constexpr std::size_t kMostMovers = 8;  // planned anew at once
+constexpr std::size_t kMostMovers = 8;  // replanned together
 constexpr int kMostConflicts = 400;     // of one mover
-constexpr int kMoreSteps = 20;          // than twice the longest way
+constexpr int kMoreSteps = 20;          // than twice the longest path
 constexpr int kMostDraws = 40;          // of a set of movers
 
 }  // namespace
@@ -51,7 +51,7 @@ Repair::Repair(const Grid& grid, Task task, const StepTables& tables, const std:
   for (MoverIndex i = 0; i < count_; ++i) least_sum_ += Alone(i);
 }
 
-// --- Who is where ---------------------------------------------------------------------------------------------------
+// --- Positions of the movers ----------------------------------------------------------------------------------------
 
 template <typename See>
 void Repair::ForConflicts(int step, PlaceIndex from, PlaceIndex to, const See& see) const {
@@ -126,7 +126,7 @@ void Repair::ForgetConflicts(MoverIndex mover) {
 bool Repair::Search(MoverIndex mover, int conflicts, int bound) {
   const std::vector<std::int32_t>& left = Left(mover);
   const PlaceIndex target = At(task_.targets, mover), start = At(task_.starts, mover);
-  int earliest = 0;  // that it can be at its target for good, if it is in no conflict
+  int earliest = 0;  // first step from which the mover can stay at its target without a conflict
   taken_after_.assign(static_cast<std::size_t>(last_) + 1, 0);
   if (target != kNone) {
     int count = 0;
@@ -159,7 +159,7 @@ bool Repair::Search(MoverIndex mover, int conflicts, int bound) {
   int best_conflicts = conflicts + 1, best_step = 0;
   for (int row = 0; row < std::min(best_conflicts, static_cast<int>(open_.size())); ++row) {
     for (std::size_t estimate = 0; estimate < open_[static_cast<std::size_t>(row)].size() && row < best_conflicts;) {
-      // Pushing may move them: found anew each time.
+      // push may reallocate them: looked up anew each time.
       std::vector<std::int32_t>& cells = open_[static_cast<std::size_t>(row)][estimate];
       if (cells.empty()) {
         ++estimate;
@@ -210,7 +210,7 @@ void Repair::Add(Movers& movers, MoverIndex one) {
   if (std::find(movers.begin(), movers.end(), one) == movers.end()) movers.push_back(one);
 }
 
-// Movers near some of them, within a few steps.
+// Adds movers near some of these within a few steps.
 void Repair::AddThoseNear(Movers& movers, std::size_t most) {
   constexpr int kSteps = 4;
   for (int draw = 0; draw < kMostDraws && movers.size() < most; ++draw) {
@@ -234,7 +234,7 @@ Repair::Movers Repair::SomeInConflict() {
   Movers movers{all[random_.Below(all.size())]};
   const std::size_t most = std::min(2 + random_.Below(kMostMovers - 1), static_cast<std::size_t>(count_));
   switch (random_.Below(3)) {
-    case 0:  // movers in conflict with each other
+    case 0:  // movers in conflict with one another
       for (int draw = 0; draw < kMostDraws && movers.size() < most; ++draw) {
         const Movers& others = At(in_conflict_, movers[random_.Below(movers.size())]);
         if (!others.empty()) Add(movers, others[random_.Below(others.size())]);
@@ -257,12 +257,12 @@ Repair::Movers Repair::SomeDelayed() {
   if (kind == 2) {
     for (std::size_t k = 0; k < most; ++k) Add(movers, static_cast<MoverIndex>(random_.Below(arrivals_.size())));
   } else {
-    // One at random, those with much delay rather than others.
+    // A mover at random, with a probability that is proportional to its delay.
     auto at = static_cast<std::int64_t>(random_.Below(static_cast<std::size_t>(sum_ - least_sum_)));
     MoverIndex late = 0;
     while (late + 1 < count_ && (at -= Delay(late)) >= 0) ++late;
     movers.push_back(late);
-    // Movers on a shorter path of it.
+    // Movers on a shorter path of that mover.
     const std::vector<std::int32_t>& left = Left(late);
     for (int draw = 0; kind == 0 && draw < kMostDraws && movers.size() < most; ++draw) {
       int step = static_cast<int>(random_.Below(static_cast<std::size_t>(std::max(1, At(arrivals_, late)))));
@@ -292,9 +292,9 @@ Repair::Movers Repair::SomeDelayed() {
   return movers;
 }
 
-// --- Planning some anew ---------------------------------------------------------------------------------------------
+// --- Replanning some movers -----------------------------------------------------------------------------------------
 
-// Taken back if there are more conflicts then.
+// Replans these movers; undone if that makes more conflicts.
 void Repair::MendSome(Movers movers) {
   const std::int64_t before = conflicts_;
   std::vector<Steps> old;
@@ -318,7 +318,7 @@ void Repair::MendSome(Movers movers) {
   }
 }
 
-// Taken back if they arrive later then, by more than the heat allows.
+// Replans these movers; undone if their arrivals get later by more than the heat allows.
 void Repair::ImproveSome(Movers movers, double heat) {
   std::int64_t before = sum_, alone = 0;
   std::vector<Steps> old;
@@ -366,7 +366,8 @@ bool Repair::Find(std::int64_t effort) {
     if (!Search(i, kMostConflicts, last_ + 1)) return false;
     Put(i, found_);
   }
-  // Rings may come about without the last of them having been counted: all are counted anew before it is the end.
+  // A ring may form although its last mover has not been counted: all conflicts are counted anew before the search
+  // ends.
   for (;;) {
     for (const MoverIndex i : order) CountConflicts(i);
     if (conflicts_ == 0) return true;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kBisections = 50;
 
-// Distance to rest from velocity v, without acceleration at first.
+// Returns the braking distance from velocity v with an initial acceleration of 0.
 double BrakingDistance(double v, const Dynamics& limits) noexcept {
   if (v <= 0) return 0;
   const double ramp = limits.acceleration / limits.jerk;
@@ -18,7 +18,7 @@ double BrakingDistance(double v, const Dynamics& limits) noexcept {
   return v * std::sqrt(v / limits.jerk);
 }
 
-// The largest t in [0, end] for which `before` holds. Requires: it holds up to some t, and not behind it.
+// Returns the largest t in [0, end] for which `before` holds. Requires: it holds up to some t, and not beyond it.
 template <typename Before>
 double LastOf(double end, const Before& before) noexcept {
   double low = 0, high = end;
@@ -83,9 +83,9 @@ double StraightRun::StopAt(double t) const noexcept {
   const Motion now = MotionAt(t);
   const double j = dynamics_.jerk, q = std::abs(now.a) / j;
   double s = 0;
-  if (now.a >= 0) {  // the acceleration is taken away first
+  if (now.a >= 0) {  // the acceleration is ramped down first
     s = now.s + q * (now.v + q * (now.a / 2 - q * j / 6)) + BrakingDistance(now.v + now.a * q / 2, dynamics_);
-  } else {  // as if it had braked for q already
+  } else {  // as if braking had begun q earlier
     const double v = now.v + now.a * now.a / (2 * j);
     s = now.s - q * (v - q * q * j / 6) + BrakingDistance(v, dynamics_);
   }

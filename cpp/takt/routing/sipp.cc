@@ -7,7 +7,7 @@
 namespace takt::routing {
 namespace {
 
-constexpr double kNext = 1e-6;  // s, behind the end of an interval
+constexpr double kNext = 1e-6;  // [s] after the end of an interval
 
 }  // namespace
 
@@ -40,7 +40,7 @@ double Sipp::Departure(const Timetable& timetable, PlaceIndex place, Direction l
         at = std::max(at, later);
       }
       if (k < count) continue;
-      // It rests there from its arrival on.
+      // The mover rests there from its arrival on.
       for (std::size_t i = timetable.FirstEndingAfter(here, at + duration);
            i < stays.size() && stays[i].from <= at + duration + kTimeRounding; ++i) {
         if (stays[i].to == kForever) return kForever;
@@ -73,10 +73,10 @@ std::optional<Legs> Sipp::Find(const Timetable& timetable, const Query& query) {
   const std::vector<double>& alone = *query.alone;
   const auto left = [&](PlaceIndex place) { return alone[static_cast<std::size_t>(place)]; };
   if (left(query.start) == kForever) return std::nullopt;
-  // Nobody is at its target for good before others have passed it for the last time.
+  // The mover cannot stay at its target before all others have passed it for the last time.
   const double last_end = timetable.LastEnd(query.target);
   if (last_end == kForever) return std::nullopt;
-  using Entry = std::tuple<double, double, std::int32_t>;  // estimate, rest of it, state
+  using Entry = std::tuple<double, double, std::int32_t>;  // estimate of the arrival, its part still ahead, state
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   const auto push = [&](const State& state) {
     double estimate = state.time + query.weight * left(state.place);
@@ -113,7 +113,7 @@ std::optional<Legs> Sipp::Find(const Timetable& timetable, const Query& query) {
         const double duration = grid_.Duration(count);
         double from = state.time;
         if (from + duration + left(to) >= query.bound) continue;
-        // Where it has been as early already, only a later interval is of use.
+        // If the place has been reached as early already, only a later interval is of use.
         const std::vector<Earliest>& there = earliest_[static_cast<std::size_t>(to)];
         for (bool again = true; again && from < kForever;) {
           again = false;

@@ -18,7 +18,7 @@ constexpr double kStraightOn = 0.3;
 constexpr double kHindrance = 0.2;  // for each neighbour that would get nearer to its target there
 constexpr double kNoReason = 0.6;   // to leave, without a target
 
-// The next step by PIBT.
+// Computes the next step with PIBT.
 class Stepper {
  public:
   Stepper(const Grid& grid, const Task& task, const StepTables& tables, std::uint64_t seed)
@@ -42,7 +42,7 @@ class Stepper {
     PlaceIndex place;
   };
 
-  // Returns whether there is a step from `now` that keeps to the constraints; it is in `next` then.
+  // Returns true if there is a step from `now` that satisfies the constraints; it is in `next` then.
   bool Make(const Configuration& now, const Configuration* before, const std::vector<MoverIndex>& order,
             const std::vector<Constraint>& constraints, Configuration& next) {
     now_ = &now;
@@ -61,7 +61,7 @@ class Stepper {
     for (std::size_t k = 0; good && k < order.size(); ++k) {
       if (At(next_, order[k]) == kNone) Choose(order[k]);
     }
-    // A mover that has to stay, but is in the way of a constraint.
+    // Fails if a mover that has to stay is in the way of a constraint.
     for (MoverIndex i = 0; good && i < count; ++i) good = At(who_next_, At(next_, i)) == i;
     for (const PlaceIndex place : now) At(who_next_, place) = kNone;
     for (const PlaceIndex place : next_) {
@@ -81,7 +81,7 @@ class Stepper {
     At(who_next_, place) = mover;
   }
 
-  // Would the mover, if it entered the place, wait for itself over others?
+  // Returns true if the mover, by entering the place, would wait for itself through other movers.
   bool ClosesRing(MoverIndex mover, PlaceIndex place) const {
     for (;;) {
       const MoverIndex other = At(who_now_, place);
@@ -133,7 +133,7 @@ class Stepper {
       Take(mover, place);
       const MoverIndex other = At(who_now_, place);
       if (other != kNone && other != mover && At(next_, other) == kNone && !Choose(other)) {
-        At(next_, mover) = kNone;  // the other one stays, and the place is its own
+        At(next_, mover) = kNone;  // the other mover stays, and keeps the place
         continue;
       }
       At(asked_, mover) = false;
@@ -150,7 +150,7 @@ class Stepper {
 
   // --- PIBT's swap rule: two movers that have to pass each other in a narrow place back out of it together ---
 
-  // Places that lead on from `at`, if one comes from `from`; the last of them.
+  // Returns the number of places that lead on from `at`, coming from `from`; `next`: the last of them.
   int Onwards(PlaceIndex from, PlaceIndex at, PlaceIndex& next) const {
     int count = 0;
     for (const PlaceIndex place : grid_.beside(at)) {
@@ -203,7 +203,7 @@ class Stepper {
     return kNone;
   }
 
-  // Only moves into empty places, and straight on behind a mover that moves likewise.
+  // Keeps only moves into empty places, and straight on behind a mover that moves in the same direction.
   void KeepWhatCanBeDone() {
     for (bool again = true; again;) {
       again = false;
@@ -240,7 +240,7 @@ struct Hash {
   }
 };
 
-// One configuration of the search.
+// A configuration of the search.
 struct Node {
   Configuration places;
   const Node* parent = nullptr;
@@ -278,7 +278,7 @@ StepSearch FindSteps(const Grid& grid, const Task& task, const StepTables& table
     node.parent = parent;
     for (MoverIndex i = 0; i < count; ++i) {
       const std::int32_t left = stepper.Left(i, At(places, i));
-      // Who has been on its way for long comes first.
+      // Movers that have been under way longest come first.
       double priority = left / 1e4;
       if (parent) {
         const double its = At(parent->priorities, i);
@@ -339,7 +339,7 @@ std::optional<std::vector<Configuration>> SwapTargets(const Grid& grid, Task& ta
   const auto count = static_cast<MoverIndex>(now.size());
   std::vector<MoverIndex> who(static_cast<std::size_t>(grid.size()), kNone);
   for (MoverIndex i = 0; i < count; ++i) At(who, At(now, i)) = i;
-  const auto wants = [&](MoverIndex mover) {  // the place it would move to; an empty one rather than another
+  const auto wants = [&](MoverIndex mover) {  // the place to which it would move, preferably an empty one
     const auto& left = tables.at(At(targets, mover));
     const PlaceIndex here = At(now, mover);
     PlaceIndex best = here;
@@ -371,7 +371,7 @@ std::optional<std::vector<Configuration>> SwapTargets(const Grid& grid, Task& ta
         std::swap(At(targets, i), At(targets, other));
         continue;
       }
-      // Movers of which each wants the place of the next: their targets go round instead.
+      // A ring of movers, each of which wants the place of the next: their targets rotate instead.
       std::vector<MoverIndex> ring{i};
       bool closed = false;
       for (MoverIndex at = other; at != kNone;) {

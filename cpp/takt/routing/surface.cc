@@ -15,17 +15,16 @@
 namespace takt::routing {
 namespace {
 
-constexpr std::int64_t kStepEffort = 4'000'000;  // places looked at for a first plan; by mover and step
+constexpr std::int64_t kStepEffort = 4'000'000;  // places examined for a first plan, by mover and step
 constexpr std::int64_t kLeastSteps = 5'000;
-constexpr int kSeeds = 8;                     // first plans, of which the best is taken; with few movers
-constexpr std::int64_t kMoversPerSeed = 400;  // ... of 8 seeds: with more movers fewer seeds
+constexpr int kSeeds = 8;                     // first plans, of which the best is taken, if movers are few
+constexpr std::int64_t kMoversPerSeed = 400;  // seeds times movers at most, but at least one seed
 constexpr int kTurns = 6;                     // tries of prioritised planning
-constexpr std::int64_t kTurnStates = 4'000;   // states that those may take
-constexpr double kCrowded = 1.5;              // of the lower bound: above, movers are in the way of others
+constexpr std::int64_t kTurnStates = 4'000;   // states that these may expand
+constexpr double kCrowded = 1.5;              // of the lower bound; above it, movers obstruct one another
 constexpr int kShares = 6;                    // of the effort: see below
 
-// Which mover of a pool takes which of its targets, by the times alone. Returns a mover that reaches none; kNone: all
-// do.
+// Assigns the targets of a pool to its movers, by the times alone. Returns a mover that reaches none; kNone: all do.
 MoverIndex AssignTargets(PoolIndex pool, const std::vector<PoolIndex>& pools, Alone& alone, Task& task) {
   std::vector<MoverIndex> members;
   std::vector<PlaceIndex> targets;
@@ -53,7 +52,7 @@ void MakeVisits(const Grid& grid, const SurfaceProblem& problem, SurfacePlan& pl
   std::vector<std::vector<ByTime>> at(static_cast<std::size_t>(grid.size()));
   const auto add = [&](MoverIndex mover, PlaceIndex place, double entry, double middle) {
     std::vector<Visit>& visits = plan.visits[static_cast<std::size_t>(mover)];
-    // By its middle: in one lane a follower may be bound to a place before its leader has reached it.
+    // By the passage of its centre: in one lane a follower may be bound to a place before its leader has reached it.
     at[static_cast<std::size_t>(place)].emplace_back(middle, mover, static_cast<std::int32_t>(visits.size()));
     visits.push_back({.place = place, .entry = entry});
   };
@@ -136,22 +135,22 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
         }
       }
       if (!best) {
-        const bool impossible =
-            found.exhausted &&
-            (different.empty() || different == std::set<PoolIndex>{kNone});  // another assignment might do
+        // With pools, another assignment might have a solution.
+        const bool impossible = found.exhausted && (different.empty() || different == std::set<PoolIndex>{kNone});
         return {.outcome = impossible ? Outcome::kImpossible : Outcome::kGivenUp};
       }
     }
   }
   offer(PlanInTurn(grid, task, alone, kTurns, kTurnStates));
   result.first_sum = SumOf(grid, *best);
-  // A mover without a target ends where the plan that is improved leaves it.
+  // A mover without a target ends where the plan under improvement leaves it.
   const auto improve = [&](Plan plan, std::int64_t effort) {
     return Improve(grid, task, alone, std::move(plan), {.effort = effort, .seed = problem.seed, .pools = pools});
   };
   std::int64_t left = problem.effort;
   if (!steps.empty() && result.first_sum > kCrowded * result.lower_bound) {
-    // A share for the first plan, two for better steps, one for the plan that these become; the rest for the better.
+    // One share for the first plan, two for better steps, one for the plan composed of these; the rest for the better
+    // of both.
     const std::int64_t share = problem.effort / kShares;
     BetterSteps better(grid, task, tables, pools, {.effort = share, .seed = problem.seed});
     if (better.Worthwhile()) {
