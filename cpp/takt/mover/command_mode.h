@@ -18,7 +18,7 @@ enum class CommandMode : std::uint8_t {
   kLeavingTrack,                // in: a move from a track. out: the move is over
   kCRotationFreeMovement,       // in: a turn out of a window, enabled outside of them. out: at rest within one
   kCRotationOnTrack,            // the same on a track
-  kExternalSetpointGeneration,  // in: absolute set points from outside. out: at rest after them
+  kExternalSetpointGeneration,  // in: absolute external set points. out: at rest after them
   kFormation,                   // in: a formation joined. out: left, or dissolved
 };
 inline constexpr int kCommandModes = 8;

@@ -339,7 +339,7 @@ struct ContinueRoute {};  // resumes the route that a halt, a fault or another c
 
 using MoverNumbers = InlineVector<std::uint32_t, 1000>;  // from 1, in the order of the machine file
 
-// Starts at once the routes that movers received with SetRoute. The target of the command is the machine.
+// Starts together the routes that movers have received with SetRoute. The target of the command is the machine.
 struct StartRoutes {
   std::optional<double> velocity{};      // [mm/s]
   std::optional<double> acceleration{};  // [mm/s²]

@@ -38,7 +38,7 @@ struct Fleet {
   SurfaceRoutes* routes = nullptr;  // of all movers
 };
 
-// Context of every stage besides the mover's own state.
+// Context of every stage, in addition to the mover's own state.
 struct Context {
   const MoverParams& params;
   Cycle cycle;

@@ -18,7 +18,7 @@ class Sipp {
   struct Query {
     PlaceIndex start = 0, target = 0;
     const std::vector<double>* alone = nullptr;  // Grid::TimesTo(target)
-    double bound = kForever;                     // [s] the arrival has to be before
+    double bound = kForever;                     // [s] exclusive upper bound of the arrival
     double weight = 1;           // of the estimate; above 1: faster search, suboptimal up to this factor
     std::int64_t most = 30'000;  // states expanded before the search gives up
   };

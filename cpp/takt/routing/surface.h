@@ -49,7 +49,7 @@ struct Visit {
 enum class Outcome : std::uint8_t {
   kPlanned,
   kUnreachable,  // a target cannot be reached, whatever the other movers do; or a pool reaches too few targets
-  kImpossible,   // every order of passing has been excluded
+  kImpossible,   // the complete search has found no solution
   kGivenUp,
 };
 
