@@ -1,4 +1,4 @@
-// Commands that wait for their turn: PL-71; why a mover does not go on: PL-70.
+// Buffered commands: PL-71; why a mover does not move on: PL-70.
 #include "takt/mover/buffer.h"
 
 #include "rig.h"
@@ -24,7 +24,7 @@ TEST(MoverBuffer, EachBeginsWhenTheOneBeforeIsDoneAndSaysHowLongItTook) {
   rig.Step();
   EXPECT_EQ(rig.Of(first).state, FeedbackState::kActive);
   EXPECT_EQ(rig.out.buffered, 2u);
-  for (const Ticket waits : {second, third}) {  // and both know that they were taken
+  for (const Ticket waits : {second, third}) {  // both are reported as accepted
     EXPECT_EQ(rig.Of(waits).ticket, waits);
     EXPECT_EQ(rig.Of(waits).state, FeedbackState::kBusy);
   }
@@ -44,7 +44,7 @@ TEST(MoverBuffer, EachBeginsWhenTheOneBeforeIsDoneAndSaysHowLongItTook) {
   EXPECT_EQ(history.records[3].begun, history.records[2].changed + 1);
 }
 
-// On one line, far enough ahead, two moves are one: no time is lost.
+// Two moves on one line, with the second one known early enough, are as fast as one move.
 TEST(MoverBuffer, GoesOnAlongALineAsIfItWereOneMove) {
   Rig one, two;
   one.Enable();
@@ -58,10 +58,10 @@ TEST(MoverBuffer, GoesOnAlongALineAsIfItWereOneMove) {
     two.Step();
     watch.Look();
   }
-  EXPECT_NEAR(cycles, alone, 5);  // it looks some cycles ahead, and the jerk turns twice
+  EXPECT_NEAR(cycles, alone, 5);  // it takes over some cycles early, and the jerk changes its sign twice
 }
 
-// Round a square: it does not stop at the corners, cuts them by no more than it may, and keeps its limits.
+// Around a square: the mover does not stop at the corners, cuts them by no more than allowed, and keeps its limits.
 TEST(MoverBuffer, BlendsAtCorners) {
   for (const double blending : {20.0, 60.0, 100.0}) {
     Rig rig;
@@ -86,7 +86,7 @@ TEST(MoverBuffer, BlendsAtCorners) {
     EXPECT_GT(slowest, 1) << blending;
     EXPECT_EQ(rig.out.x, 0);
     EXPECT_EQ(rig.out.y, 0);
-    // Each is done where the next one took over.
+    // Each move is done where the next one took over.
     EXPECT_EQ(rig.Of(rest[0]).state, FeedbackState::kDone);
     Rig stops;
     stops.Enable();
@@ -126,13 +126,13 @@ TEST(MoverBuffer, WaitsForARelease) {
   rig.Give(Release{});
   rig.Finish(move);
   EXPECT_EQ(rig.out.x, 100);
-  // One that came first is there for a later wait, once.
+  // An early release serves a later wait, once.
   rig.Give(Release{});
   EXPECT_EQ(rig.Become(rig.Give(Wait{.for_release = true})), FeedbackState::kDone);
   const Ticket again = rig.Give(Wait{.for_release = true});
   rig.Run(100);
   EXPECT_EQ(rig.Of(again).state, FeedbackState::kActive);
-  // Both: at least so long, and until a release.
+  // Both: at least the duration, and until a release.
   rig.Give(Halt{});
   EXPECT_EQ(rig.Of(again).state, FeedbackState::kAborted);
   const Ticket both = rig.Give(Wait{.duration = 0.1, .for_release = true});
@@ -143,7 +143,7 @@ TEST(MoverBuffer, WaitsForARelease) {
   EXPECT_EQ(rig.Of(both).state, FeedbackState::kDone);
 }
 
-// A release that is there in time costs nothing.
+// A release that is there in time costs no time.
 TEST(MoverBuffer, AReleaseInTimeDoesNotStopIt) {
   Rig rig;
   rig.Enable();
@@ -193,7 +193,7 @@ TEST(MoverBuffer, IsEmptiedByWhatTakesOver) {
     EXPECT_LT(rig.out.x, 150) << how;
     EXPECT_EQ(rig.out.buffered, 0u);
   }
-  // Z is its own.
+  // Z is independent.
   Rig rig;
   rig.Enable();
   rig.Give(MoveToPosition{.x = 100});
@@ -202,7 +202,7 @@ TEST(MoverBuffer, IsEmptiedByWhatTakesOver) {
   EXPECT_EQ(rig.Become(next), FeedbackState::kDone);
 }
 
-// What cannot be done in its turn takes those behind it with it: who skips a move must not do the rest.
+// A command that fails in its turn aborts the ones behind it: after a skipped move, the rest must not be executed.
 TEST(MoverBuffer, AFailureEndsWhatIsBehind) {
   Rig rig;
   rig.Enable();
@@ -215,8 +215,8 @@ TEST(MoverBuffer, AFailureEndsWhatIsBehind) {
   EXPECT_EQ(rig.out.x, 100);
 }
 
-// What turns or lifts it, given later, holds back nothing that was given before, nor its blending; given before, it
-// does.
+// A rotation or lift given later delays neither the buffered commands given before it nor their blending; given before,
+// it does.
 TEST(MoverBuffer, AuxiliaryMovesGivenLaterLeaveItAlone) {
   int alone = 0;
   for (const bool lifts : {false, true}) {
@@ -247,7 +247,7 @@ TEST(MoverBuffer, AuxiliaryMovesGivenLaterLeaveItAlone) {
   }
 }
 
-// Set points on top of all that a mover does leave its buffer alone.
+// Relative external set points do not affect the buffer.
 TEST(MoverBuffer, GoesOnUnderRelativeSetPoints) {
   Rig rig;
   rig.Enable();
@@ -281,8 +281,8 @@ planar::Parts TwoHalves() {
   return {{"plane"}, {part("left", -1920), part("right", 0)}, {{.enabled = true}, {.enabled = true}}};
 }
 
-// Whatever is buffered and blended, released and turned, and comes on top: limits are kept, each command ends once, and
-// a move that no other one takes over without a stop is done where it was to go. Each in the order it was given.
+// Random buffered and blended moves, releases, rotations and relative set points: limits are kept, each command ends
+// once, in the order of the commands, and a move that no other one takes over without a stop is done at its target.
 TEST(MoverBuffer, PropertyKeepsLimits) {
   std::mt19937 random(3);
   const auto between = [&](double a, double b) { return std::uniform_real_distribution(a, b)(random); };
@@ -291,7 +291,7 @@ TEST(MoverBuffer, PropertyKeepsLimits) {
   struct Wish {
     Ticket ticket = 0;
     double x = 0, y = 0;
-    double blended = 0;  // mm, by what comes behind it
+    double blended = 0;  // [mm] by the next move
   };
   int done = 0, rounded = 0, failed = 0, released = 0, beside = 0;
   for (int run = 0; run < 60; ++run) {
@@ -304,10 +304,10 @@ TEST(MoverBuffer, PropertyKeepsLimits) {
     rig.Enable();
     Watch watch(rig);
     std::vector<Wish> wishes;
-    bool reckoned = true;  // X and Y are where moves lead
+    bool reckoned = true;  // X and Y are at the targets of the moves
     const auto run_cycles = [&](int cycles, double amplitude = 0) {
       for (int k = 0; k < cycles; ++k) {
-        if (amplitude != 0) {  // there and back, smoothly
+        if (amplitude != 0) {  // out and back, smoothly
           const double u = static_cast<double>(k) / cycles, q = u * (1 - u), slope = 1 - 2 * u, w = 1000.0 / cycles;
           rig.Give(SetExternalSetpoint{.x = amplitude * 64 * q * q * q,
                                        .velocity_x = amplitude * 192 * w * q * q * slope,
@@ -366,7 +366,7 @@ TEST(MoverBuffer, PropertyKeepsLimits) {
         rig.Give(StartExternalSetpointGeneration{.mode = SetpointMode::kRelative});
         run_cycles(Whole(random, 200, 400), between(0.1, 5));
         if (chance(0.5)) rig.Give(StopExternalSetpointGeneration{});
-        // Else none comes any more: a fault.
+        // Otherwise no further set point arrives: a fault.
         watch = Watch(rig);
         reckoned = false;
         for (int k = 0; k < 600; ++k) {

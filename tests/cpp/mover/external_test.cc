@@ -1,4 +1,4 @@
-// PL-13: set points from outside.
+// PL-13: external set points.
 #include <functional>
 #include <numbers>
 
@@ -65,7 +65,7 @@ TEST(MoverExternal, AProfileIsFollowedAndStopped) {
   EXPECT_EQ(rig.out.command_mode, CommandMode::kFreeMovement);
 }
 
-// From any place of a circle, where velocity and acceleration point different ways, it stops within its limits.
+// From any point of a circle, where velocity and acceleration differ in direction, the mover stops within its limits.
 TEST(MoverExternal, StopsFromCurvesWithinItsLimits) {
   for (int cycles = 50; cycles < 1500; cycles += 37) {
     for (const int how : {0, 1, 2}) {
@@ -98,13 +98,13 @@ TEST(MoverExternal, StopsFromCurvesWithinItsLimits) {
   }
 }
 
-// What the mover cannot do is an error, and it never jumps.
+// A set point that the mover cannot follow is an error, and the mover never jumps.
 TEST(MoverExternal, WildSetPointsAreErrors) {
   using Change = std::function<void(SetExternalSetpoint&)>;
   const std::vector<Change> changes = {
       [](auto& p) { p.x += 0.1; },
       [](auto& p) { p.velocity_y += 30; },
-      [](auto& p) {  // 9 mm/s more than the acceleration makes
+      [](auto& p) {  // 9 mm/s more than follows from the acceleration
         const double more = 9 / std::hypot(p.acceleration_x, p.acceleration_y);
         p.velocity_x += more * p.acceleration_x;
         p.velocity_y += more * p.acceleration_y;
@@ -143,7 +143,7 @@ TEST(MoverExternal, WildSetPointsAreErrors) {
   }
 }
 
-// One that is within all limits, but leads beyond the largest speed whatever the mover does then.
+// A set point within all limits that leads beyond the maximum speed whatever the mover does then.
 TEST(MoverExternal, SpeedsThatCannotBeHeldAreWild) {
   Rig rig;
   rig.Enable();
@@ -151,7 +151,7 @@ TEST(MoverExternal, SpeedsThatCannotBeHeldAreWild) {
   double x = 0;
   double v = 0;
   for (int i = 1; rig.out.error == ErrorId::kNone; ++i) {
-    const double a = std::min(9000.0, 180.0 * i);  // as jerk allows
+    const double a = std::min(9000.0, 180.0 * i);  // as the jerk allows
     const double before = std::min(9000.0, 180.0 * (i - 1));
     x += 0.001 * v + 1e-6 * (before / 3 + a / 6);
     v += 0.0005 * (before + a);
@@ -160,14 +160,14 @@ TEST(MoverExternal, SpeedsThatCannotBeHeldAreWild) {
     rig.Step();
   }
   EXPECT_EQ(rig.out.error, ErrorId::kWildSetPoint);
-  // a² / 2j is what it takes to get rid of 9000 mm/s².
+  // a² / 2j: the velocity gained while 9000 mm/s² are ramped down.
   EXPECT_NEAR(v, 2000 - 9000.0 * 9000 / (2 * 200000), 9.1);
   Watch watch(rig);
   for (int i = 0; i < 1000; ++i) {
     rig.Step();
     watch.Look();
   }
-  // Nor may it be faster for as long as it brakes.
+  // Nor may it be faster while it brakes.
   const auto can = [&](double from, double to) {
     SetPoint before{};
     SetPoint after{};
@@ -179,7 +179,8 @@ TEST(MoverExternal, SpeedsThatCannotBeHeldAreWild) {
   EXPECT_FALSE(can(1996, 2001));
 }
 
-// Where a coordinate could not stop any more within its limits, or C within its window while X and Y move, it is wild.
+// A set point is wild if a coordinate could no longer stop within its limits, or C within its window while X and Y
+// move.
 TEST(MoverExternal, WhatCannotStopWithinLimitsIsWild) {
   struct Case {
     SetpointMode mode;
@@ -215,17 +216,17 @@ TEST(MoverExternal, WhatCannotStopWithinLimitsIsWild) {
       if (rig.out.error == ErrorId::kNone) rig.Give(p);
       rig.Step();
       if (watch) watch->Look(rig.out.error == ErrorId::kNone);
-      if (!watch) watch.emplace(rig);  // it begins with its acceleration
+      if (!watch) watch.emplace(rig);  // the motion begins with an acceleration
       most = std::max(most, std::abs(rig.state.set_point[k.coordinate].position));
     }
     EXPECT_EQ(rig.out.error, ErrorId::kWildSetPoint);
     EXPECT_TRUE(AtRest(rig.state));
     EXPECT_LE(most, std::abs(k.limit) + 1e-6) << k.coordinate;
-    EXPECT_GT(most, 0.8 * std::abs(k.limit)) << k.coordinate;  // not sooner than it has to be
+    EXPECT_GT(most, 0.8 * std::abs(k.limit)) << k.coordinate;  // no sooner than necessary
   }
 }
 
-// From the start on they are due.
+// Set points are due from the start on.
 TEST(MoverExternal, NoneAtAllIsAnErrorToo) {
   for (const std::uint32_t missing : {1u, 4u}) {
     for (const SetpointMode mode : {SetpointMode::kAbsolute, SetpointMode::kRelative}) {
@@ -242,7 +243,7 @@ TEST(MoverExternal, NoneAtAllIsAnErrorToo) {
   }
 }
 
-// So many may be missing as the machine file says; meanwhile it goes on as it went.
+// As many may be missing as the machine file allows; meanwhile the motion is extrapolated.
 TEST(MoverExternal, SomeMayBeMissing) {
   Rig rig({.missing_setpoints = 4});
   rig.Enable();
@@ -263,7 +264,7 @@ TEST(MoverExternal, SomeMayBeMissing) {
   EXPECT_EQ(rig.out.error, ErrorId::kNoSetPoint);
 }
 
-// PL-13: relative ones come on top of a move, in its mode; their stop brings the mover to rest.
+// PL-13: relative set points are added to a move, in its mode; their stop brings the mover to rest.
 TEST(MoverExternal, RelativeSetPointsComeOnTop) {
   Rig rig, alone;
   for (Rig* r : {&rig, &alone}) {
@@ -294,7 +295,7 @@ TEST(MoverExternal, RelativeSetPointsComeOnTop) {
   EXPECT_EQ(rig.Become(rig.Give(MoveToPosition{})), FeedbackState::kDone);
 }
 
-// C from outside goes where it is told; where it ends the mode says.
+// External set points may turn C anywhere; the mode follows from the final angle.
 TEST(MoverExternal, ATurnFromOutsideMayEndOutsideTheWindows) {
   Rig rig;
   rig.Enable();
@@ -309,7 +310,7 @@ TEST(MoverExternal, ATurnFromOutsideMayEndOutsideTheWindows) {
   EXPECT_EQ(rig.out.command_mode, CommandMode::kCRotationFreeMovement);
 }
 
-// Turned out of its windows X and Y stay where they are, whoever wants to move them.
+// Turned out of its windows, X and Y stay locked for every source of motion.
 TEST(MoverExternal, XAndYAreLockedOutsideTheWindows) {
   Rig rig({.initial = {.c = 40}});
   rig.Enable();

@@ -1,4 +1,4 @@
-// PL-73, PL-51: formations in a group of movers: the area of all members is asked for and reserved.
+// PL-73, PL-51: formations in a group of movers: the area of all members is checked and reserved.
 #include <algorithm>
 
 #include "../core/trials.h"
@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kCell = 1;
 
-// Four in a square, and one more that is free, in a group that watches.
+// Four movers in a square, and one more that is free, in an enabled group.
 class Cell : public Troop {
  public:
   explicit Cell(std::vector<MoverParams> params, int members = 4) : Troop(std::move(params)), members_(members) {
@@ -49,7 +49,7 @@ constexpr ObjectInfo Mover(std::uint32_t number) {
   return {ObjectKind::kMover, number};
 }
 
-// The star's own way is free; a planet's is not.
+// The path of the star is free; that of a planet is not.
 TEST(FormationGroup, RefusesWhatAPlanetWouldMeet) {
   Cell t(SquareAnd(600, 120));
   t.Begin();
@@ -61,7 +61,7 @@ TEST(FormationGroup, RefusesWhatAPlanetWouldMeet) {
   EXPECT_EQ(t.Become(t.Give(4, MoveToPosition{.x = 120, .y = 120})), FeedbackState::kDone);
 }
 
-// What a planet sweeps as the body turns: the corner of m2 goes along a circle of 169.7 + 79.9 mm about m0.
+// The area that a planet sweeps as the body turns: the corner of m2 moves on a circle of 169.7 + 79.9 mm about m0.
 TEST(FormationGroup, RefusesWhatATurnWouldMeet) {
   for (const double x : {-280.0, -312.0}) {
     Cell t(SquareAnd(x, 0));
@@ -77,7 +77,7 @@ TEST(FormationGroup, RefusesWhatATurnWouldMeet) {
   }
 }
 
-// What the body has left is free again while it still moves.
+// The area that the body has left is free again while it still moves.
 TEST(FormationGroup, LeavesWhatIsBehindIt) {
   for (const double turned : {0.0, 40.0}) {
     Cell t(SquareAnd(60, 400));
@@ -108,7 +108,7 @@ TEST(FormationGroup, StaysWithinTheBorder) {
   EXPECT_EQ(t.Become(move), FeedbackState::kDone);
 }
 
-// Two formations and movers of their own among each other: nobody meets anybody, whatever fails in whatever cycle.
+// Two formations and single movers among each other: no two ever overlap, whatever fails in whatever cycle.
 TEST(FormationGroup, PropertyNothingMeets) {
   const int seeds = Trials(12, 50);
   int accepted = 0, refused = 0, turned = 0;

@@ -26,7 +26,7 @@ TEST(MoverFormation, PlanetsKeepTheirPlaceAroundTheStar) {
   for (const Outputs& out : t.outs) EXPECT_EQ(out.formation, 1u);
   const Ticket move = t.Give(0, MoveToPosition{.x = 900, .y = 700, .c = 90, .use_orientation = true});
   EXPECT_EQ(t.Become(move), FeedbackState::kDone);
-  // Turned by a quarter about the star: (x, y) becomes (-y, x).
+  // Turned by 90 deg about the star: (x, y) becomes (-y, x).
   EXPECT_NEAR(t.outs[1].x, 900, 1e-9);
   EXPECT_NEAR(t.outs[1].y, 1000, 1e-9);
   EXPECT_NEAR(t.outs[2].x, 600, 1e-9);
@@ -47,8 +47,8 @@ TEST(MoverFormation, PlanetsKeepTheirPlaceAroundTheStar) {
   EXPECT_EQ(t.Become(t.Give(2, MoveToPosition{.x = 700, .y = 700})), FeedbackState::kDone);
 }
 
-// The slowest one of all says how fast X and Y are, as long as the body does not turn; and the one furthest away how
-// fast it turns where it stands.
+// The slowest member limits X and Y while the body does not turn; the member furthest away limits the rotation in
+// place.
 TEST(MoverFormation, KeepsTheLimitsOfTheSlowest) {
   std::vector<MoverParams> params = Plate();
   params[2].xy.maximum = {300, 4000, 3000.0, 50000};
@@ -70,13 +70,13 @@ TEST(MoverFormation, KeepsTheLimitsOfTheSlowest) {
   }
   EXPECT_EQ(t.Of(turn).state, FeedbackState::kDone);
   EXPECT_NEAR(quickest, 300, 1e-6);
-  // Too fast a wish is reduced, and said.
+  // A velocity that is too high is reduced, and reported.
   t.Give(0, MoveToPosition{.x = 0, .y = 0, .velocity = 301});
   t.Step();
   EXPECT_EQ(t.outs[0].limited_by, LimitedBy::kVelocity);
 }
 
-// Where the jerk of the planets is what binds, turning takes most of it and not more.
+// If the jerk of the planets is the binding limit, turning uses most of it and no more.
 TEST(MoverFormation, TurnsWithinTheJerkOfThePlanets) {
   std::vector<MoverParams> params = {Turning(0, 0), Turning(300, 400), Turning(-500, 0)};
   for (MoverParams& p : params) {
@@ -96,7 +96,7 @@ TEST(MoverFormation, TurnsWithinTheJerkOfThePlanets) {
   EXPECT_GT(most, 7000);
 }
 
-// What began with all there is has to be over before the other begins; what began together goes on together.
+// A motion that began alone has to be over before the other begins; motions that began together continue together.
 TEST(MoverFormation, TurnsAndMovesAtOnceOnlyFromRest) {
   Troop t(Plate());
   t.Form();
@@ -116,8 +116,8 @@ TEST(MoverFormation, TurnsAndMovesAtOnceOnlyFromRest) {
   EXPECT_EQ(t.Become(other), FeedbackState::kDone);
 }
 
-// Where X, Y and C begin at once, each gets the share of the dynamics with which all are there first: a small turn
-// costs hardly anything, and so does a short way.
+// If X, Y and C begin at once, the shares of the dynamics minimise the total time: a small turn or a short path costs
+// hardly anything.
 TEST(MoverFormation, SharesTheDynamicsWell) {
   const auto takes = [](double x, double c) {
     Troop t(Plate());
@@ -131,7 +131,7 @@ TEST(MoverFormation, SharesTheDynamicsWell) {
   EXPECT_LT(takes(10, 150), 1.1 * turn);
   const double both = takes(1500, 150);
   EXPECT_GT(both, std::max(straight, turn));
-  EXPECT_LT(both, straight + turn);  // than one behind the other
+  EXPECT_LT(both, straight + turn);  // than one after the other
 }
 
 TEST(MoverFormation, WhatAPlanetAccepts) {
@@ -151,7 +151,7 @@ TEST(MoverFormation, WhatAPlanetAccepts) {
   EXPECT_EQ(t.Of(t.Give(1, LeaveFormation{})).object, (ObjectInfo{ObjectKind::kMover, 1}));
 }
 
-// Who can be a planet of whom.
+// Which movers can be a planet of which star.
 TEST(MoverFormation, RefusesWhatIsNoFormation) {
   Troop t(Plate());
   const auto refused = [&](std::uint32_t mover, const char* star, ErrorId error, std::uint32_t object) {
@@ -204,7 +204,7 @@ TEST(MoverFormation, KeepsTheWindowsOfAll) {
   EXPECT_NEAR(t.outs[2].c, 75, 1e-9);
 }
 
-// A planet that is lost brings all to rest, as one body, and drops out there; the others stay.
+// A lost planet brings all to rest, as one body, and drops out there; the others stay.
 TEST(MoverFormation, APlanetThatIsLostStopsAll) {
   const auto lose = [](const auto& how, ObjectState becomes, FeedbackState join) {
     std::vector<MoverParams> params = Plate();
@@ -247,7 +247,7 @@ TEST(MoverFormation, APlanetThatIsLostStopsAll) {
   EXPECT_EQ(lose([](Troop& t) { t.inputs[2].actual.x += 3; }, ObjectState::kError, kError), 0u);
 }
 
-// A star that is lost brakes its planets with it, and they are free again at rest.
+// A lost star brakes its planets with it, and they are free again at rest.
 TEST(MoverFormation, AStarThatIsLostEndsIt) {
   const auto lose = [](const auto& how, ObjectState becomes) {
     Troop t(Plate());
@@ -271,7 +271,7 @@ TEST(MoverFormation, AStarThatIsLostEndsIt) {
       EXPECT_EQ(t.outs[i].formation, 0u);
     }
     EXPECT_EQ(t.outs[0].formation, 0u);
-    // Away from the others, which stand where they were.
+    // Away from the others, which are at rest where they were.
     const Complex away = 2.0 * PlaceOf(t.states[1].set_point) - PlaceOf(t.states[0].set_point);
     EXPECT_EQ(t.Become(t.Give(1, MoveToPosition{.x = away.real(), .y = away.imag()})), FeedbackState::kDone);
   };
@@ -296,13 +296,13 @@ TEST(MoverFormation, AHaltStopsAll) {
   }
 }
 
-// Set points from outside carry the planets, too; each of them is held against the limits of all.
+// External set points move the planets, too; each of them is checked against the limits of all members.
 TEST(MoverFormation, FollowsSetPointsFromOutside) {
   const auto run = [](double turns_per_s) {
     Troop t(Plate());
     t.Form();
     const Ticket begun = t.Give(0, StartExternalSetpointGeneration{SetpointMode::kAbsolute});
-    const double pi = std::numbers::pi, w = 360 * turns_per_s;  // deg/s at most, of a swing
+    const double pi = std::numbers::pi, w = 360 * turns_per_s;  // [deg/s] peak of an oscillation
     for (int i = 1; i < 1000 && !IsFinal(t.Of(begun).state); ++i) {
       const double at = 0.001 * i;
       t.Give(0, SetExternalSetpoint{.x = 200 + 50 * (1 - std::cos(2 * pi * at)),
@@ -324,7 +324,7 @@ TEST(MoverFormation, FollowsSetPointsFromOutside) {
   EXPECT_EQ(run(0.8).error, ErrorId::kWildSetPoint);
 }
 
-// Whatever set points lead, and stop or fail in whatever cycle, no member exceeds its speed or acceleration.
+// Random external set points that stop or fail in any cycle: no member exceeds its speed or acceleration.
 TEST(MoverFormation, PropertyStopsFromSetPointsFromOutside) {
   const int seeds = Trials(60, 50);
   int faults = 0;
@@ -335,10 +335,10 @@ TEST(MoverFormation, PropertyStopsFromSetPointsFromOutside) {
     Troop t({Turning(0, 0), Turning(300, 0), Turning(200, -400)});
     t.Form();
     t.Give(0, StartExternalSetpointGeneration{SetpointMode::kAbsolute});
-    const double way = Uniform(random, 2, 12), turn = Uniform(random, 2, 12);  // rad/s
+    const double way = Uniform(random, 2, 12), turn = Uniform(random, 2, 12);  // [rad/s]
     const double far = Uniform(random, 20, 1500) / way, round = Uniform(random, 5, 200) / turn;
     const int ends = Whole(random, 100, 1500);
-    // A swing that grows from rest.
+    // An oscillation that grows from rest.
     const auto swing = [](double size, double w, double at) {
       const double rest = std::exp(-at), c = 1 - std::cos(w * at), s = w * std::sin(w * at);
       return KinematicState{size * (1 - rest) * c, size * (rest * c + (1 - rest) * s),
@@ -374,7 +374,7 @@ TEST(MoverFormation, PropertyStopsFromSetPointsFromOutside) {
 }
 
 // Random formations, moves, turns, halts, faults and disables: every member keeps its limits in every cycle, the body
-// its shape, and each planet is where its star has it.
+// keeps its shape, and each planet keeps its pose relative to its star.
 TEST(MoverFormation, PropertyKeepsLimitsAndShape) {
   const int seeds = Trials(40, 50);
   int moved_and_turned = 0, dropped = 0;
@@ -441,7 +441,7 @@ TEST(MoverFormation, PropertyKeepsLimitsAndShape) {
                                      .blending = buffered ? Uniform(random, 0, 100) : 0});
         }
       }
-      if (cycle % 1000 == 999) {  // who is not in it any more comes back
+      if (cycle % 1000 == 999) {  // movers that have dropped out join again
         for (std::uint32_t i = 0; i < t.params.size(); ++i) {
           if (t.states[i].state == ObjectState::kError) t.Give(i, Reset{});
           if (t.states[i].state == ObjectState::kDisabled) t.Give(i, Enable{});
@@ -478,7 +478,7 @@ TEST(MoverFormation, PropertyKeepsLimitsAndShape) {
         ASSERT_LE(std::abs(now[kC].acceleration), lc.acceleration * slack) << cycle;
         ASSERT_LE(std::abs(now[kC].acceleration - then[kC].acceleration), lc.jerk * period * slack + 1e-6) << cycle;
         ASSERT_TRUE(t.outs[i].formation == 0 || InOneWindow(p.c, now[kC].position, now[kC].position)) << cycle;
-        // What is said of velocities is true of the places.
+        // Velocities are the derivatives of positions.
         const Complex way = PlaceOf(now) - PlaceOf(then) - 0.5 * period * (VelocityOf(now) + VelocityOf(then));
         ASSERT_LE(std::abs(way), l.jerk * period * period * period + 1e-9 + period * period * j * period) << cycle;
         const FormationState& f = t.states[i].formation;
@@ -508,7 +508,7 @@ TEST(MoverFormation, PropertyKeepsLimitsAndShape) {
   }
   RecordProperty("nearest", std::to_string(nearest));
   RecordProperty("nearest_of_both", std::to_string(nearest_of_both));
-  if (kSanitized) return;  // too few trials for what is seldom
+  if (kSanitized) return;  // too few trials for rare events
   EXPECT_GT(moved_and_turned, 100 * seeds);
   EXPECT_GT(dropped, seeds / 4);
   EXPECT_GT(nearest, 0.99);

@@ -1,4 +1,4 @@
-// PL-03, PL-11, PL-15: moves keep their limits, take no longer than they must, and end where they are to.
+// PL-03, PL-11, PL-15: moves keep their limits, take no longer than necessary, and end at their targets.
 #include <numbers>
 #include <ruckig/ruckig.hpp>
 
@@ -23,7 +23,7 @@ double Optimum(double distance, const trajectory::Limits& l) {
   return trajectory.get_duration();
 }
 
-// PL-15: as quick as a solver says that is asked for the bare distance.
+// PL-15: as fast as a solver for the bare distance.
 TEST(MoverMoves, StraightLinesAreTimeOptimal) {
   std::mt19937 random(3);
   double worst = 0;
@@ -61,7 +61,7 @@ TEST(MoverMoves, StraightLinesAreTimeOptimal) {
   RecordProperty("worst_ratio", std::to_string(worst));
 }
 
-// PL-03: what is more than the mover can do is reduced, and said.
+// PL-03: dynamics above the maximum are reduced, and reported.
 TEST(MoverMoves, TooMuchIsReducedNotRefused) {
   Rig rig({.xy = {.maximum = {500, 2000, {}, 20000}, .standard = Dynamics{100, 1000, {}, 10000}}});
   rig.Enable();
@@ -89,7 +89,7 @@ TEST(MoverMoves, TooMuchIsReducedNotRefused) {
   EXPECT_EQ(rig.out.limited_by, LimitedBy::kNothing);
 }
 
-// PL-11: onto another line in the middle of one: it goes on, and is quicker than by way of rest.
+// PL-11: onto another line during a move: without a stop, and faster than with one.
 TEST(MoverMoves, TurnsOntoAnotherLineWithoutAStop) {
   for (const double degrees : {5.0, 20.0, 40.0}) {
     Rig rig;
@@ -118,7 +118,7 @@ TEST(MoverMoves, TurnsOntoAnotherLineWithoutAStop) {
   }
 }
 
-// PL-11, PL-15: random moves, halts, turns and the rest at random times; every limit holds in every cycle.
+// PL-11, PL-15: random moves, halts, turns and others at random times; every limit holds in every cycle.
 TEST(MoverMoves, RandomCommandsKeepAllLimits) {
   std::mt19937 random(11);
   int done = 0;
@@ -187,7 +187,7 @@ TEST(MoverMoves, RandomCommandsKeepAllLimits) {
   EXPECT_GT(done, Trials(200, 1));
 }
 
-// PL-11: with its orientation the mover arrives in all three coordinates together, from rest.
+// PL-11: with its orientation the mover arrives in all three coordinates at the same time, from rest.
 TEST(MoverMoves, TurnsAlong) {
   for (const double velocity : {2000.0, 20.0}) {
     Rig rig;
@@ -217,8 +217,7 @@ TEST(MoverMoves, TurnsAlong) {
   EXPECT_EQ(rig.Of(rig.Give(MoveToPosition{.x = 0, .c = 16, .use_orientation = true})).error, ErrorId::kOutsideWindow);
 }
 
-// PL-11: Z, A and B go their own ways, within their limits.
-// An angle that is given counts; without one, or if it is not to count, C stays.
+// PL-11: a given angle applies; without one, or if it is not to be used, C stays.
 TEST(MoverMoves, TurnsWhereAnAngleIsGiven) {
   Rig rig;
   rig.Enable();
@@ -230,6 +229,7 @@ TEST(MoverMoves, TurnsWhereAnAngleIsGiven) {
   EXPECT_EQ(rig.out.c, 10);
 }
 
+// PL-11: Z, A and B move independently, within their limits.
 TEST(MoverMoves, AuxiliaryCoordinatesHaveLimits) {
   Rig rig;
   rig.Enable();

@@ -1,4 +1,4 @@
-// PL-12, PL-13, PL-24: movers on tracks, as commands and set points from outside have them.
+// PL-12, PL-13, PL-24: movers on tracks, with commands and external set points.
 #include <functional>
 #include <memory>
 
@@ -12,7 +12,7 @@ namespace {
 
 using planar::ObjectState;
 
-constexpr double kPeriod = 0.001;  // s
+constexpr double kPeriod = 0.001;  // [s]
 
 planar::Layout Straight(const planar::Place& from, const planar::Place& to) {
   planar::Layout layout;
@@ -20,7 +20,7 @@ planar::Layout Straight(const planar::Place& from, const planar::Place& to) {
   return layout;
 }
 
-// Movers on tracks of their own. Tracks whose ends and starts are at one place are linked.
+// Movers on tracks of this test. Tracks whose ends and starts coincide are linked.
 class TrackRig {
  public:
   TrackRig(std::size_t movers, const std::vector<planar::Layout>& layouts)
@@ -50,7 +50,7 @@ class TrackRig {
     return names;
   }
 
-  // They stand there, enabled.
+  // The movers rest there, enabled.
   void Start(const std::vector<planar::Place>& places) {
     for (std::size_t i = 0; i < params.size(); ++i) {
       params[i].initial = {.x = places[i].x, .y = places[i].y};
@@ -112,16 +112,16 @@ class TrackRig {
   std::vector<FeedbackEvent> storage = std::vector<FeedbackEvent>(256);
   FeedbackSink feedback{storage};
   Ticket ticket = 0;
-  std::map<Ticket, FeedbackEvent> answers;  // the last of each
+  std::map<Ticket, FeedbackEvent> answers;  // the last one of each
   std::function<void()> each_cycle;
-  double fastest = 0, hardest = 0;  // share of the limits that X and Y took
+  double fastest = 0, hardest = 0;  // share of the limits that X and Y used
 
  private:
   void Hear() {
     for (const FeedbackEvent& event : feedback.events()) answers[event.ticket] = event;
     feedback.Clear();
   }
-  // Nothing jumps: what is said of speed and place is one motion.
+  // Nothing jumps: velocities and positions belong to one motion.
   void Look(const MoverParams& p, const SetPoint& was, const SetPoint& is) {
     const trajectory::Limits l = p.xy.maximum.limits();
     for (const Coordinate i : {kX, kY}) {
@@ -153,7 +153,7 @@ TEST(MoverOnTracks, RelativeSetPointsEndInOrder) {  // PL-13
   enum How { kStopped, kHalted, kDisabled, kMissing, kWild, kHows };
   for (int how = 0; how < kHows; ++how) {
     for (const bool moving : {false, true}) {
-      for (const int cycles : {250, 600}) {  // on the way out, and out there
+      for (const int cycles : {250, 600}) {  // while it moves out, and at rest there
         TrackRig rig(1, {Straight({0, 0}, {1500, 0})});
         rig.Start({{100, 0}});
         ASSERT_EQ(rig.Join(0, "t0"), ErrorId::kNone);
@@ -201,7 +201,7 @@ TEST(MoverOnTracks, RelativeSetPointsEndInOrder) {  // PL-13
   }
 }
 
-// They go on over the moves from a track, and onto one.
+// Relative set points continue over the moves from a track, and onto one.
 TEST(MoverOnTracks, RelativeSetPointsStayOverLeavingAndJoining) {  // PL-13
   TrackRig rig(1, {Straight({0, 0}, {1500, 0})});
   rig.Start({{100, 0}});
@@ -230,12 +230,12 @@ TEST(MoverOnTracks, RelativeSetPointsStayOverLeavingAndJoining) {  // PL-13
   EXPECT_EQ(rig.out[0].y, 0);
 }
 
-// Others keep their gap and as much more as a mover may be off its place; there must be room for that first.
+// Other movers keep their gap plus the displacement of a mover; there must be room for that first.
 TEST(MoverOnTracks, RelativeSetPointsAreKeptAwayFrom) {  // PL-13, PL-24
   const auto apart = [](const TrackRig& rig) {
     return std::hypot(rig.out[1].x - rig.out[0].x, rig.out[1].y - rig.out[0].y);
   };
-  for (const double to : {-60.0, 60.0}) {  // towards the other, and away from it
+  for (const double to : {-60.0, 60.0}) {  // towards the other mover, and away from it
     TrackRig rig(2, {Straight({0, 0}, {1500, 0})});
     rig.Start({{100, 0}, {1000, 0}});
     for (const std::size_t i : {0u, 1u}) ASSERT_EQ(rig.Join(i, "t0"), ErrorId::kNone);
@@ -248,7 +248,7 @@ TEST(MoverOnTracks, RelativeSetPointsAreKeptAwayFrom) {  // PL-13, PL-24
     }
     EXPECT_NEAR(rig.out[0].x, 1000 - 200 - 60, 0.1);
     EXPECT_EQ(rig.out[0].waits_for, 2u);
-    // Once it is back on its place they need no more than the gap.
+    // Once it is back at its position they need no more than the gap.
     rig.Give(1, StopExternalSetpointGeneration{});
     rig.Run(2000);
     EXPECT_NEAR(rig.out[0].x, 1000 - 200, 0.1);
@@ -264,8 +264,8 @@ TEST(MoverOnTracks, RelativeSetPointsAreKeptAwayFrom) {  // PL-13, PL-24
   }
 }
 
-// Random moves, halts and faults on a loop, with set points that come on top here and there: nothing jumps, nobody
-// comes near, and in the end all are on the track again.
+// Random moves, halts and faults on a loop, with relative set points in between: nothing jumps, no mover comes too near
+// to another, and in the end all are on the track again.
 TEST(MoverOnTracks, PropertyWithRelativeSetPoints) {  // PL-13, PL-24
   int started = 0, collisions = 0;
   double least = 1e9, furthest = 0;
@@ -334,13 +334,13 @@ TEST(MoverOnTracks, PropertyWithRelativeSetPoints) {  // PL-13, PL-24
       EXPECT_TRUE(AtRest(rig.states[i]));
     }
   }
-  EXPECT_GT(least, 195);  // the chord of a gap, between places off the circle
+  EXPECT_GT(least, 195);  // the chord of a gap, between positions off the circle
   EXPECT_GT(furthest, 520);
   EXPECT_GT(started, 100);
   EXPECT_GT(collisions, 0);
 }
 
-// A mover joins only where both could still brake, wherever the other one is under way to.
+// A mover joins only where both could still brake, whatever the target of the other one is.
 TEST(MoverOnTracks, JoinsWhereNobodyComesTooNear) {  // PL-24
   int refused = 0, joined = 0;
   for (const double at : {0.0, 700.0, 1000.0, 1200.0, 1250.0, 1280.0, 1300.0, 1400.0, 1499.0}) {
@@ -377,7 +377,7 @@ TEST(MoverOnTracks, JoinsWhereNobodyComesTooNear) {  // PL-24
   EXPECT_GT(joined, 4);
 }
 
-// The gap counts over a border between tracks; tracks that are not linked are not looked at.
+// The gap counts across a border between tracks; tracks that are not linked are not checked.
 TEST(MoverOnTracks, JoinsAtTheGapOverABorder) {  // PL-24
   for (const double place : {1699.9, 1700.0}) {
     TrackRig rig(3, {Straight({0, 0}, {1500, 0}), Straight({1500, 0}, {3000, 0}), Straight({0, 120}, {3000, 120})});
@@ -389,7 +389,7 @@ TEST(MoverOnTracks, JoinsAtTheGapOverABorder) {  // PL-24
   }
 }
 
-// A mover that is not let off its track stays where it is.
+// A mover that may not leave its track stays where it is.
 TEST(MoverOnTracks, StaysWhereItMayNotLeave) {
   TrackRig rig(1, {Straight({0, 0}, {1500, 0})});
   rig.Start({{100, 0}});
@@ -413,7 +413,7 @@ TEST(MoverOnTracks, RefusesWhatTheTrackIsNotFor) {
   rig.now[1].enabled = false;
   rig.Step();
   EXPECT_EQ(rig.Join(1, "t1"), ErrorId::kReference);
-  // What only a closed loop has.
+  // Arguments of closed loops only.
   ASSERT_EQ(rig.Join(1, "t0"), ErrorId::kNone);
   EXPECT_EQ(rig.Do(1, MoveOnTrack{.position = 700, .additional_turns = 1}), ErrorId::kParameter);
   EXPECT_EQ(rig.Do(1, MoveOnTrack{.position = 700, .modulo_tolerance = 1}), ErrorId::kParameter);

@@ -1,4 +1,4 @@
-// One mover in cycles of its own, and what watches that its set points keep their limits.
+// A mover with its own cycles, and a check that its set points keep their limits.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ class Rig {
 
   Context context() { return {params, cycle, planner, feedback, streets, grounds}; }
 
-  // CommandContext in the cycle that comes.
+  // The context in the next cycle.
   Ticket Give(const Command& command) {
     Apply(context(), ++ticket, command, state);
     Hear();
@@ -41,7 +41,7 @@ class Rig {
   void Run(int cycles) {
     for (int i = 0; i < cycles; ++i) Step();
   }
-  // Until the command is over; so many cycles it took.
+  // Steps until the command is over; returns the number of cycles.
   int Finish(Ticket of, int most = 100'000) {
     int cycles = 0;
     while (!IsFinal(Of(of).state) && cycles < most) {
@@ -70,7 +70,7 @@ class Rig {
   Inputs inputs;
   Outputs out;
   Ticket ticket = 0;
-  std::map<Ticket, FeedbackEvent> answers;  // the last of each
+  std::map<Ticket, FeedbackEvent> answers;  // the last one of each
   std::map<Ticket, double> planned_s;
 
  private:
@@ -86,12 +86,12 @@ class Rig {
   }
 };
 
-// Holds the set points of each cycle against those before.
+// Compares the set points of each cycle with the preceding ones.
 class Watch {
  public:
   explicit Watch(const Rig& rig) : rig_(&rig), before_(rig.state.set_point) {}
 
-  // After each step. `outside`: set points came from elsewhere, with a jerk of their own.
+  // After each step. `outside`: set points are external, with a jerk of their own.
   void Look(bool outside = false) {
     const SetPoint& now = rig_->state.set_point;
     const MoverParams& p = rig_->params;

@@ -52,7 +52,7 @@ TEST(MoverStates, EnableAndDisableTakeOverFromOneAnother) {
   EXPECT_EQ(rig.out.state, ObjectState::kDisabled);
 }
 
-// A mover that is disabled brakes as hard as it can: as far as the closed form of the planner says.
+// A mover that is disabled brakes with its maximum dynamics, over the distance of the planner's closed form.
 TEST(MoverStates, DisableBrakesWithTheMaximum) {
   Rig rig;
   rig.Enable();
@@ -65,7 +65,7 @@ TEST(MoverStates, DisableBrakesWithTheMaximum) {
   EXPECT_NEAR(rig.out.x, stop, 1e-6);
 }
 
-// PL-01: a reset leads back to Enabled after a quick stop, to Disabled after an abort, which disable makes of it.
+// PL-01: a reset leads back to Enabled after a quick stop, to Disabled after an abort, into which disable turns it.
 TEST(MoverStates, ErrorsLeadBackByReset) {
   for (const int aborted_in : {0, 1, 2, 3}) {
     Rig rig;
@@ -116,7 +116,7 @@ TEST(MoverStates, AFaultOfADisabledMoverLeadsToDisabled) {
   }
 }
 
-// Every command, every mode: what the table of modes does not name is refused.
+// Every command in every mode: a command that the table of modes does not name is refused.
 TEST(MoverStates, WhatAModeDoesNotAcceptIsRefused) {
   Rig rig({.initial = {.c = 20}});
   rig.Enable();
@@ -141,7 +141,7 @@ TEST(MoverStates, ADisabledMoverIsToldWhereItIs) {
   EXPECT_EQ(rig.out.actual_x, 10);
 }
 
-// PL-03: the actual position is watched where the machine file says so.
+// PL-03: the actual position is checked if the machine file says so.
 TEST(MoverStates, ADeviationIsAFault) {
   for (const bool watched : {true, false}) {
     Rig rig({.deviation = watched ? std::optional(2.0) : std::nullopt});
@@ -158,7 +158,8 @@ TEST(MoverStates, ADeviationIsAFault) {
   }
 }
 
-// PL-01, PL-02, PL-10: whatever is given whenever, only what the tables allow happens, and every command ends once.
+// PL-01, PL-02, PL-10: random commands at random times: only transitions of the tables occur, and every command ends
+// once.
 TEST(MoverStates, RandomWalkKeepsToTheTables) {
   std::mt19937 random(7);
   std::set<std::pair<ObjectState, ObjectState>> seen;
@@ -244,12 +245,12 @@ TEST(MoverStates, RandomWalkKeepsToTheTables) {
       ASSERT_TRUE(IsFinal(rig.Of(ticket).state)) << ticket;
     }
   }
-  // All of them but a fault on top of a fault, which changes nothing.
+  // All transitions but a fault during a fault, which changes nothing.
   EXPECT_EQ(seen.size(), planar::kTransitions.size() - 1);
-  EXPECT_EQ(modes.size(), 4u);  // those without tracks and without turns from outside
+  EXPECT_EQ(modes.size(), 4u);  // those without tracks and external turns
 }
 
-// PL-70: the last hundred, in their order, with what became of them.
+// PL-70: the last hundred commands, in order, with their results.
 TEST(MoverStates, KeepsItsLastCommands) {
   Rig rig;
   rig.Give(MoveZ{.position = 1});
@@ -276,7 +277,7 @@ TEST(MoverStates, KeepsItsLastCommands) {
   EXPECT_EQ(*kept.begin(), rig.ticket - kHistory + 1);
 }
 
-// What was reduced is told of the command, also once others have come.
+// A reduction is reported with its command, also after later commands.
 TEST(MoverStates, KeepsWhatWasReduced) {
   Rig rig;
   rig.Enable();
@@ -301,7 +302,7 @@ TEST(MoverStates, IsSetOntoNoOtherMover) {
   };
   const Case cases[] = {{400, 0, 0, false},   {400 - 112.9, 0, 0, false}, {400 - 113, 0, 0, true},
                         {400, 113, 0, true},  {400 - 130, 0, 45, false},  {400 - 137, 0, 45, true},
-                        {310, 100, 0, false}, {-50, 20, 10, true}};  // the last one: where it is itself
+                        {310, 100, 0, false}, {-50, 20, 10, true}};  // the last one: its own position
   for (const Case& k : cases) {
     Troop troop({Turning(0, 0), Turning(400, 0)});
     const Ticket set = troop.Give(0, SetPosition{.x = k.x, .y = k.y, .c = k.c});

@@ -1,4 +1,4 @@
-// Several movers in cycles of their own, as the engine steps them.
+// Several movers with their own cycles, stepped as in the engine.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ class Troop {
     for (int i = 0; !IsFinal(Of(of).state) && i < most; ++i) Step();
     return Of(of).state;
   }
-  // The first one leads all others.
+  // The first mover is the star of all others.
   void Form() {
     for (std::uint32_t i = 0; i < params.size(); ++i) Give(i, Enable{});
     Run(3);
@@ -88,7 +88,7 @@ class Troop {
   FeedbackSink feedback{storage};
   Ticket ticket = 0;
   long allocated = 0;                       // by commands and steps
-  std::map<Ticket, FeedbackEvent> answers;  // the last of each
+  std::map<Ticket, FeedbackEvent> answers;  // the last one of each
 
  private:
   void Hear() {

@@ -15,7 +15,7 @@ TEST(MoverTurns, WindowsAreThereFourTimes) {
       EXPECT_FALSE(InOneWindow(c, turn + upper - 1, turn + upper + 0.01));
       EXPECT_FALSE(InOneWindow(c, turn + upper + 30, turn + upper + 31));
     }
-    EXPECT_FALSE(InOneWindow(c, turn, turn + 90));  // from one to the next
+    EXPECT_FALSE(InOneWindow(c, turn, turn + 90));  // from one window to the next
   }
   CoordinateParams aside = c;
   aside.lower = 20;
@@ -59,7 +59,7 @@ TEST(MoverTurns, WithinAWindowItTurnsOnTheWay) {
   EXPECT_EQ(rig.Become(move), FeedbackState::kDone);
 }
 
-// PL-11: against all places that are the same but for whole turns, looked through one by one.
+// PL-11: against a search of all equivalent positions.
 TEST(MoverTurns, DirectionsFindTheirPlace) {
   std::mt19937 random(5);
   for (int i = 0; i < 3000; ++i) {
@@ -91,7 +91,7 @@ TEST(MoverTurns, DirectionsFindTheirPlace) {
   }
 }
 
-// Both ways are as short: the one to the given target.
+// Both directions are equally short: the one to the given target.
 TEST(MoverTurns, HalfATurnLeadsToWhatWasGiven) {
   for (const double given : {180.0, -180.0}) {
     const MoveC command{.position = given, .direction = TurnDirection::kShortestWay};
@@ -105,7 +105,7 @@ TEST(MoverTurns, APositiveTurnDoesNotReverse) {
   rig.Give(MoveC{.position = 30, .direction = TurnDirection::kPositive, .additional_turns = 2});
   rig.Run(400);
   ASSERT_GT(rig.out.velocity_c, 100);
-  const double ahead = rig.out.c + 1;  // too near to stop there
+  const double ahead = rig.out.c + 1;  // too near for a stop there
   const Ticket turn = rig.Give(MoveC{.position = ahead, .direction = TurnDirection::kPositive});
   while (!IsFinal(rig.Of(turn).state)) {
     rig.Step();
@@ -114,7 +114,7 @@ TEST(MoverTurns, APositiveTurnDoesNotReverse) {
   EXPECT_NEAR(rig.out.c, ahead + 360, 1e-9);
 }
 
-// A halt with little deceleration does not carry it out of its window, or its limits.
+// A halt with low deceleration does not carry the mover out of its window, or its limits.
 TEST(MoverTurns, AHaltStaysWithinTheWindow) {
   MoverParams params;
   params.c.standard = Dynamics{10, 20, {}, 100};

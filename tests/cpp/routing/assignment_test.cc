@@ -1,4 +1,4 @@
-// PL-72: interchangeable targets, against all orders.
+// PL-72: interchangeable targets, against all permutations.
 #include "takt/routing/assignment.h"
 
 #include <gtest/gtest.h>

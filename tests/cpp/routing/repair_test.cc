@@ -26,7 +26,7 @@ struct World {
 World AnyWorld(Random& random, int trial) {
   const int width = 3 + static_cast<int>(random.Below(6)), height = 3 + static_cast<int>(random.Below(6));
   World world{.width = width, .height = height, .blocked = std::vector<bool>(static_cast<std::size_t>(width * height))};
-  if (trial % 2 == 1) {  // holes, with free borders so that all hangs together
+  if (trial % 2 == 1) {  // holes, with free borders, so that the surface stays connected
     for (int y = 1; y + 1 < height; y += 2) {
       for (int x = 1; x + 1 < width; ++x) world.blocked[static_cast<std::size_t>(y * width + x)] = random.Below(3) == 0;
     }
@@ -50,7 +50,7 @@ World AnyWorld(Random& random, int trial) {
   return world;
 }
 
-// What is wrong with steps; empty: nothing. Knows places only as columns and rows.
+// Returns what is wrong with the steps; empty: nothing. Knows places only as columns and rows.
 std::string Fault(const World& world, const std::vector<Configuration>& steps) {
   const std::size_t count = world.task.starts.size();
   if (steps.empty() || steps.front() != world.task.starts) return "begins elsewhere";
@@ -60,7 +60,7 @@ std::string Fault(const World& world, const std::vector<Configuration>& steps) {
       if (world.blocked[static_cast<std::size_t>(place)]) return "at a place that is blocked";
     }
     if (k == 0) continue;
-    // Movers are let go one after the other, each as soon as the place that it enters is empty: all have to get there.
+    // Movers move one after the other, each as soon as the place that it enters is empty: all have to get there.
     Configuration now = steps[k - 1];
     for (bool again = true; again;) {
       again = false;
@@ -120,7 +120,7 @@ TEST(Repair, StepsOfRandomWorldsCanBeCarriedOut) {
     EXPECT_LE(repair.sum(), before) << trial;
     EXPECT_GE(repair.sum(), repair.least_sum()) << trial;
     EXPECT_TRUE(Compose(grid, repair.steps()).has_value()) << trial;
-    repair.Improve(5'000, 2);  // what is worse is taken, too
+    repair.Improve(5'000, 2);  // worse steps are accepted, too
     EXPECT_EQ(Fault(world, repair.steps()), "") << trial;
   }
   EXPECT_GT(found, kTrials * 9 / 10);
@@ -138,7 +138,7 @@ TEST(Repair, IsAloneAsQuickAsItCanBe) {
 }
 
 TEST(Repair, SaysWhereThereAreNone) {
-  // Two in a row that have to exchange places.
+  // Two movers in a row that have to exchange places.
   const World world{
       .width = 4, .height = 1, .blocked = std::vector<bool>(4), .task = {.starts = {0, 3}, .targets = {3, 0}}};
   const Grid grid(world.width, world.height, 120, 118, kOfSquares, world.blocked);
@@ -149,7 +149,7 @@ TEST(Repair, SaysWhereThereAreNone) {
 }
 
 TEST(Repair, ClosesNoRing) {
-  // Four in a square, each bound for the place of the next: they have to go round by the free places beside them.
+  // Four movers in a square, each bound for the place of the next: they have to use the free places beside them.
   World world{.width = 3, .height = 2, .blocked = std::vector<bool>(6)};
   world.task = {.starts = {0, 1, 4, 3}, .targets = {1, 4, 3, 0}};
   const Grid grid(world.width, world.height, 120, 118, kOfSquares, world.blocked);

@@ -1,4 +1,4 @@
-// PL-72: the closed form of one run.
+// PL-72: the closed form of a run.
 #include "takt/routing/run.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ TEST(Run, SaysWhenItPassesAndWhereItCouldStop) {
   for (double s = 0; s <= 1000; s += 50) EXPECT_NEAR(run.At(run.TimeAt(s)), s, 1e-6);
   double before = 0;
   for (double t = 0; t < run.duration(); t += 1e-3) {
-    EXPECT_GE(run.StopAt(t), before - 1e-9);  // it can only be further
+    EXPECT_GE(run.StopAt(t), before - 1e-9);  // never decreasing
     EXPECT_GE(run.StopAt(t), run.At(t) - 1e-9);
     before = run.StopAt(t);
   }

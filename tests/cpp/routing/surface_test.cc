@@ -16,7 +16,7 @@ namespace takt::routing {
 namespace {
 
 constexpr Dynamics kDynamics{.velocity = 2000, .acceleration = 10'000, .jerk = 200'000};
-constexpr double kPitch = 120, kRoom = 0.1;  // mm; that movers are smaller than the plan takes them
+constexpr double kPitch = 120, kRoom = 0.1;  // [mm]; kRoom: movers are smaller than planned
 
 SurfaceProblem Empty(int width, int height) {
   return {.width = width,
@@ -38,7 +38,7 @@ std::vector<PlaceIndex> RandomPlaces(const SurfaceProblem& problem, std::size_t 
   return places;
 }
 
-// --- the checker: rectangles, with motions of its own, that know neither places nor who has them ---
+// --- the checker: rectangles with motions of its own, without places and reservations ---
 
 struct Motion {
   double s = 0, v = 0, a = 0;
@@ -48,7 +48,7 @@ void Go(Motion& m, double jerk, double t) {
   m.v += t * (m.a + t * jerk / 2);
   m.a += t * jerk;
 }
-using Pieces = std::vector<std::pair<double, double>>;  // jerk, for so long
+using Pieces = std::vector<std::pair<double, double>>;  // jerk, duration
 Motion After(Motion m, const Pieces& pieces, double t) {
   for (const auto& [jerk, duration] : pieces) {
     Go(m, jerk, std::clamp(t, 0.0, duration));
@@ -58,7 +58,7 @@ Motion After(Motion m, const Pieces& pieces, double t) {
 }
 Pieces Whole(double length) {
   const double v = kDynamics.velocity, a = kDynamics.acceleration, j = kDynamics.jerk;
-  // Between no and the full velocity by bisection: the fastest that fits.
+  // By bisection between 0 and the full velocity: the fastest that fits.
   double low = 0, high = v;
   const auto ramp = [&](double to) { return to < a * a / j ? 2 * std::sqrt(to / j) : to / a + a / j; };
   for (int i = 0; i < 100; ++i) {
@@ -81,7 +81,7 @@ Pieces Braking(const Motion& m) {
     pieces.insert(pieces.begin(), {-j, q});
     return pieces;
   }
-  Pieces pieces = down(m.v + m.a * m.a / (2 * j));  // it is in that already
+  Pieces pieces = down(m.v + m.a * m.a / (2 * j));  // braking has begun already
   double passed = q;
   for (auto& [jerk, duration] : pieces) {
     const double part = std::min(passed, duration);
@@ -107,7 +107,7 @@ class Checker {
     }
   }
 
-  // Pairs of movers that overlap at some time, by what they sweep between two looks.
+  // Pairs of movers that overlap at some time, by the area that they sweep between two samples.
   std::set<std::pair<std::size_t, std::size_t>> Overlaps(double step) const {
     std::set<std::pair<std::size_t, std::size_t>> found;
     for (double t = 0; t < end_ + step; t += step) {
@@ -117,7 +117,7 @@ class Checker {
     }
     return found;
   }
-  // And if all braked at once at some time.
+  // The same if all braked together at some time.
   std::set<std::pair<std::size_t, std::size_t>> OverlapsBraking(double step) const {
     std::set<std::pair<std::size_t, std::size_t>> found;
     constexpr double kLongest = 0.3, kLook = 0.01;
@@ -132,7 +132,8 @@ class Checker {
     }
     return found;
   }
-  // And of what each covers from some time on until it rests, if it brakes then: all that the guard of movers looks at.
+  // The same with the area that each covers from some time on until it rests, if it brakes then: the check of the
+  // guard.
   std::set<std::pair<std::size_t, std::size_t>> CoursesOverlap(double step) const {
     std::set<std::pair<std::size_t, std::size_t>> found;
     constexpr double kRests = 10;
@@ -143,7 +144,7 @@ class Checker {
     }
     return found;
   }
-  // Legs join, one after the other, over places that are not blocked, and end at the targets.
+  // Legs are consecutive, over places that are not blocked, and end at the targets.
   void CheckLegs() const {
     for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
       PlaceIndex at = problem_.starts[i];
@@ -166,7 +167,7 @@ class Checker {
         EXPECT_EQ(at, problem_.targets[i]);
       }
     }
-    for (std::size_t i = 0; i < plan_.targets.size(); ++i) {  // each is where one of its pool ends
+    for (std::size_t i = 0; i < plan_.targets.size(); ++i) {  // each is the end of a mover of its pool
       if (problem_.targets[i] == kNone) continue;
       const auto there = std::find(plan_.targets.begin(), plan_.targets.end(), problem_.targets[i]);
       ASSERT_NE(there, plan_.targets.end());
@@ -198,7 +199,7 @@ class Checker {
     if (pieces_[count].empty()) pieces_[count] = Whole(kPitch * static_cast<double>(count));
     return pieces_[count];
   }
-  // Its middle at t; if it brakes from then on, so much later.
+  // Returns its centre at t, or after braking from t on for the given time.
   Point PlaceAt(std::size_t mover, double t, double braking = 0) const {
     PlaceIndex at = problem_.starts[mover];
     const auto point = [&](PlaceIndex place) {
@@ -254,7 +255,7 @@ SurfacePlan PlanAndCheck(const SurfaceProblem& problem) {
   return plan;
 }
 
-// Carries the visits out one by one, in an order that only they give: everything has to come to its end.
+// Executes the visits one by one, in an order that only they determine: all have to be completed.
 bool CanBeCarriedOut(const SurfacePlan& plan) {
   std::vector<std::size_t> at(plan.visits.size(), 0);
   for (bool again = true; again;) {
@@ -295,7 +296,7 @@ TEST(Surface, TwoMoversChangePlacesInARowWithOneSiding) {
   problem.starts = {0, 3};
   problem.targets = {3, 0};
   EXPECT_TRUE(CanBeCarriedOut(PlanAndCheck(problem)));
-  // Without the siding there is no order at all, and that is known.
+  // Without the siding there is no solution, and the plan says so.
   problem.blocked[5] = true;
   EXPECT_EQ(PlanSurface(problem).outcome, Outcome::kImpossible);
 }
@@ -307,7 +308,7 @@ TEST(Surface, RandomWorldsAreSafeAndCanBeCarriedOut) {
     SurfaceProblem problem = Empty(width, height);
     problem.seed = random.Next();
     if (trial % 2 == 1) problem.mover_size = 40 + static_cast<double>(random.Below(80));
-    if (trial % 3 == 0) {  // holes, with free borders so that all hangs together
+    if (trial % 3 == 0) {  // holes, with free borders, so that the surface stays connected
       for (int y = 1; y + 1 < height; y += 2) {
         for (int x = 1; x + 1 < width; ++x)
           problem.blocked[static_cast<std::size_t>(y * width + x)] = random.Below(3) == 0;
@@ -354,18 +355,19 @@ TEST(Surface, InterchangeableTargetsComeNearTheBestAssignment) {
   problem.targets = RandomPlaces(problem, 12, random);
   const SurfacePlan plan = PlanAndCheck(problem);
   EXPECT_LT(plan.sum, 1.36 * plan.lower_bound);
-  // Fewer targets than movers: the others stay, or make room.
+  // Fewer targets than movers: the remaining movers stay, or make room.
   std::fill(problem.targets.begin() + 5, problem.targets.end(), kNone);
   PlanAndCheck(problem);
 }
 
 TEST(Surface, TheCheckerSeesWhatIsWrong) {
   SurfaceProblem problem = Empty(4, 10);
-  problem.starts = {36, 4};  // down the first column; out of its way
+  problem.starts = {36, 4};  // down the first column; out of its path
   problem.targets = {0, 7};
   SurfacePlan plan = PlanAndCheck(problem);
   plan.legs[0] = {{0, 36, 0}};
-  // The other one makes way later and later: at first nothing is wrong, then only if both brake, then anyhow.
+  // The other mover clears the path later and later: at first nothing is wrong, then only if both brake, then in any
+  // case.
   int good = 0, only_braking = 0, wrong = 0;
   for (double later = 0; later < 0.8; later += 0.02) {
     plan.legs[1] = {{later, 4, 7}};
@@ -419,7 +421,7 @@ TEST(Surface, NamesAMoverThatCannotGetThere) {
   EXPECT_EQ(plan.unreachable, 0);
   problem.pools = {0};
   EXPECT_EQ(PlanSurface(problem).outcome, Outcome::kUnreachable);
-  EXPECT_EQ(PlanSurface(Empty(2, 2)).outcome, Outcome::kPlanned);  // nobody is there already
+  EXPECT_EQ(PlanSurface(Empty(2, 2)).outcome, Outcome::kPlanned);  // no mover
 }
 
 }  // namespace
