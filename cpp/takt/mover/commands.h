@@ -143,21 +143,21 @@ struct MoveRelativeC {
 };
 // At a velocity, until the room is used up.
 struct MoveVelocityX {
-  double velocity = 0;                   // [mm/s], negative: towards smaller values
+  double velocity = 0;                   // [mm/s] negative: towards smaller values
   std::optional<double> acceleration{};  // [mm/s²]
   std::optional<double> deceleration{};  // [mm/s²]
   std::optional<double> jerk{};          // [mm/s³]
   Buffering buffer_mode = Buffering::kAborting;
 };
 struct MoveVelocityY {
-  double velocity = 0;                   // [mm/s], negative: towards smaller values
+  double velocity = 0;                   // [mm/s] negative: towards smaller values
   std::optional<double> acceleration{};  // [mm/s²]
   std::optional<double> deceleration{};  // [mm/s²]
   std::optional<double> jerk{};          // [mm/s³]
   Buffering buffer_mode = Buffering::kAborting;
 };
 struct MoveVelocityC {
-  double velocity = 0;                   // [deg/s], negative: towards smaller values
+  double velocity = 0;                   // [deg/s] negative: towards smaller values
   std::optional<double> acceleration{};  // [deg/s²]
   std::optional<double> deceleration{};  // [deg/s²]
   std::optional<double> jerk{};          // [deg/s³]
@@ -224,7 +224,7 @@ struct MoveOnTrack {
   std::optional<double> gap{};  // [mm] to the mover ahead, from centre to centre
   TurnDirection direction = TurnDirection::kNonModulo;
   std::uint32_t additional_turns = 0;  // of a closed loop; with kPositive and kNegative only
-  double modulo_tolerance = 0;         // [mm], of a closed loop
+  double modulo_tolerance = 0;         // [mm] of a closed loop
   DynamicsReduction dynamics_reduction = DynamicsReduction::kAccelerationLimitedVelocity;
   std::optional<double> velocity{};      // [mm/s]
   std::optional<double> acceleration{};  // [mm/s²]
@@ -247,7 +247,7 @@ struct GearInPosOnTrack {  // along tracks, with an axis
   std::optional<double> gap{};      // [mm] to the mover ahead, from centre to centre
   double in_sync_tolerance = 0;     // [mm]
   TurnDirection direction_slave_sync_position = TurnDirection::kNonModulo;
-  double modulo_tolerance_slave_sync_position = 0;  // [mm], of a closed loop
+  double modulo_tolerance_slave_sync_position = 0;  // [mm] of a closed loop
   SyncDirections allowed_slave_sync_directions = SyncDirections::kPositive;
   std::optional<double> velocity{};      // [mm/s]
   std::optional<double> acceleration{};  // [mm/s²]
@@ -264,9 +264,9 @@ struct GearInPosOnTrackWithMasterMover {
   std::optional<double> gap{};      // [mm] to the mover ahead, from centre to centre
   double in_sync_tolerance = 0;     // [mm]
   TurnDirection direction_slave_sync_position = TurnDirection::kNonModulo;
-  double modulo_tolerance_slave_sync_position = 0;  // [mm], of a closed loop
+  double modulo_tolerance_slave_sync_position = 0;  // [mm] of a closed loop
   TurnDirection direction_master_sync_position = TurnDirection::kNonModulo;
-  double modulo_tolerance_master_sync_position = 0;  // [mm], of a closed loop
+  double modulo_tolerance_master_sync_position = 0;  // [mm] of a closed loop
   SyncDirections allowed_slave_sync_directions = SyncDirections::kPositive;
   // from the track of the master's sync position on, the slave takes the route of the master
   bool follow_mover = false;

@@ -17,7 +17,7 @@ namespace takt::mover {
 // reference is unknown or belongs to another coordinate system.
 ErrorId ToMoverSystem(const Context& c, const State& s, const Name& reference, double& x, double& y) noexcept;
 
-// The area that a mover covers in the plane, without what it will cover along tracks.
+// The areas that a mover covers in the plane, without those that it will cover along tracks.
 struct Cover {
   std::array<planar::Area, 5> areas{};
   std::uint32_t count = 0;
@@ -54,9 +54,9 @@ bool LeadsOver(const Context& c, const State& s, std::uint32_t part) noexcept;
 
 // Returns true if the part under the mover is changing its position; false without a part.
 bool IsAway(const Context& c, const State& s) noexcept;
-bool IsPartReady(const Context& c, const State& s) noexcept;  // enabled; true without parts
-bool IsPartSound(const Context& c, const State& s) noexcept;  // without a fault
-bool CanPartBeReady(const Context& c, const State& s) noexcept;
+bool IsPartReady(const Context& c, const State& s) noexcept;     // enabled; true without parts
+bool IsPartSound(const Context& c, const State& s) noexcept;     // without a fault
+bool CanPartBeReady(const Context& c, const State& s) noexcept;  // may be enabled; true without parts
 
 // Returns true if the mover rests, has no pending move and is not joining or leaving a track.
 bool IsStill(const Context& c, const State& s) noexcept;

@@ -15,7 +15,7 @@ namespace takt::mover {
 struct Dynamics {
   double velocity = 1;                   // [u/s]
   double acceleration = 1;               // [u/s²]
-  std::optional<double> deceleration{};  // [u/s²] unset: equal to the acceleration
+  std::optional<double> deceleration{};  // [u/s²]; unset: equal to the acceleration
   double jerk = 1;                       // [u/s³]
 
   trajectory::Limits limits() const noexcept {
@@ -44,7 +44,7 @@ struct Place {
 struct MoverParams {
   std::string name{};
   double width = 113;   // [mm] along X at C = 0
-  double height = 113;  // [mm], along Y
+  double height = 113;  // [mm] along Y
   Place initial{};
   std::string reference{};  // part or coordinate system of the initial pose
   PlaneParams xy{};

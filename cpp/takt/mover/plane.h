@@ -1,8 +1,8 @@
 // Motions of X and Y: on a straight line, from one line onto another, to rest.
 //
-// Limits hold along the path. X and Y may also move each by itself (PlanEach): a motion whose frame is that of X and Y.
-// Each has the share kEach of the limits, so that the vectors keep the limits whatever the other coordinate does, and
-// the two are planned independently.
+// Limits hold along the path. X and Y may also move each by itself (MotionOfEach): a motion whose frame is that of X
+// and Y. Each has the share kEach of the limits, so that the vectors keep the limits whatever the other coordinate
+// does, and the two are planned independently.
 //
 // A motion has a frame: one coordinate along a direction, the other across it, each with a profile of its own. On a
 // line there is no motion across. If a move begins during another one, the new line is the direction; the velocity and
@@ -27,7 +27,7 @@ struct PlaneMotion {
   double direction_x = 1, direction_y = 0;  // unit vector of along; across is to its left
   double share = 0;                         // of the limits, for across while that lasts; 0: a line
   double end_x = 0, end_y = 0;              // [mm]
-  trajectory::Profile along, across;        // [mm], from the origin
+  trajectory::Profile along, across;        // [mm] from the origin
 };
 
 PlaneMotion StandingAt(double x, double y) noexcept;
@@ -46,7 +46,7 @@ bool PlanMove(trajectory::Planner& planner, const PlaneState& from, double x, do
 // How a corner is blended: the mover leaves the first line `before` the corner with `speed`, and moves onto the second
 // one.
 struct Corner {
-  double before = 0;  // [mm], > 0
+  double before = 0;  // [mm] above 0
   double speed = 0;   // [mm/s] from which the mover can still stop at the corner
   double share = 0;   // of the limits, across the second line
 };

@@ -121,7 +121,7 @@ struct SurfaceRoutes {
   explicit SurfaceRoutes(std::size_t movers) : of(movers) {}
 
   std::vector<SurfaceRoute> of;
-  std::uint64_t changes = 0;  // number of commands that have changed a route
+  std::uint64_t changes = 0;  // number of SetRoute commands accepted so far
 };
 
 // Why a route was refused: the value of a feedback with ErrorId::kRoute.

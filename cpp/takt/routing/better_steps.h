@@ -1,6 +1,6 @@
 // Better steps than the first ones of FindSteps for crowded problems. Steps are found by repair from successive seeds,
-// and the best are improved. If repair finds none, the tail of known steps is searched anew by FindSteps from random
-// steps on.
+// and the best of these are improved further. If repair finds none, FindSteps replaces tails of the known steps, from
+// random steps on.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +44,7 @@ class BetterSteps {
   const StepTables& tables_;
   const std::vector<std::int32_t>& pools_;
   std::uint64_t seed_;
-  std::int64_t cells_, budget_, spent_ = 0;  // states of steps; the budget is available twice
+  std::int64_t cells_, budget_, spent_ = 0;  // budget and spent: states of repair; the budget is available twice
   std::unique_ptr<Repair> best_;
 };
 

@@ -37,7 +37,8 @@ class Alone {
 };
 
 // Prioritised planning: one mover after the other, those with short paths first; a mover without a path is the first of
-// the next try. Returns nothing after `tries` failed ones: the method is not complete. Movers without a target stay.
+// the next try. Returns nothing after `tries` failed ones, or `effort` states of SIPP: the method is not complete.
+// Movers without a target stay.
 std::optional<Plan> PlanInTurn(const Grid& grid, const Task& task, Alone& alone, int tries, std::int64_t effort);
 
 // Returns the sum of the arrivals of a plan [s].
@@ -45,7 +46,7 @@ double SumOf(const Grid& grid, const Plan& plan);
 
 struct Improving {
   std::int64_t effort = 0;  // states of SIPP
-  std::uint64_t seed = 0;   //
+  std::uint64_t seed = 0;
   // by mover; targets may be exchanged within a pool; kNone, or empty: none
   std::vector<std::int32_t> pools{};
 };
