@@ -359,7 +359,7 @@ void ReadSwitches(const Context& c, const ServoInputs& in, State& s) {
   s.switches_known = true;
 }
 
-// Nm, of the command in control or of the axis; 0: none.
+// [Nm] of the command in control or of the axis; 0: none.
 double TorqueLimit(const AxisParams& p, const State& s) {
   const double own = p.limits.torque.value_or(0);
   const double asked = s.plc == PlcState::kHoming ? s.active.homing.torque_limit : 0;
@@ -472,7 +472,7 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   // the speed fed forward is the one that leads from there to the new one.
   if (p.compensation.any()) Correct(c, s);
   const double correction = s.correction.now;
-  const double corrected = p.load_encoder ? 0 : s.correction.rate;  // u/s, by which the motor is told to go beyond
+  const double corrected = p.load_encoder ? 0 : s.correction.rate;  // [u/s] by which the motor is told to go beyond
   const double mean_velocity = (s.setpoint.position - s.due) / c.cycle.period_s + corrected;
   const ControlLoopInputs inputs{p.drive.mode,     s.loop_closed && engine_closes, p.drive.invert, s.due, mean_velocity,
                                  s.actual.position};

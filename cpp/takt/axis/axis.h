@@ -1,4 +1,4 @@
-// One axis, stage by stage of the cycle. Free functions over plain state; nothing here allocates, locks, throws or
+// One axis, stage by stage of the cycle. Free functions over plain state: no function here allocates, locks, throws or
 // reads a clock.
 #pragma once
 
@@ -18,79 +18,81 @@
 
 namespace takt::axis {
 
-// Something besides axes that they can be coupled to: a coordinate of a mover.
+// A master that is not an axis: a coordinate of a mover, or a belt.
 struct OutsideMaster {
   std::string name;
-  double velocity = 0;  // u/s, its largest
+  double velocity = 0;  // [u/s] its velocity limit
   KinematicState at{};  // over all turns, at the end of the cycle
-  double origin = 0;    // the place that it calls 0, in those of `at`; it changes where the place makes a jump
-  bool known = false;   // `at` means something
+  double origin = 0;    // value of `at.position` at the master's coordinate 0; changes where that coordinate jumps
+  bool known = false;   // `at` is valid
 };
 
-// What there is in a machine besides one axis, to be looked up by number or name.
+// The rest of the machine, to be looked up by number or name.
 struct MachineView {
-  // Of all axes. Masters that step before an axis are of the same cycle.
+  // States of all axes; those of axes that step before the present one are of this cycle.
   std::span<const State> states{};
   std::span<const AxisParams> params{};
   std::span<const CamSwitches> cam_switches{};
   std::span<const cam::Table> cams{};
-  std::span<const OutsideMaster> outside{};  // as masters they are numbered behind all axes
+  std::span<const OutsideMaster> outside{};  // numbered behind all axes when used as masters
 };
 inline constexpr MachineView kAlone{};
 
-// What every stage gets besides the axis itself. It is made anew for every axis and stage, so it holds little.
+// Input of every stage besides the axis' state. Made anew for every axis and stage, so it is kept small.
 struct Context {
-  AxisParams& params;  // changed by settings (GT_SetConstant, MC_WriteParameter) alone
+  AxisParams& params;  // changed only by commands (GT_SetConstant, MC_WriteParameter, ...)
   Cycle cycle;
   trajectory::Planner& planner;
   FeedbackSink& feedback;
-  const State* master = nullptr;  // of an axis that follows another from load on: its state of the same cycle
+  // State, of this cycle, of the master that the axis follows from load on; null: none.
+  const State* master = nullptr;
   const MachineView& machine = kAlone;
 };
 
-// As it stands when power comes on.
+// Returns the state of an axis at start-up.
 State MakeState(const AxisParams& params) noexcept;
 
-// sense: raw inputs become positions and switches. Of a drive in another process they may be older ones.
+// sense: turns raw inputs into positions and switches. `sampling`: age of inputs from a drive in another process.
 void Sense(const Context& context, const ServoInputs& inputs, State& state, const Sampling& sampling = {}) noexcept;
 
-// command: carries a command out, buffers it or refuses it; reports either way. `lease_s` > 0: see Renew.
+// command: executes, buffers or rejects a command, and reports which. `lease_s` > 0: it ends unless renewed (Renew).
 void Apply(const Context& context, Ticket ticket, double lease_s, const Command& command, State& state) noexcept;
-// Lets go of the level-sensitive command (jog, held stop) with this ticket. False: it is not in control here.
+// Releases the level-sensitive command (jog, held stop, touch probe) with this ticket, in control or buffered. Returns
+// false if this axis has none.
 bool Release(const Context& context, Ticket ticket, State& state) noexcept;
-// Extends its lease. False: it is not in control here.
+// Extends the lease of the command with this ticket. Returns false if this axis has none with a lease.
 bool Renew(const Context& context, Ticket ticket, State& state) noexcept;
 
-// move: supervision, then the next set point.
+// move: supervises the axis, then computes the next set point.
 void Move(const Context& context, State& state) noexcept;
 
-// control and actuate: the position loop and what goes to the drive. False: a number was not finite; this axis has
-// opened its loop and puts out zeros, and so must all others (AX-82).
+// control and actuate: runs the position loop and computes the command to the drive. Returns false if a value was not
+// finite: this axis has opened its loop and commands zero velocity, voltage and torque, and so must all others (AX-82).
 bool Control(const Context& context, State& state, ServoOutputs& outputs) noexcept;
 
-// A fault from outside (overrun, internal): to ErrorStop; with `open_loop` the drive is switched off at once, else it
+// Puts the axis into ErrorStop because of a fault. `open_loop`: the drive is switched off at once; else the axis
 // brakes.
 void Fail(const Context& context, ErrorId error, bool open_loop, State& state) noexcept;
 
-// Limit switches and faults may have ramps of their own, but none that are gentler than the axis' (AX-112). A SW limit
-// is braked for in time: with the limits of the axis.
+// Returns the limits for braking after a fault. Limit switches and other faults may have ramps of their own, but none
+// gentler than the axis' (AX-112). SW limits use the axis' own limits, as the axis brakes before them.
 trajectory::Limits StopLimits(const AxisParams& params, ErrorId error) noexcept;
-// Brakes so from the set point of the cycle before.
+// Brakes within StopLimits from the set point of the previous cycle.
 void BrakeInFault(const Context& context, ErrorId error, State& state) noexcept;
 
-// GT_EStop: the drive is switched off and the brake falls at once; faults are cleared, the axis is Disabled (AX-38),
-// and power is refused until the stop is released (AX-100) ...
+// GT_EStop: switches the drive off and closes the brake at once, clears faults and puts the axis into Disabled (AX-38).
+// Power is rejected until the stop is released (AX-100).
 void EmergencyStop(const Context& context, State& state) noexcept;
-// ... Then commands may ask for it anew.
+// Releases the emergency stop: commands may request power again.
 void ReleaseEmergencyStop(State& state) noexcept;
 
-// Whether a command asks for power or motion: what a held emergency stop refuses, and a gantry whose members are not in
-// step. Everything but what is known to move nothing.
+// Returns true if a command requests power or motion: every command but those known to move nothing. Such commands are
+// rejected during a held emergency stop, and by a gantry whose members are not in step.
 bool AsksToMove(const Command& command) noexcept;
 
 void Publish(const AxisParams& params, const State& state, Outputs& outputs) noexcept;
 
-// At rest: the set point stands.
+// Returns true if the set point is at rest.
 inline bool AtRest(const State& state) noexcept {
   return state.setpoint.velocity == 0 && state.setpoint.acceleration == 0;
 }

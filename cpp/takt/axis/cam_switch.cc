@@ -25,7 +25,7 @@ struct Way {
 // What the axis did between two cycles.
 struct Travel {
   int sense = 1;
-  double velocity = 0;  // u/s, that way: against it is none
+  double velocity = 0;  // [u/s] that way: against it is none
   bool turned = false;
   double turning_point = 0;
 };

@@ -30,12 +30,12 @@ void Step(const ControlLoop& p, const ControlLoopInputs& in, Cycle cycle, Contro
     return;
   }
   const bool analogue = in.mode == DriveMode::kAnalog;
-  const double largest_speed = p.velocity_at_10v;                          // u/s
+  const double largest_speed = p.velocity_at_10v;                          // [u/s]
   const double largest_output = analogue ? kVoltageLimit : largest_speed;  // V or u/s
   const double sense = in.invert ? -1 : 1;
   const double output_per_speed = sense * (analogue ? kVoltageLimit / largest_speed : 1);
   const double output_per_sum = output_per_speed / cycle.period_s;
-  const double largest_sum = largest_speed * cycle.period_s;  // u
+  const double largest_sum = largest_speed * cycle.period_s;  // [u]
 
   const double last_error = s.error;
   s.error = in.model_position - in.feedback;

@@ -56,7 +56,7 @@ KinematicState Seen(const Context& c, const CouplingState& k, const CouplingTerm
   return {its.position + phase.position, its.velocity + phase.velocity, its.acceleration + phase.acceleration};
 }
 
-// s, of the filter of a measured master; 0: none.
+// [s] of the filter of a measured master; 0: none.
 double FilterTime(const Context& c, const CouplingTerm& term) {
   if (term.master == kNoAxis || term.source == MasterSource::kSetValue || Outside(c, term.master)) return 0;
   return term.filter_s < 0 ? c.machine.params[term.master].encoder.velocity_filter_s : term.filter_s;

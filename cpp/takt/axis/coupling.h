@@ -21,17 +21,17 @@ struct Context;
 struct State;
 struct MachineView;
 
-// How far the way into step has come (GearInPos, CamIn).
+// Progress of synchronisation (GearInPos, CamIn).
 enum class Joining : std::uint8_t {
-  kWaiting,  // the master is not yet where it begins
+  kWaiting,  // the master has not yet reached the start of synchronisation
   kOnCurve,  // on a curve over the master's position that ends in step
   kJoined,
 };
 
-// A cam on top of that of the coupling (CAM-90).
+// A cam added to that of the coupling (CAM-90).
 struct AddedCam {
-  std::uint32_t table = kNoTable;  // index among the machine's cams; kNoTable: there is none
-  double ratio = 1;                // x per master's u
+  std::uint32_t table = kNoTable;  // index among the machine's cams; kNoTable: none
+  double ratio = 1;                // [x per master's u]
   double scale = 1;                // of y
   bool periodic = false;
   CamState cam;
@@ -41,69 +41,71 @@ inline constexpr std::size_t kAddedCams = 3;
 struct CouplingState {
   CouplingRequest law;  // in force
   trajectory::DemandFollowerState chase;
-  bool filtered = false;  // a master is measured and has a filter
-  bool in_step = false;   // with the masters, as far as they are known
-  bool locked = false;    // followed by place: gears and sums are from when they were in step first
+  bool filtered = false;  // a measured master has a filter
+  bool in_step = false;   // in step with the masters, as far as their positions are known
+  bool locked = false;    // follows the position; gears and sums: only once they have been in step
   Joining joining = Joining::kJoined;
-  double master_sync = 0;     // master's u over all turns, where both are in step ...
-  double slave_sync = 0;      // ... with the slave here (u over all turns)
-  double turn = 0;            // after so far there is the next such place of the master; 0: there is none
-  double curve_begin = 0;     // master's u, where the curve begins
-  double begin_side = 0;      // on which side of that the master was when it was last looked at
-  trajectory::Quintic curve;  // u, over the master's way from there on
+  double master_sync = 0;     // [master's u] over all turns: where synchronisation ends, ...
+  double slave_sync = 0;      // [u] ... and the slave position there, over all turns
+  double turn = 0;            // [master's u] distance to the next such master position; 0: there is only one
+  double curve_begin = 0;     // [master's u] where the curve begins
+  double begin_side = 0;      // [master's u] distance of the master from there when the wait began
+  trajectory::Quintic curve;  // [u] over the master's displacement from there
   CamState cam;
   std::array<AddedCam, kAddedCams> added;
 
-  // The phase: a motion in the master's unit on top of its position.
+  // The phase: a motion in the master's unit that is added to its position.
   trajectory::Profile phase;
   std::uint64_t phase_start = 0;
-  double phase_now = 0;    // master's u, what has been added by now ...
-  double phase_begin = 0;  // ... and had been when the last shift by an amount began; to an amount: 0
+  double phase_now = 0;    // [master's u] added by now
+  double phase_begin = 0;  // [master's u] added when the last relative shift began; 0 for an absolute one
   Ticket phase_ticket = 0;
   bool phase_moves = false;
 
-  std::array<MasterFilter, 2> filters;  // of the masters that are measured
+  std::array<MasterFilter, 2> filters;  // of measured masters
 };
 
 inline bool Couples(RequestKind kind) noexcept {
   return kind == RequestKind::kGearIn || kind == RequestKind::kGearInPos || kind == RequestKind::kCombineAxes ||
          kind == RequestKind::kCamIn;
 }
-// Whether that position of a master is known. What is measured does without power, but not with a fault until it was
-// reset: how far the master moves meanwhile is not known.
+// Returns true if this position of a master is known. A set point requires a closed loop. An actual position does not,
+// but is unknown from a fault with an open loop until its reset: how far the master moves meanwhile is not known.
 bool IsKnown(const State& master, MasterSource source) noexcept;
-// The number of an axis, or of what else can be followed; kNoAxis: there is none of that name.
+// Returns the number of an axis, or of an outside master; kNoAxis if there is none of that name.
 std::uint32_t FindMaster(const MachineView& machine, std::string_view name) noexcept;
-// Whether the command in control or a buffered one follows this table.
+// Returns true if the command in control, a buffered one or an added cam uses this table.
 bool UsesTable(const State& state, std::uint32_t index) noexcept;
-// Finds the masters and the table of a request. kUnknownTarget: there is no such axis, or no such table.
+// Looks up the masters and the table of a request. Returns kUnknownTarget if an axis or the table does not exist.
 Status FindNamed(const Context& c, Request& r) noexcept;
-// kNoReference: positions of this axis mean nothing yet.
+// Returns kMasterOff if the position of a master is not known, kTargetBehindLimit for a slave position beyond the SW
+// limits, kNoReference if an absolute position needs a reference that the axis does not have.
 Status MayCouple(const Context& c, const Request& r, const State& s) noexcept;
-// Puts a request that couples in control. What was in control must have been ended.
+// Puts a request that couples in control. Requires: the command that was in control has been ended.
 void Couple(const Context& c, const Request& r, State& s) noexcept;
 // Couples anew in place of the coupling in control (AX-111). Its phase stays, and continues once in step; so do the
-// cams that have been added to a cam.
+// cams that were added.
 void CoupleAgain(const Context& c, const Request& r, State& s) noexcept;
-// Takes over from the cam in control, of the same table and master, with other scales and offsets (AX-111): a relative
-// one stays where it is in the cam. What has been put on top of it, and its phase, stay.
+// Takes over from the cam in control, with the same table and master but other scales and offsets (AX-111); a relative
+// cam keeps its position in the table. Added cams and the phase stay.
 void UpdateCam(const Context& c, const Request& r, State& s) noexcept;
-// The next set point of a coupled axis; false: it is not (any more) coupled.
+// Computes the next set point of a coupled axis. Returns false if it is not, or no longer, coupled.
 bool FollowMasters(const Context& c, State& s) noexcept;
-// Whether it is coupled to a master that was switched off or has failed: it cannot follow any more (AX-55).
+// Returns true if the axis is coupled to a master that was switched off or has failed, so that it cannot be followed
+// (AX-55).
 bool LostMasters(const Context& c, const State& s) noexcept;
-// Shifts what the axis takes for its master's position. kState: not coupled to one master.
+// Shifts the master's position as this axis sees it. Returns kState unless the axis is coupled to exactly one master.
 Status CarryOut(const Context& c, Ticket ticket, const PhasingAbsolute& command, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const PhasingRelative& command, State& s) noexcept;
-// Puts another cam on top of that of cam_in, or takes it off again. kState: the axis follows no cam, or has no
-// such cam on top; kBufferFull: there is no room.
+// Adds another cam to that of cam_in, or removes it. Returns kState if the axis follows no cam or the one to remove was
+// not added, kBufferFull if there is no room.
 Status CarryOut(const Context& c, Ticket ticket, const CamAdd& command, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const CamRemove& command, State& s) noexcept;
-// GearOut, CamOut: on with the velocity there is.
+// GearOut, CamOut: ends the coupling; the axis keeps its velocity.
 Status LetGo(const Context& c, const Request& r, State& s) noexcept;
-// The coupling is over, and its phase with it. After a fault its masters are kept until they were stopped, too (AX-55).
+// Ends the coupling and its phase. After a fault `law` keeps the masters until they were stopped, too (AX-55).
 void Uncouple(const Context& c, bool after_fault, State& s) noexcept;
-// The masters that a command for this axis asks for. False: it asks for none, or is refused anyway.
+// Gets the masters that a command for this axis couples to. Returns false if it couples to none, or would be rejected.
 bool CouplingOf(const Context& c, const Command& command, CouplingRequest& out) noexcept;
 
 void describe(Enumeration<Joining>&);

@@ -36,7 +36,7 @@ bool Term(const RequestBuilder& m, const Name& name, MasterSource source, double
 }
 
 bool Filter(const RequestBuilder& m, const std::optional<double>& filter_s, CouplingTerm& out) {
-  constexpr double kLongest = 10;  // s
+  constexpr double kLongest = 10;  // [s]
   if (filter_s) out.filter_s = *filter_s;
   return m.In("master_filter", filter_s.value_or(0), 0, kLongest);
 }

@@ -1,27 +1,27 @@
 // A drive in another process that is not heard any more (AX-87): a drive error and a controlled stop.
 //
-// Where the axis is, is not known then, so nothing may go by it. The set point brakes with all the axis has and the
-// drive is told so, for it may well still hear: one that closes the position loop gets positions as before, any other
-// one the speed alone, as the engine's loop has nothing left to close it with. Once the set point rests, the drive is
-// switched off and the brake falls. An axis at rest is switched off at once; one whose loop is open just has the fault.
-// A drive that is heard again on the way changes nothing, unless it reports a fault.
+// The position of the axis is then unknown, so nothing may rely on it. The set point brakes on the ramp for faults and
+// is still sent, as the drive may well receive it: a drive that closes the position loop gets positions as before, any
+// other only the velocity, as the engine's loop has no feedback. Once the set point is at rest, the drive is switched
+// off and the brake closes. An axis at rest is switched off at once; one whose loop is open only gets the fault. If the
+// drive is heard again during the stop, nothing changes unless it reports a fault.
 //
-// Meanwhile the axis counts as being where it was told to be. An incremental encoder may have lost counts or been
-// switched off: its reference is lost. MC_Reset is refused until the drive is heard again.
+// Meanwhile the set point counts as the actual position. An incremental encoder may have lost counts or been switched
+// off: its reference is lost. MC_Reset is rejected until the drive is heard again.
 #pragma once
 
 #include "takt/axis/axis.h"
 
 namespace takt::axis {
 
-// sense: where the axis counts as being, when its last sample does not say so. An older one is carried on with the
-// speed it had.
+// sense: sets the actual position when the last sample does not give it. An older sample is extrapolated at its
+// velocity.
 void Locate(const Context& context, const KinematicState& sampled, State& state) noexcept;
 
-// move: supervision of an axis that is lost or stops blind.
+// move: supervises an axis whose drive is lost, or that stops without feedback (`blind`).
 void WatchLink(const Context& context, State& state) noexcept;
 
-// The position loop of an axis that stops blind: the set speed alone.
+// Returns the parameters of a position loop without feedback, which passes the set velocity on.
 ControlLoop SpeedAlone(const ControlLoop& params) noexcept;
 
 }  // namespace takt::axis

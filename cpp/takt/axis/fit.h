@@ -1,5 +1,5 @@
-// What a motion has to keep whatever a command asked for. A command may bring weaker ramps than the motion it
-// interrupts; planned with those alone, the rest of the stronger motion can carry the axis beyond its limits.
+// What a motion must keep, whatever the command asks for. A command may have weaker ramps than the motion it
+// interrupts; planned with those alone, the remainder of the stronger motion could carry the axis beyond its limits.
 #pragma once
 
 #include <cmath>
@@ -12,34 +12,36 @@
 namespace takt::axis {
 
 struct Demands {
-  // It, and a stop at any time of it, stays inside the SW limits. (Motions without an end are watched cycle by cycle.)
+  // The motion, and a stop at any time during it, stays inside the SW limits. (Motions without an end are watched each
+  // cycle.)
   bool position = true;
-  bool straight = false;  // never turns round (braking)
+  bool straight = false;  // the motion never reverses (braking)
 };
 
-// The first thing that `profile` breaks: the axis' velocity, acceleration or deceleration, the SW limits (kPosition),
-// or that it may not turn round (kJerk: too little of it). What `from` already is beyond a limit is no fault as long as
-// it gets no worse.
+// Returns what `profile` violates first: the axis' velocity, acceleration or deceleration, the SW limits (kPosition),
+// or the ban on reversing (kJerk: too little of it). A limit that `from` already exceeds is not violated as long as it
+// gets no worse.
 LimitedBy Breaks(const AxisParams& params, const KinematicState& from, const trajectory::Profile& profile,
                  const Demands& demands) noexcept;
 
-// All positions, from `x` on, that braking with all the axis has leads through. It swings back where the deceleration
-// there is outlasts the speed.
+// Returns the range of positions that the axis passes when it brakes from `x` with its own limits. It swings back if
+// its present deceleration outlasts the velocity.
 trajectory::Profile::Range RangeOfStop(const AxisParams& params, const KinematicState& x) noexcept;
 
-// Invariant of motions that go on: braking now, from this set point, ends inside the SW limits. A set point that would
-// break it is not taken; the brake begins in its place, which the set point before allowed (AX-13). `slack`, u: so far
-// beyond them still counts as inside.
+// Returns true if braking from `next` stays inside the SW limits, or gets no further out than `before`. Invariant of
+// motions without an end: it holds for each set point. A set point for which it does not is dropped, and the axis
+// brakes from the one before, which allowed it (AX-13). `slack` [u]: tolerance beyond the limits.
 bool CanStopInside(const AxisParams& params, const KinematicState& before, const KinematicState& next,
                    double slack = 0) noexcept;
 
-// Whether the acceleration of a piece is beyond what the axis allows while its speed grows, or falls.
+// Returns true if the acceleration of a piece exceeds the axis' acceleration while its speed grows, or its deceleration
+// while it falls.
 bool BreaksRamps(const trajectory::Limits& own, const trajectory::Piece& piece, double duration) noexcept;
 
-// Whether a position lies inside the SW limits.
+// Returns true if a position is inside the SW limits, but for rounding.
 bool Inside(const AxisLimits& limits, double position) noexcept;
 
-// What counts as equal among positions of the size of `x`.
+// Returns the tolerance [u] within which positions of the size of `x` count as equal.
 inline double Rounding(double x) noexcept {
   return 1e-9 * (1 + std::abs(x));
 }

@@ -1,4 +1,4 @@
-// Finding the reference of an axis (PLCopen Part 5): a search in stages, as one table says.
+// Finding the reference of an axis (PLCopen Part 5): a search in stages, defined by a table.
 #pragma once
 
 #include <array>
@@ -14,22 +14,22 @@ struct State;
 
 enum class HomingStage : std::uint8_t {
   kNone,       // not homing
-  kSearching,  // on the way, at the search velocity
-  kTurning,    // brakes, to search the other way
+  kSearching,  // moves at the search velocity
+  kTurning,    // brakes, to search in the other direction
   kBraking,    // found: brakes
-  kReturning,  // goes back to what was found
-  kLeaving,    // finishing: moves off
+  kReturning,  // returns to the position found
+  kLeaving,    // finishing: moves away
   kWaiting,    // for the next step; the axis stays in Homing
 };
 
 enum class HomingEvent : std::uint8_t {
-  kFound,      // what the step is looking for
-  kWrongEdge,  // the switch changed the other way
-  kNoCode,     // marks whose distance is no code (StepDistanceCoded)
-  kLimit,      // a limit switch lies ahead (StepAbsSwitch)
+  kFound,      // the switch, edge, mark or end stop of the step
+  kWrongEdge,  // the switch changed in the opposite sense
+  kNoCode,     // the distance between the marks is no code (StepDistanceCoded)
+  kLimit,      // the limit switch ahead is on (steps that search a switch)
   kStopped,    // the motion of the stage is over
   kTimeOver,   // TimeLimit
-  kTooFar,     // DistanceLimit
+  kTooFar,     // DistanceLimit, too many reversals, or a limit switch ahead while followers still search
 };
 
 enum class HomingAction : std::uint8_t {
@@ -41,7 +41,7 @@ enum class HomingAction : std::uint8_t {
   kGiveUp,     // error, brake to Standstill
 };
 
-// Which steps a row holds for.
+// The steps that a row applies to.
 enum class HomingScope : std::uint8_t { kAll, kSwitches, kBlock, kPulse };
 
 struct HomingRow {
@@ -89,20 +89,20 @@ struct HomingState {
   HomingStage stage = HomingStage::kNone;
   bool homed = false;          // the axis has its reference
   std::int8_t sense = 1;       // of the search
-  bool switch_before = false;  // the switch that is searched, a cycle ago
-  double captured = 0;         // u, where it was found
-  double renamed = 0;          // u, what MC_SetPosition has added to positions since the reference got its own
-  double mark = 0;             // u, over all turns: the coded mark that was passed last ...
-  bool mark_known = false;     // ... if one was
-  std::uint8_t turns = 0;      // how often it turned round
-  double way = 0;              // u, gone since the step began
+  bool switch_before = false;  // state of the switch in the previous cycle
+  double captured = 0;         // [u] position found
+  double renamed = 0;          // [u] sum of what MC_SetPosition has added to positions since the reference was set
+  double mark = 0;             // [u] over all turns: the coded mark that was passed last
+  bool mark_known = false;     // a mark was passed
+  std::uint8_t turns = 0;      // number of reversals
+  double way = 0;              // [u] distance travelled since the step began
   std::uint64_t begin_cycle = 0;
-  bool found = false;             // its switch; its followers still look for their own
-  double edge = 0;                // u, over all turns: where it was
+  bool found = false;             // its own switch was found; followers may still search theirs
+  double edge = 0;                // [u] over all turns: position of the switch
   std::uint64_t found_cycle = 0;  // in which all switches were found
 
-  // References taken while another motion goes on.
-  Ticket flying_ticket = 0;   // 0: none is awaited
+  // References taken in passing, during another motion.
+  Ticket flying_ticket = 0;   // 0: none
   bool flying_pulse = false;  // the index pulse; else the reference switch
   HomingRequest flying;
   double flying_way = 0;
@@ -111,26 +111,27 @@ struct HomingState {
 };
 
 bool Homes(RequestKind kind) noexcept;
-// Between two steps nothing else takes over but a further step, stop and power.
+// Returns true if a request may take over between two steps: a further step, a stop or power.
 bool MayFollowStep(RequestKind kind) noexcept;
-// Begins a step from rest, in Standstill or between two steps; `aborts`: what is in control and what waits is aborted
-// first. kState: not from here. kAwayFromLimitOnly: that way is a limit switch, and the step searches none.
+// Begins a step from rest, in Standstill or between two steps. `aborts`: the command in control and buffered ones are
+// aborted first. Returns kState if the axis is in another state or the step does not suit it, kAwayFromLimitOnly if the
+// limit switch ahead is on and the step cannot turn round, kDirection, kNoCodedMarks, or kTargetBehindLimit.
 Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) noexcept;
-// Each cycle after the set point was made: events of the step in control.
+// Handles the events of the step in control; each cycle, after the set point.
 void StepHoming(const Context& c, State& s) noexcept;
-// Each cycle in which a reference is awaited in passing (flying_ticket), before the set point is made.
+// Looks for a reference in passing (flying_ticket); each cycle, before the set point.
 void WatchFlying(const Context& c, State& s) noexcept;
-// Whether this state or edge of a switch is what the search is for.
+// Returns true if this state or edge of a switch ends the search.
 bool EndsSearch(SwitchMode mode, bool on, bool before, int sense) noexcept;
-// The limit switches belong to the search for now: no fault.
+// Returns true while limit switches are part of the search, so that they are no fault.
 bool OwnsLimitSwitches(const State& s) noexcept;
-// The axis is meant to lag behind, pushing against an end stop: no fault.
+// Returns true while the axis is meant to lag, as it pushes against an end stop, so that the lag is no fault.
 bool OwnsLag(const State& s) noexcept;
 
 Status CarryOut(const Context& c, Ticket ticket, const StepRefFlyingSwitch& command, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const StepRefFlyingRefPulse& command, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const AbortPassiveHoming& command, State& s) noexcept;
-// A halt or stop has been given.
+// Ends a reference in passing that a halt or stop ends (`until_halt`).
 void EndFlyingByHalt(const Context& c, State& s) noexcept;
 
 void describe(Enumeration<HomingStage>&);

@@ -1,4 +1,4 @@
-// What MC_Home does on an axis: PLCopen leaves that to the axis' parameters.
+// How MC_Home homes an axis: PLCopen leaves that to the axis' parameters.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 namespace takt::axis {
 
 enum class HomingMethod : std::uint8_t {
-  kDirect,         // where the axis stands is the reference
-  kAbsolute,       // as the absolute encoder says
+  kDirect,         // the present position is the reference
+  kAbsolute,       // by the absolute encoder
   kSwitch,         // the reference switch
   kLimitSwitch,    // a limit switch
   kBlock,          // an end stop
@@ -21,15 +21,15 @@ enum class HomingMethod : std::uint8_t {
 
 struct HomingParams {
   HomingMethod method = HomingMethod::kDirect;
-  HomingDirection direction = HomingDirection::kNegative;  // where to search first; not SwitchX for block and pulse
+  HomingDirection direction = HomingDirection::kNegative;  // in which the search begins; kSwitch...: switches only
   SwitchMode switch_mode = SwitchMode::kEdgeOn;
-  double velocity = 0;                                           // u/s, of the search; more than 0 where there is one
-  std::optional<double> pulse_velocity{};                        // u/s; after a switch on to the next index pulse
-  HomingDirection pulse_direction = HomingDirection::kPositive;  // ... this way; not SwitchX
-  double deviation = 0;                                          // u, following error at an end stop; more than 0
-  double time_limit = 0;                                         // s, of all of it; 0: any
-  double distance_limit = 0;                                     // u, of all of it; 0: any
-  std::optional<double> torque_limit{};                          // Nm, of the search; unset: that of the axis
+  double velocity = 0;                     // [u/s] of the search; more than 0 for methods that search
+  std::optional<double> pulse_velocity{};  // [u/s] of a further search for the index pulse, after a switch
+  HomingDirection pulse_direction = HomingDirection::kPositive;  // of that search; not kSwitch...
+  double deviation = 0;                  // [u] following error at an end stop; more than 0 for kBlock
+  double time_limit = 0;                 // [s] for the whole homing; 0: none
+  double distance_limit = 0;             // [u] for the whole homing; 0: none
+  std::optional<double> torque_limit{};  // [Nm] of the search; unset: as the axis
 };
 
 inline bool Searches(HomingMethod method) noexcept {

@@ -26,7 +26,7 @@ namespace {
 
 constexpr int kBisections = 12;  // of a speed: to 1/4096 of the speed asked for
 
-// u, from one speed down to another.
+// [u] from one speed down to another.
 double BrakingDistance(double from, double to, const Limits& limits) {
   const double change = from - to;
   if (change <= 0) return 0;

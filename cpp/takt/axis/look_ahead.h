@@ -1,4 +1,4 @@
-// What the blending commands behind a positioning command allow at its end (AX-12, AX-103). Pure.
+// What the blending commands behind a positioning command allow at its target (AX-12, AX-103). Pure.
 #pragma once
 
 #include <optional>
@@ -12,28 +12,29 @@
 namespace takt::axis {
 
 struct LookAhead {
-  bool blends = false;  // there is a command behind that blends
-  double sense = 1;     // of the motion at the target
-  double asked = 0;     // u/s, at the target, by the buffer mode
-  double speed = 0;  // u/s, at the target without acceleration there: at most what is asked, and what the rest allows
+  bool blends = false;  // a command behind it blends
+  double sense = 1;     // of the motion into the target
+  double asked = 0;     // [u/s] speed at the target as the buffer mode asks for
+  // [u/s] Speed at the target, with acceleration 0 there: at most `asked`, and what the commands behind allow.
+  double speed = 0;
 
-  // Commands behind with the same limits are one motion with this one: to here, u, and there with this speed, u/s.
-  // Where there are none, the target and `speed`.
+  // Commands behind with the same limits are one motion with this one: it ends at run_end [u] with run_end_speed [u/s].
+  // If there are none: the target and `speed`.
   double run_end = 0;
   double run_end_speed = 0;
 
-  std::optional<double> stops_at;  // u, where the last of them comes to rest; nothing: one of them has no end
+  std::optional<double> stops_at;  // [u] where the last command comes to rest; unset: one of them has no end
   trajectory::Limits next;         // of the first command behind
 };
 
-// `request`, scaled by the override, positions to `target`; `queue` as commanded.
+// Looks ahead from `request` (scaled by the override, positioning to `target`) over `queue` (as commanded).
 LookAhead LookAheadOf(const AxisParams& params, const Override& factors, const KinematicState& from,
                       const Request& request, double target, std::span<const Request> queue) noexcept;
 
-// The highest speed up to `speed` from which the axis is down to `end_speed` within `room`, u.
+// Returns the highest speed [u/s] up to `speed` from which the axis can slow down to `end_speed` within `room` [u].
 double FastestWithin(double speed, double end_speed, const trajectory::Limits& limits, double room) noexcept;
 
-// How far an axis at `position` may go on in this sense before its SW limit.
+// Returns the distance [u] from `position` to the SW limit ahead in this sense; infinity if there is no limit.
 double RoomToLimit(const AxisLimits& limits, double position, double sense) noexcept;
 
 }  // namespace takt::axis

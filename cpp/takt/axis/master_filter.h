@@ -1,4 +1,4 @@
-// What a measured master does, smoothed (AX-110).
+// Smoothing of a measured master (AX-110).
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 namespace takt::axis {
 
 struct MasterFilter {
-  KinematicState estimate;   // master's u, over all turns
-  std::uint32_t cycles = 0;  // since it first saw the master, until it has its full time constant
+  KinematicState estimate;   // [master's u] over all turns
+  std::uint32_t cycles = 0;  // since the first sample, until the memory is full
 };
 
-// One cycle: predicts the master with its set acceleration, and corrects the prediction by what the measured position
-// says. `measured` is known to within half of `increment`. Returns the estimate. Requires: time_constant_s > 0.
+// Runs one cycle: predicts the master with its set acceleration, and corrects the prediction by the measured position,
+// which is known to within half of `increment` [master's u]. Returns the estimate. Requires: time_constant_s > 0.
 const KinematicState& Filter(double time_constant_s, double increment, Cycle cycle, const KinematicState& measured,
                              MasterFilter& filter) noexcept;
 

@@ -11,24 +11,24 @@
 namespace takt::axis {
 
 struct Outputs {
-  double set_position = 0;      // u; rotary: in [0, modulus)
-  double set_velocity = 0;      // u/s
-  double set_acceleration = 0;  // u/s²
-  double actual_position = 0;   // u; rotary: in [0, modulus)
-  double actual_velocity = 0;   // u/s
-  double following_error = 0;   // u, set point of the cycle before minus what is measured now
-  // u, over all turns: where a drive simulated in the engine has really brought the load when `actual_position` was
+  double set_position = 0;      // [u] rotary: in [0, modulus)
+  double set_velocity = 0;      // [u/s]
+  double set_acceleration = 0;  // [u/s²]
+  double actual_position = 0;   // [u] rotary: in [0, modulus)
+  double actual_velocity = 0;   // [u/s]
+  double following_error = 0;   // [u] set point of the cycle before minus what is measured now
+  // [u] over all turns: where a drive simulated in the engine has really brought the load when `actual_position` was
   // measured, whatever the encoder makes of it; NaN: not known.
   double true_position = std::numeric_limits<double>::quiet_NaN();
-  double voltage_v = 0;            // V, output of the position loop
-  double torque_nm = 0;            // Nm, as the drive reports it
-  double probe_position = 0;       // u, where the touch probe was captured last
-  double covered_distance = 0;     // u, by the motion on top of the one in progress; 0: there is none
-  double phase_shift = 0;          // master's u, that it is taken to be ahead of where it is
-  double covered_phase_shift = 0;  // master's u, by the last shift; one to an amount: in all
-  double encoder_correction = 0;   // u, that the encoder on the motor is ahead of the axis
+  double voltage_v = 0;            // [V] output of the position loop
+  double torque_nm = 0;            // [Nm] as the drive reports it
+  double probe_position = 0;       // [u] where the touch probe was captured last
+  double covered_distance = 0;     // [u] by the motion on top of the one in progress; 0: there is none
+  double phase_shift = 0;          // [master's u] that it is taken to be ahead of where it is
+  double covered_phase_shift = 0;  // [master's u] by the last shift; one to an amount: in all
+  double encoder_correction = 0;   // [u] that the encoder on the motor is ahead of the axis
   double override_factor = 1;      // of the velocity; 0: held
-  double skew = 0;                 // u, of an axis that follows another from load on: off where its master has it
+  double skew = 0;                 // [u] of an axis that follows another from load on: off where its master has it
   Ticket active_command = 0;       // 0: none
   ErrorId error = ErrorId::kNone;  // fault of the axis (not of a command)
   PlcState state = PlcState::kDisabled;

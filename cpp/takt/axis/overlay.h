@@ -47,9 +47,9 @@ struct OverlayState {
   trajectory::DemandFollowerState chase;
   Ticket ticket = 0;
   Override factors;    // for which it was planned
-  double target = 0;   // u, what is to be added in all
-  double begin = 0;    // u, what had been added before the command
-  double covered = 0;  // u, by the command
+  double target = 0;   // [u] what is to be added in all
+  double begin = 0;    // [u] what had been added before the command
+  double covered = 0;  // [u] by the command
   // u/s ...: the limits of the command.
   double velocity = 0;
   double acceleration = 0;
@@ -83,7 +83,7 @@ bool StandsBeneath(const State& s) noexcept;
 // Whether something can lie on top of this command. One that cannot waits for what lies on top of a standing axis, and
 // aborts what lies on top of a moving one.
 bool Carries(const Request& r) noexcept;
-// u, how much further the motion in progress ends because of what is on top of it.
+// [u] how much further the motion in progress ends because of what is on top of it.
 double AddedAtEnd(const State& s) noexcept;
 
 // kState: in Homing, while a torque is controlled, while the axis goes to where it was touched. kAxisStopping,

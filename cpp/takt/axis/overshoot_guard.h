@@ -19,7 +19,7 @@ bool Overshoots(const trajectory::Profile& profile, double target) noexcept;
 
 // What weaker ramps must not change of a motion in progress.
 struct OvershootGuard {
-  std::optional<double> furthest;  // u: it gets no further than this in its sense of travel
+  std::optional<double> furthest;  // [u] it gets no further than this in its sense of travel
   bool straight = false;           // it does not turn round
 };
 

@@ -22,7 +22,7 @@ double Sense(double x) {
   return x < 0 ? -1.0 : 1.0;
 }
 
-// u/s, what the acceleration there is still adds to the speed in this sense until it is taken away.
+// [u/s] what the acceleration there is still adds to the speed in this sense until it is taken away.
 double Gained(const KinematicState& from, double sense, double jerk) {
   return jerk > 0 && sense * from.acceleration > 0 ? from.acceleration * from.acceleration / (2 * jerk) : 0;
 }

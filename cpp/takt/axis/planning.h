@@ -22,9 +22,9 @@ struct PlanningContext {
   bool bars_negative = false;
   bool homed = true;
   std::int8_t last_sense = 1;
-  std::optional<double> promised;  // u, unwrapped: where the positioning command in control ends, if there is one
-  std::optional<double> begin;     // u, unwrapped: where that command began, if it goes by a distance
-  // u, unwrapped: the end of the motion in progress, or further out where it passes that. Nothing that does not itself
+  std::optional<double> promised;  // [u] unwrapped: where the positioning command in control ends, if there is one
+  std::optional<double> begin;     // [u] unwrapped: where that command began, if it goes by a distance
+  // [u] unwrapped: the end of the motion in progress, or further out where it passes that. Nothing that does not itself
   // go beyond is to go beyond (AX-97).
   std::optional<double> furthest;
   bool again = false;      // the request is the one in control, planned anew

@@ -32,8 +32,8 @@ struct Capture {
   Ticket ticket = 0;
   ProbeEdge edge = ProbeEdge::kRising;
   bool window_only = false;
-  double first_position = 0;  // u
-  double last_position = 0;   // u
+  double first_position = 0;  // [u]
+  double last_position = 0;   // [u]
 };
 
 struct ProbeState {
@@ -43,7 +43,7 @@ struct ProbeState {
   ProbeWatch watch = ProbeWatch::kNothing;
   ProbeEdge edge = ProbeEdge::kRising;
   bool touched = false;       // the edge came in this cycle ...
-  double touch_position = 0;  // u, unwrapped: ... here
+  double touch_position = 0;  // [u] unwrapped: ... here
   Ticket ticket = 0;
   // GT_Touch: its limits.
   double velocity = 0;
@@ -56,7 +56,7 @@ struct ProbeState {
   Ticket slowed = 0;
   double own_velocity = 0;
 
-  double position = 0;         // u, of the last capture; rotary axes: in [0, modulus)
+  double position = 0;         // [u] of the last capture; rotary axes: in [0, modulus)
   std::uint32_t captures = 0;  // how many there were, wraps
 
   // The sample before.
@@ -65,8 +65,8 @@ struct ProbeState {
   std::uint32_t counts = 0;  // raw
   std::uint32_t rises = 0;   // of the wire
   std::uint32_t falls = 0;
-  double set_velocity = 0;  // u/s, of the set point for that sample
-  double step = 0;          // u, from there to this one
+  double set_velocity = 0;  // [u/s] of the set point for that sample
+  double step = 0;          // [u] from there to this one
 
   std::array<Capture, kCaptures> waiting;  // in the order in which they were given
 };

@@ -53,13 +53,13 @@ enum class RequestKind : std::uint8_t {
 struct Request {
   Ticket ticket = 0;
   double value = 0;     // position, distance; velocity moves: the signed velocity is velocity * sense
-  double velocity = 0;  // u/s, the four limits of the command, never beyond the axis' own
+  double velocity = 0;  // [u/s] the four limits of the command, never beyond the axis' own
   double acceleration = 0;
   double deceleration = 0;
   double jerk = 0;
-  double torque_ramp = 0;   // Nm/s, of torque control; 0: at once
-  double end_velocity = 0;  // u/s, of continuous moves, in the sense of travel
-  double timeout_s = 0;     // s, of streams
+  double torque_ramp = 0;   // [Nm/s] of torque control; 0: at once
+  double end_velocity = 0;  // [u/s] of continuous moves, in the sense of travel
+  double timeout_s = 0;     // [s] of streams
   double lease_s = 0;       // > 0: level-sensitive command under a dead man's lease
   std::int32_t key = 0;     // of streams
   RequestKind kind = RequestKind::kNone;

@@ -9,8 +9,8 @@
 
 namespace takt::axis {
 
-inline constexpr double kMaxTorque = 1e9;     // Nm
-inline constexpr double kMaxPosition = 1e12;  // u; beyond it a double no longer tells thousandths apart
+inline constexpr double kMaxTorque = 1e9;     // [Nm]
+inline constexpr double kMaxPosition = 1e12;  // [u] beyond it a double no longer tells thousandths apart
 
 struct RequestBuilder {
   const AxisParams& params;

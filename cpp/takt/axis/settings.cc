@@ -365,7 +365,7 @@ bool Fill(const RequestBuilder& m, const DirectOutput& d) {
 }
 
 bool Fill(const RequestBuilder& m, const PulseOutput& p) {
-  constexpr double kLongest = 1e6;  // s
+  constexpr double kLongest = 1e6;  // [s]
   return m.In("voltage", p.voltage, -kVoltageLimit, kVoltageLimit) &&
          m.In("duration", p.duration, std::numeric_limits<double>::min(), kLongest);
 }

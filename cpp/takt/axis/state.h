@@ -36,7 +36,7 @@ struct Motion {
   trajectory::Profile profile;
   std::uint64_t start_cycle = 0;  // profile time 0 lies ...
   double start_offset_s = 0;      // ... so long before this cycle
-  double target = 0;              // u, unwrapped: where a positioning command ends
+  double target = 0;              // [u] unwrapped: where a positioning command ends
   bool held = false;              // the profile ends where an override stops it, not where its command does
   bool arrived = false;           // the profile is over
   std::uint64_t arrived_cycle = 0;
@@ -61,7 +61,7 @@ struct SkewState {
   trajectory::Profile way;  // from the skew to 0
 
   // Squaring: the edge of the reference switch that its master's search is for.
-  double edge = 0;                  // u, over all turns
+  double edge = 0;                  // [u] over all turns
   std::uint64_t edge_cycle = 0;     // in which it was found
   std::uint64_t squared_cycle = 0;  // of the master's edge that it was squared by
   bool reference_before = false;
@@ -69,14 +69,14 @@ struct SkewState {
 
 // Supervision that was switched off at run time, to be switched on again.
 struct Dormant {
-  std::optional<double> lower{}, upper{};  // u, SW limits
-  std::optional<double> lag{};             // u, largest following error in motion
+  std::optional<double> lower{}, upper{};  // [u] SW limits
+  std::optional<double> lag{};             // [u] largest following error in motion
 };
 
 // A voltage that is put out for a time (GT_Pulse).
 struct Pulse {
   Ticket ticket = 0;
-  double voltage = 0;           // V
+  double voltage = 0;           // [V]
   std::uint64_t end_cycle = 0;  // in which it is 0 V again
 };
 
@@ -86,8 +86,8 @@ struct State {
   KinematicState setpoint;
   KinematicState actual;  // acceleration is not measured: 0
   double due =
-      0;  // u, where the axis should be now: the set point of the cycle before, which had this long to be reached
-  double following_error = 0;  // u, due minus what is measured
+      0;  // [u] where the axis should be now: the set point of the cycle before, which had this long to be reached
+  double following_error = 0;  // [u] due minus what is measured
 
   PlcState plc = PlcState::kDisabled;
   ErrorId error = ErrorId::kNone;
@@ -147,9 +147,9 @@ struct State {
 
   double torque_nm = 0;
   double voltage_v = 0;
-  double direct_voltage_v = 0;  // V, put out while the axis is Disabled (GT_Analog)
+  double direct_voltage_v = 0;  // [V] put out while the axis is Disabled (GT_Analog)
   double origin = 0;            // rotary axes: whole turns taken out of all positions, so that they stay small (in u)
-  double follow_offset = 0;     // u, own position minus ratio times the master's without a skew
+  double follow_offset = 0;     // [u] own position minus ratio times the master's without a skew
   Override override_factors;    // of commands in control and waiting
   EncoderState encoder;
   CorrectionState correction;
@@ -171,7 +171,7 @@ struct State {
   Ticket reset_ticket = 0;
   std::array<Request, kBufferSize> buffer;                       // [0] is next
   std::uint64_t illegal_transitions = 0;                         // always 0: the state table holds
-  double most_torque = std::numeric_limits<double>::infinity();  // Nm, of the machine file
+  double most_torque = std::numeric_limits<double>::infinity();  // [Nm] of the machine file
   trajectory::Limits system;  // of the machine file; those of the application, in the parameters, keep within them
   OverlayState overlay;
   StopOrders stops;

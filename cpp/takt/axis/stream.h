@@ -26,16 +26,16 @@ struct State;
 inline constexpr std::size_t kStreamed = 32;  // set points that are kept
 
 struct StreamedPoint {
-  double time = 0;      // s, by the sender's clock
-  double position = 0;  // u, over all turns
-  double velocity = 0;  // u/s
+  double time = 0;      // [s] by the sender's clock
+  double position = 0;  // [u] over all turns
+  double velocity = 0;  // [u/s]
   bool fixed = false;   // its velocity was given, or the curve has used it
 };
 
 struct StreamState {
   std::array<StreamedPoint, kStreamed> points;  // by time; the curve is between the first two
   std::uint8_t count = 0;
-  double clock = 0;               // s, by the sender's clock: the end of this cycle is that far along the stream
+  double clock = 0;               // [s] by the sender's clock: the end of this cycle is that far along the stream
   std::uint64_t heard_cycle = 0;  // when the last set point was taken
   trajectory::DemandFollowerState chase;
 };

@@ -21,7 +21,7 @@ struct Curve {
   const cam::Table& table;
   const TableRequest& request;
 
-  double duration() const { return request.time_scale * table.length(); }  // s
+  double duration() const { return request.time_scale * table.length(); }  // [s]
   cam::Value At(double t) const {
     const cam::Value at = table.At(table.begin() + t / request.time_scale);
     const double slope = request.scale / request.time_scale;

@@ -50,7 +50,7 @@ void PlanRamp(const Context& c, const KinematicState& from, double sense, State&
 // The ramp of this cycle, and whether the axis is too far from it.
 struct Bound {
   KinematicState at;
-  double step = 0;  // u, of this cycle
+  double step = 0;  // [u] of this cycle
   bool left = false;
 };
 

@@ -19,8 +19,8 @@ struct TorqueState {
   bool engaged = false;        // the drive is told a torque
   bool holds = false;          // the torque is what holds the axis: the set point follows what is measured
   double set_torque_nm = 0;    // on its ramp, from the measured torque on
-  double velocity_before = 0;  // u/s, measured in the cycle before
-  double until = 0;            // u/s, on its ramp: where the torque ends in this cycle
+  double velocity_before = 0;  // [u/s] measured in the cycle before
+  double until = 0;            // [u/s] on its ramp: where the torque ends in this cycle
   Ticket ticket = 0;           // of the command that the ramp was planned for
 };
 

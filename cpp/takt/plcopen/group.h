@@ -143,14 +143,14 @@ class MC_GroupReadActualPosition : public GroupReadBlock {
 class MC_GroupReadActualVelocity : public GroupReadBlock {
  public:
   using GroupReadBlock::GroupReadBlock;
-  double PathVelocity() const noexcept { return shown().actual_velocity; }  // mm/s
+  double PathVelocity() const noexcept { return shown().actual_velocity; }  // [mm/s]
 };
 
 // As commanded: nothing measures it.
 class MC_GroupReadActualAcceleration : public GroupReadBlock {
  public:
   using GroupReadBlock::GroupReadBlock;
-  double PathAcceleration() const noexcept { return shown().acceleration; }  // mm/s²
+  double PathAcceleration() const noexcept { return shown().acceleration; }  // [mm/s²]
 };
 
 class MC_ReadKinTransform : public GroupReadBlock {

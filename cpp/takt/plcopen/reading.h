@@ -97,19 +97,19 @@ class MC_ReadDigitalOutput : public ReadBlock {
 class MC_ReadActualPosition : public ReadBlock {
  public:
   using ReadBlock::ReadBlock;
-  double Position() const noexcept { return shown().actual_position; }  // u
+  double Position() const noexcept { return shown().actual_position; }  // [u]
 };
 
 class MC_ReadActualVelocity : public ReadBlock {
  public:
   using ReadBlock::ReadBlock;
-  double Velocity() const noexcept { return shown().actual_velocity; }  // u/s
+  double Velocity() const noexcept { return shown().actual_velocity; }  // [u/s]
 };
 
 class MC_ReadActualTorque : public ReadBlock {
  public:
   using ReadBlock::ReadBlock;
-  double Torque() const noexcept { return shown().torque_nm; }  // Nm; N on linear motors
+  double Torque() const noexcept { return shown().torque_nm; }  // [Nm] N on linear motors
 };
 
 // How the set point of the axis moves.
@@ -147,13 +147,13 @@ class MC_ReadAxisInfo : public ReadBlock {
 class GT_Show : public ReadBlock {
  public:
   using ReadBlock::ReadBlock;
-  double ModelPosition() const noexcept { return shown().set_position; }  // u
-  double Position() const noexcept { return shown().actual_position; }    // u
-  double Deviation() const noexcept { return shown().following_error; }   // u
-  double ModelVelocity() const noexcept { return shown().set_velocity; }  // u/s
-  double Velocity() const noexcept { return shown().actual_velocity; }    // u/s
-  double Voltage() const noexcept { return shown().voltage_v; }           // V
-  double Torque() const noexcept { return shown().torque_nm; }            // Nm; N on linear motors
+  double ModelPosition() const noexcept { return shown().set_position; }  // [u]
+  double Position() const noexcept { return shown().actual_position; }    // [u]
+  double Deviation() const noexcept { return shown().following_error; }   // [u]
+  double ModelVelocity() const noexcept { return shown().set_velocity; }  // [u/s]
+  double Velocity() const noexcept { return shown().actual_velocity; }    // [u/s]
+  double Voltage() const noexcept { return shown().voltage_v; }           // [V]
+  double Torque() const noexcept { return shown().torque_nm; }            // [Nm] N on linear motors
 };
 
 // A parameter by PLCopen's number, asked for again and again as long as Enable is true. Value is valid from the first

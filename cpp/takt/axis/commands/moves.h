@@ -67,7 +67,7 @@ struct Halt {  // MC_Halt
   BufferMode buffer_mode = BufferMode::kAborting;
 };
 struct Straighten {                  // the skew of an axis that follows another from load on goes to 0
-  std::optional<double> velocity{};  // u/s, of the follower against its master; unset: a tenth of the limit
+  std::optional<double> velocity{};  // [u/s] of the follower against its master; unset: a tenth of the limit
 };
 struct Stop {  // MC_Stop
   std::optional<double> deceleration{}, jerk{};
