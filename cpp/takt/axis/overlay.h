@@ -1,25 +1,24 @@
-// A motion on top of another (MC_MoveSuperimposed): a distance of its own that is added to the set points of the motion
-// in progress, which knows nothing of it.
+// A motion superimposed on another (MC_MoveSuperimposed): a distance of its own that is added to the set points of the
+// motion in progress, the base motion, which is not aware of it.
 //
-// The axis has two set points then: that of the motion beneath, as if nothing lay on top of it, and that of the axis,
+// The axis has two set points then: that of the base motion, as if nothing was superimposed, and that of the axis,
 // which follows the sum of both. Invariants, whatever both motions are:
-//   - Every set point of the axis keeps its velocity, acceleration, deceleration and jerk, and continues the one before
-//     (trajectory/demand_follower.h). Where the sum does so itself, it is taken bit for bit; else the axis lags behind
-//     the sum, `limited_by` says why, and it catches up as soon as the limits leave room.
-//   - The motion beneath is what it would be alone: its command is done when it would be done alone.
-//   - From every set point a stop ends inside the SW limits. Beneath a motion with an end the axis waits
-//   before them;
-//     beneath one without, they are the fault they would be for that motion alone.
-//   - The distance is done when all of it is added and the axis is in step with the sum. It is then made part of the
-//     motion beneath, which ends so much further on: the axis ends at its end + distance, exactly. Commands that
-//     begin while it is in progress end so much further on, too; those that begin afterwards do not.
-//   - Overrides (AX-51) act on both. One that holds the axis holds what lies on top, too, until it goes on.
-//   - What aborts the motion in progress begins from the set point of the axis, and aborts what lies on top: what was
+//   - Every set point of the axis keeps the axis' velocity, acceleration, deceleration and jerk, and continues the one
+//     before (trajectory/demand_follower.h). A sum that does so itself is taken bit for bit; else the axis lags behind
+//     the sum, `limited_by` says why, and it catches up as soon as the limits allow.
+//   - The base motion is the same as without an overlay: its command is done when it would be done alone.
+//   - From every set point a stop ends inside the SW limits. If the base motion has an end, the axis waits before them;
+//     if it has none, they are the fault that they would be for that motion alone.
+//   - The distance is done when all of it is added and the axis is in step with the sum. It then becomes part of the
+//     base motion, whose end moves by it: the axis ends at that end + distance, exactly. The ends of commands that
+//     begin meanwhile move by it, too; those of commands that begin afterwards do not.
+//   - Overrides (AX-51) act on both. One that holds the axis holds the overlay, too, until the factor is raised.
+//   - A command that aborts the base motion begins from the set point of the axis, and aborts the overlay: the distance
 //     covered stays.
 //
-// So that the axis need not lag, a distance on top of a motion that is known ahead is planned for that: with no more
-// velocity than is left, and either with no more than is left of the ramps or so late that the ramps of both do not
-// meet (axis/overlay_plan.h).
+// So that the axis need not lag, a distance on top of a base motion that is known ahead is planned for it: with no more
+// velocity than it leaves, and either with no more than it leaves of the ramps, or so late that the ramps of both do
+// not meet (axis/overlay_plan.h).
 #pragma once
 
 #include <cstdint>
@@ -39,18 +38,18 @@ struct Request;
 struct State;
 
 struct OverlayState {
-  KinematicState base;          // the set point of the motion beneath
-  trajectory::Profile profile;  // what is added, from 0 on
+  KinematicState base;          // set point of the base motion
+  trajectory::Profile profile;  // added, from 0 on
   std::uint64_t start_cycle = 0;
-  std::uint64_t base_start_cycle = 0;  // of the motion beneath for which it was planned ...
-  double base_start_offset_s = 0;      // ... and s
+  std::uint64_t base_start_cycle = 0;  // of the base motion for which it was planned
+  double base_start_offset_s = 0;      // [s] of the same
   trajectory::DemandFollowerState chase;
   Ticket ticket = 0;
   Override factors;    // for which it was planned
-  double target = 0;   // [u] what is to be added in all
-  double begin = 0;    // [u] what had been added before the command
+  double target = 0;   // [u] to be added in all
+  double begin = 0;    // [u] added before the command
   double covered = 0;  // [u] by the command
-  // u/s ...: the limits of the command.
+  // The limits of the command: [u/s], [u/s²], [u/s³].
   double velocity = 0;
   double acceleration = 0;
   double deceleration = 0;
@@ -59,8 +58,8 @@ struct OverlayState {
   LimitedBy limited_by = LimitedBy::kNothing;
 };
 
-// For what concerns the motion beneath alone: while it lives, `setpoint` is that motion's. Without a motion on top it
-// does nothing. Not to be nested; nothing in its scope may end the motion on top.
+// Scope in which `setpoint` is that of the base motion. Has no effect unless a motion is superimposed. Must not be
+// nested; nothing in its scope may end the superimposed motion.
 class ScopedBaseMotion {
  public:
   explicit ScopedBaseMotion(State& state) noexcept;
@@ -73,23 +72,24 @@ class ScopedBaseMotion {
   State& state_;
 };
 
-// Each cycle in which something is on top (`superimposed`), once the motion beneath has its set point: that of the
-// axis.
+// Computes the set point of the axis; each cycle with a superimposed motion (`superimposed`), once the base motion has
+// its set point.
 void Superimpose(const Context& c, State& s) noexcept;
-// Ends what is on top, if anything is; its motion is the caller's to replace.
+// Ends the superimposed motion, if any; the caller must replace the motion of the axis.
 void AbortOverlay(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
-// Whether the motion beneath stands.
+// Returns true if the base motion is at rest.
 bool StandsBeneath(const State& s) noexcept;
-// Whether something can lie on top of this command. One that cannot waits for what lies on top of a standing axis, and
-// aborts what lies on top of a moving one.
+// Returns true if a motion can be superimposed on this command. If it cannot, the buffered command waits for the
+// overlay while the base motion is at rest, and aborts the overlay if the base motion moves.
 bool Carries(const Request& r) noexcept;
-// [u] how much further the motion in progress ends because of what is on top of it.
+// Returns the distance [u] by which the end of the motion in progress moves because of the overlay; 0 if there is none.
 double AddedAtEnd(const State& s) noexcept;
 
-// kState: in Homing, while a torque is controlled, while the axis goes to where it was touched. kAxisStopping,
-// kErrorStop, kPowerOff. kTargetBehindLimit: the end would lie outside the SW limits.
+// Returns kState in Homing, or if the command in control carries no overlay (torque control, a touch, a stream,
+// guidance) or the axis follows another from load on; kAxisStopping, kErrorStop, kPowerOff, kNoConstants; the errors of
+// MayMove; kTargetBehindLimit if the end would be outside the SW limits.
 Status CarryOut(const Context& c, Ticket ticket, const MoveSuperimposed& command, State& s) noexcept;
-// Done at once if nothing is on top.
+// Done at once if nothing is superimposed.
 Status CarryOut(const Context& c, Ticket ticket, const HaltSuperimposed& command, State& s) noexcept;
 
 void describe(Description<OverlayState>&);

@@ -1,4 +1,4 @@
-// How a distance is put on top of a motion so that the sum keeps the limits of the axis. Pure.
+// Planning of a superimposed distance so that the sum keeps the limits of the axis. Pure.
 #pragma once
 
 #include "takt/axis/params.h"
@@ -9,20 +9,21 @@
 
 namespace takt::axis {
 
-// The motion beneath, as far as it is known ahead.
+// The base motion, as far as it is known ahead.
 struct BaseAhead {
-  const trajectory::Profile* profile = nullptr;  // null: a coupled axis, taken to go on as it moves now
-  double elapsed_s = 0;                          // of it
+  const trajectory::Profile* profile = nullptr;  // null: it follows something; assumed to keep its velocity
+  double elapsed_s = 0;                          // [s] of the profile
   KinematicState now;
 };
 
-// Whether base and `added` together keep velocity, acceleration, deceleration and jerk of the axis and stay inside the
-// SW limits, from now on to the end of both.
+// Returns true if the sum of base and `added` keeps the velocity, acceleration, deceleration and jerk of the axis and
+// stays inside the SW limits, from now to the end of both.
 bool SumKeeps(const AxisParams& params, const BaseAhead& base, const trajectory::Profile& added) noexcept;
 
-// Plans `added` from `from` (relative to the base) to `target` with no more than `limits`. Of the plans with which the
-// sum keeps the limits the one that ends first: with all its ramps at once, with what the base leaves of the ramps, or
-// later. If there is none, that with all its ramps at once: the axis will lag behind the sum for a while. kPlanning.
+// Plans `added` from `from` (relative to the base) to `target` within `limits`. Of the plans whose sum keeps the limits
+// it takes the one that ends first: with all its ramps at once, with the ramps that the base leaves, or delayed. If
+// there is none, the one with all its ramps at once: the axis then lags behind the sum for a while. Returns kPlanning
+// if there is no plan.
 Status PlanOverlay(const AxisParams& params, trajectory::Planner& planner, const BaseAhead& base,
                    const KinematicState& from, double target, const trajectory::Limits& limits,
                    trajectory::Profile& added) noexcept;

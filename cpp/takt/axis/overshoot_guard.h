@@ -1,5 +1,5 @@
-// What has been promised stays promised: an axis on its way to a target does not get beyond it because its ramps were
-// lowered, by an override or by another command (AX-97).
+// Keeps promised ends: an axis that moves to a target does not overshoot it because its ramps were lowered, by an
+// override or by another command (AX-97).
 #pragma once
 
 #include <optional>
@@ -11,25 +11,26 @@
 
 namespace takt::axis {
 
-// The sense in which something runs that is to stop: of its velocity, at rest of its acceleration.
+// Returns the sense, +1 or -1, in which an axis that is to stop moves: that of its velocity, at rest of its
+// acceleration.
 double SenseOfTravel(const KinematicState& from) noexcept;
 
-// Whether it gets beyond `target` on the far side.
+// Returns true if the profile gets beyond `target` on the far side.
 bool Overshoots(const trajectory::Profile& profile, double target) noexcept;
 
-// What weaker ramps must not change of a motion in progress.
+// Properties of the motion in progress that weaker ramps must not change.
 struct OvershootGuard {
-  std::optional<double> furthest;  // [u] it gets no further than this in its sense of travel
-  bool straight = false;           // it does not turn round
+  std::optional<double> furthest;  // [u] limit of its travel in its sense
+  bool straight = false;           // it does not reverse
 };
 
-// Whether `profile` breaks one of them.
+// Returns true if `profile` violates the guard.
 bool BreaksGuard(const AxisParams& params, const OvershootGuard& guard, const trajectory::Profile& profile) noexcept;
 
-// Whether an axis in `state` stops no further than at `furthest`, and without turning round.
+// Returns true if an axis in `state` stops no further than at `furthest`, without reversing.
 bool StopsBy(const KinematicState& state, const trajectory::Limits& limits, double furthest) noexcept;
 
-// The request with as much more deceleration and jerk, up to the axis' own, as it takes to keep them.
+// Returns the request with as much more deceleration and jerk, at most the axis' own, as the guard requires.
 Request WithStrongerRamps(const AxisParams& params, const KinematicState& from, const Request& request,
                           const OvershootGuard& guard) noexcept;
 

@@ -1,5 +1,5 @@
-// From a request to a profile: where it ends, with what speed it is left, and whether limits allow it. Pure: nothing of
-// the axis changes.
+// From a request to a profile: its end, its end velocity, and whether the limits allow it. Pure: the axis does not
+// change.
 #pragma once
 
 #include <optional>
@@ -14,57 +14,57 @@
 
 namespace takt::axis {
 
-// What planning has to know of an axis besides its parameters.
+// State of an axis that planning needs besides its parameters.
 struct PlanningContext {
   bool limit_positive = false;
   bool limit_negative = false;
-  bool bars_positive = false;  // motion upwards is not enabled (MC_Power)
+  bool bars_positive = false;  // MC_Power does not enable motion upwards
   bool bars_negative = false;
   bool homed = true;
   std::int8_t last_sense = 1;
-  std::optional<double> promised;  // [u] unwrapped: where the positioning command in control ends, if there is one
-  std::optional<double> begin;     // [u] unwrapped: where that command began, if it goes by a distance
-  // [u] unwrapped: the end of the motion in progress, or further out where it passes that. Nothing that does not itself
-  // go beyond is to go beyond (AX-97).
+  std::optional<double> promised;  // [u] unwrapped: end of the positioning command in control, if any
+  std::optional<double> begin;     // [u] unwrapped: start of the continuous relative move in control, if any
+  // [u] unwrapped: the end of the motion in progress, or the furthest point if it overshoots that. A request that does
+  // not itself aim beyond it must not get beyond it (AX-97).
   std::optional<double> furthest;
   bool again = false;      // the request is the one in control, planned anew
-  bool passes = false;     // and the motion in progress goes on beyond its target
-  bool committed = false;  // the target of the request is a promise already: the move before was left towards it
+  bool passes = false;     // the motion in progress continues beyond its target
+  bool committed = false;  // the target must be kept: the previous move was left with a velocity towards it
   Override factors;
 };
 
 struct Plan {
   trajectory::Profile profile;
-  double target = 0;  // unwrapped end of a positioning request
+  double target = 0;  // [u] unwrapped end of a positioning request
   LimitedBy limited_by = LimitedBy::kNothing;
-  bool held = false;  // by the override: the profile ends where that stops it
+  bool held = false;  // by the override: the profile ends where it holds the axis
 };
 
-// Plans `request`, scaled by the override, from `from`. `queue` has the blending commands behind it: the profile then
-// ends with the highest velocity from which all of them can be done (AX-12, AX-103). Errors: kTargetBehindLimit,
-// kAwayFromLimitOnly, kDirection, kPlanning.
+// Plans `request`, scaled by the override, from `from`. `queue`: the blending commands behind it; the profile then ends
+// with the highest velocity from which all of them can be executed (AX-12, AX-103). Returns kTargetBehindLimit,
+// kNoReference, kAwayFromLimitOnly, kDirection, kState (torque for an analogue drive) or kPlanning.
 Status PlanRequest(const AxisParams& params, const PlanningContext& around, trajectory::Planner& planner,
                    const KinematicState& from, const Request& request, std::span<const Request> queue,
                    Plan& out) noexcept;
 
-// The same for a positioning request that is under way: `out.target` is given and stays.
+// Plans a positioning request that is in progress anew: `out.target` is given and stays.
 Status Replan(const AxisParams& params, const PlanningContext& around, trajectory::Planner& planner,
               const KinematicState& from, const Request& request, std::span<const Request> queue, Plan& out) noexcept;
 
-// While a limit switch is on, no motion may go (further) towards it: kAwayFromLimitOnly; and none where MC_Power does
-// not enable it: kDirection.
+// Checks a profile against limit switches and enabled directions. Returns kAwayFromLimitOnly if it moves towards a
+// limit switch that is on, kDirection if it moves in a sense that MC_Power does not enable.
 Status CheckSwitches(const PlanningContext& around, const KinematicState& from,
                      const trajectory::Profile& profile) noexcept;
 
-// To standstill as `limits` say, or harder where the SW limits want it, or a promise (PlanningContext).
+// Plans a stop within `limits`, or harder if the SW limits or `furthest` [u] (see OvershootGuard) require it.
 Status PlanStop(const AxisParams& params, trajectory::Planner& planner, const KinematicState& from,
                 const trajectory::Limits& limits, std::optional<double> furthest, trajectory::Profile& out) noexcept;
 
-// +1 or -1: where a velocity request goes.
+// Returns the sense, +1 or -1, of a velocity request.
 int SenseOf(const Request& request, std::int8_t last_sense) noexcept;
 
-// The next position equal to `position` modulo the turn that `direction` allows from `from` without reversing on the
-// way (AX-14). Linear axes: `position`.
+// Returns the position that equals `position` modulo a turn and is next in `direction` from `from` without reversing
+// (AX-14). Linear axes: `position`.
 double ResolveTarget(const AxisParams& params, const KinematicState& from, const trajectory::Limits& limits,
                      double position, Direction direction, std::int8_t last_sense) noexcept;
 

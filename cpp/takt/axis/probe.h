@@ -1,10 +1,10 @@
-// The touch probe: MC_TouchProbe, GT_Touch and MC_AbortTrigger (AX-49). They take no control of the axis while they
-// wait.
+// The touch probe: MC_TouchProbe, GT_Touch and MC_AbortTrigger (AX-49). While they wait they do not take control of the
+// axis.
 //
-// Several MC_TouchProbe wait at once, each for its own edge and window (AX-109), and beside them one GT_Touch; a second
-// GT_Touch supersedes it. MC_TouchProbe is Active until its edge comes, in every state of the axis. GT_Touch needs an
-// axis in its loop: capturing, it is Busy until the edge, then ends the motion in progress, brakes and is Done at the
-// captured position; slowing, it is Active from the first time it slows a motion down, and never done.
+// Several MC_TouchProbe can wait at once, each for its own edge and window (AX-109), besides one GT_Touch; a second
+// GT_Touch supersedes it. MC_TouchProbe is Active until its edge comes, in every state of the axis. GT_Touch in capture
+// mode requires a closed loop: it is Busy until the edge, then ends the motion in progress, moves to the captured
+// position and is Done there. In slow mode it is Active from the first time it slows a motion down, and never Done.
 #pragma once
 
 #include <array>
@@ -23,11 +23,11 @@ namespace takt::axis {
 struct Context;
 struct State;
 
-inline constexpr std::size_t kCaptures = 8;  // that wait for one probe
+inline constexpr std::size_t kCaptures = 8;  // waiting MC_TouchProbe of one axis
 
 enum class ProbeWatch : std::uint8_t { kNothing, kTouch, kSlow };
 
-// An MC_TouchProbe that waits.
+// A waiting MC_TouchProbe.
 struct Capture {
   Ticket ticket = 0;
   ProbeEdge edge = ProbeEdge::kRising;
@@ -37,57 +37,57 @@ struct Capture {
 };
 
 struct ProbeState {
-  std::uint8_t waits = 0;  // how many MC_TouchProbe wait
+  std::uint8_t waits = 0;  // number of waiting MC_TouchProbe
 
   // GT_Touch.
   ProbeWatch watch = ProbeWatch::kNothing;
   ProbeEdge edge = ProbeEdge::kRising;
-  bool touched = false;       // the edge came in this cycle ...
-  double touch_position = 0;  // [u] unwrapped: ... here
+  bool touched = false;       // the edge has come
+  double touch_position = 0;  // [u] unwrapped: position at the edge
   Ticket ticket = 0;
-  // GT_Touch: its limits.
+  // GT_Touch: its limits [u/s], [u/s²], [u/s³].
   double velocity = 0;
   double acceleration = 0;
   double deceleration = 0;
   double jerk = 0;
-  // GT_Touch, slowing: which motion, and what it had before.
+  // GT_Touch in slow mode: the motion slowed down, and its own velocity.
   bool slowing = false;
-  bool reported = false;  // Active is out
+  bool reported = false;  // Active has been reported
   Ticket slowed = 0;
   double own_velocity = 0;
 
   double position = 0;         // [u] of the last capture; rotary axes: in [0, modulus)
-  std::uint32_t captures = 0;  // how many there were, wraps
+  std::uint32_t captures = 0;  // number of captures, wraps
 
-  // The sample before.
-  bool sampled = false;      // there is one, and it was good
+  // The previous sample.
+  bool sampled = false;      // it exists and was good
   bool wire = false;         // the input, before inversion
   std::uint32_t counts = 0;  // raw
-  std::uint32_t rises = 0;   // of the wire
+  std::uint32_t rises = 0;   // count of the wire's rising edges
   std::uint32_t falls = 0;
-  double set_velocity = 0;  // [u/s] of the set point for that sample
-  double step = 0;          // [u] from there to this one
+  double set_velocity = 0;  // [u/s] of the set point at that sample
+  double step = 0;          // [u] from that sample to this one
 
   std::array<Capture, kCaptures> waiting;  // in the order in which they were given
 };
 
-// Stage sense, after the position: finds edges and captures. The position at an edge is interpolated between two
-// samples at its time stamp, with the acceleration of the set point; extrapolated by the actual velocity where the
-// samples are not one cycle apart.
+// sense: detects edges and captures; after the position. The position at an edge is interpolated between two samples by
+// its time stamp, with the acceleration of the set point; if the samples are not one cycle apart, it is extrapolated
+// with the actual velocity.
 void SenseProbe(const Context& context, const ServoInputs& inputs, State& state) noexcept;
 
 // Discards the previous sample after a gap: edges since then are ignored.
 void ForgetSample(const ServoInputs& inputs, ProbeState& probe) noexcept;
 
-// Stage move, before the set point: gives control to a GT_Touch once its edge has come, and reports the errors of its
-// motion; lowers the velocity of a motion in progress, or restores it.
+// move: gives control to a GT_Touch whose edge has come, and reports its errors; reduces the velocity of a motion in
+// progress, or restores it. Before the set point.
 void FollowProbe(const Context& context, State& state) noexcept;
 
-// Ends the command with this ticket that waits for the probe, as aborted. False: there is none.
+// Ends the command with this ticket that waits for the probe, as aborted. Returns false if there is none.
 bool EndProbing(const Context& context, Ticket ticket, State& state) noexcept;
 
-// Errors. TouchProbe: kBufferFull where kCaptures commands wait. Touch, in capture mode only: kErrorStop, kPowerOff,
-// kState (the axis follows another one).
+// TouchProbe returns kBufferFull if kCaptures commands wait already. Touch, in capture mode only, returns kErrorStop,
+// kPowerOff or kState (the axis follows another one from load on).
 Status CarryOut(const Context& context, Ticket ticket, const TouchProbe& command, State& state) noexcept;
 Status CarryOut(const Context& context, Ticket ticket, const AbortTrigger& command, State& state) noexcept;
 Status CarryOut(const Context& context, Ticket ticket, const Touch& command, State& state) noexcept;

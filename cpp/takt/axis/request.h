@@ -1,4 +1,4 @@
-// A command as the axis keeps it: checked, its unset values filled in, small and plain, so that it can be buffered and
+// A command as the axis keeps it: checked, unset values filled in, small and plain, so that it can be buffered and
 // hashed.
 #pragma once
 
@@ -47,31 +47,32 @@ enum class RequestKind : std::uint8_t {
   kFinishHoming,
   kTouch,
   kStream,
-  kGuided,  // by another component of the machine, not by a command
+  kGuided,  // set points come from another component of the machine, not from a command
 };
 
 struct Request {
   Ticket ticket = 0;
-  double value = 0;     // position, distance; velocity moves: the signed velocity is velocity * sense
-  double velocity = 0;  // [u/s] the four limits of the command, never beyond the axis' own
+  double value = 0;  // position or distance [u], torque [Nm], delay of a stream [s]
+  // The four limits of the command, at most the axis' own. Velocity moves: velocity without its sign (SenseOf).
+  double velocity = 0;
   double acceleration = 0;
   double deceleration = 0;
   double jerk = 0;
-  double torque_ramp = 0;   // [Nm/s] of torque control; 0: at once
+  double torque_ramp = 0;   // [Nm/s] of torque control; 0: unlimited
   double end_velocity = 0;  // [u/s] of continuous moves, in the sense of travel
   double timeout_s = 0;     // [s] of streams
-  double lease_s = 0;       // > 0: level-sensitive command under a dead man's lease
+  double lease_s = 0;       // [s] > 0: dead man's lease of a level-sensitive command
   std::int32_t key = 0;     // of streams
   RequestKind kind = RequestKind::kNone;
   Direction direction = Direction::kShortest;
   BufferMode buffer_mode = BufferMode::kAborting;
   bool enable = false;   // power
   bool hold = false;     // stop
-  bool update = false;   // changes the command of its kind that is in control (MC's ContinuousUpdate; AX-111)
+  bool update = false;   // changes the command of its kind in control (MC's ContinuousUpdate; AX-111)
   bool forward = false;  // jog
   bool backward = false;
 
-  // Of the groups of commands that need more.
+  // For kinds of commands that need more.
   CouplingRequest coupling;
   TableRequest table;
   HomingRequest homing;
@@ -85,28 +86,28 @@ struct Request {
     return kind == RequestKind::kMoveRelative || kind == RequestKind::kMoveAdditive || kind == RequestKind::kInch ||
            kind == RequestKind::kMoveContinuousRelative;
   }
-  // Goes on with `end_velocity` from its position.
+  // Passes its position with `end_velocity` and keeps that.
   bool continuous() const {
     return kind == RequestKind::kMoveContinuousAbsolute || kind == RequestKind::kMoveContinuousRelative;
   }
   bool blends() const { return buffer_mode >= BufferMode::kBlendingLow; }
 };
 
-// What the second table 8.3 of the GT-775x manual says of each command, and the state it puts the axis in.
+// The rules for each kind of command (second table 8.3 of the GT-775x manual), and the state that it puts the axis in.
 struct RequestRules {
   RequestKind kind;
   bool may_be_buffered;
-  bool may_be_blended;   // into the move before it
+  bool may_be_blended;   // with the move before it
   bool may_be_followed;  // by a buffered command
   PlcState state;        // power: while switching off in motion
 };
 const RequestRules& RulesOf(RequestKind kind) noexcept;
 
-// Commands that do not take control of the axis (settings, probes, what comes on top of a motion) are checked likewise
-// and leave kind kNone.
+// Checks a command and turns it into a request. Commands that do not take control of the axis (settings, probes,
+// superimposed motions) are checked in the same way and leave kind kNone.
 //
-// kParameter where a value is not finite, out of its range, beyond the axis' limits (AX-06) or the buffer mode is not
-// one of the command's. `why`, where given, says what was wrong.
+// Returns kParameter if a value is not finite, out of its range or beyond the axis' limits (AX-06), or if the command
+// does not have the buffer mode. `why`, if given, then says what was wrong.
 struct Refusal {
   const char* field = "";
   double found = 0;
@@ -114,7 +115,7 @@ struct Refusal {
   double high = 0;
 };
 Status MakeRequest(const Command& command, const AxisParams& params, Request& out, Refusal* why = nullptr) noexcept;
-// The same as a sentence for people; empty: the arguments are fine. Not for the cycle.
+// Returns the same as a sentence for users; empty if the arguments are valid. Not for use in the cycle.
 std::string Diagnose(const Command& command, const AxisParams& params);
 
 void describe(Enumeration<RequestKind>&);

@@ -1,5 +1,6 @@
-// How a command becomes a request: one Fill for each command, which checks its values and copies what is needed. False:
-// refused, `why` says what. A command that takes no control leaves kind kNone.
+// How a command becomes a request: one Fill for each command, which checks its values and copies what is needed.
+// Returns false if the command is rejected; `why` then says why. A command that does not take control leaves kind
+// kNone.
 #pragma once
 
 #include <limits>
@@ -10,25 +11,25 @@
 namespace takt::axis {
 
 inline constexpr double kMaxTorque = 1e9;     // [Nm]
-inline constexpr double kMaxPosition = 1e12;  // [u] beyond it a double no longer tells thousandths apart
+inline constexpr double kMaxPosition = 1e12;  // [u] beyond it a double does not resolve thousandths
 
 struct RequestBuilder {
   const AxisParams& params;
   Request& r;
   Refusal& why;
 
-  // NaN is in no range.
+  // Returns true if the value is within the range; NaN is in no range.
   bool In(const char* field, double value, double low, double high) const {
     const bool inside = value >= low && value <= high;
     if (!inside) why = {field, value, low, high};
     return inside;
   }
-  // One of a command's limits: what is asked for, else the axis' own, and never beyond that.
+  // Takes one of a command's limits: the value asked for, or the axis' own, which it must not exceed.
   bool Take(const char* field, std::optional<double> asked, double own, double& out) const {
     out = asked.value_or(own);
     return In(field, out, std::numeric_limits<double>::min(), own);
   }
-  // Jerk 0 is unlimited, and so beyond any limit of the axis.
+  // Jerk 0 is unlimited, and so exceeds any jerk limit of the axis.
   bool TakeJerk(std::optional<double> asked, double own, double& out) const {
     out = asked.value_or(own);
     return own == 0 ? In("jerk", out, 0, std::numeric_limits<double>::max()) : Take("jerk", asked, own, out);
