@@ -1,4 +1,4 @@
-// The commands an axis understands: each a described struct, the same for YAML, Python, LCM and function blocks.
+// The commands of an axis: each a described struct, the same for YAML, Python, LCM and function blocks.
 #pragma once
 
 #include <variant>

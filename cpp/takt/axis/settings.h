@@ -1,4 +1,4 @@
-// Commands that change, at run time, what an axis works with. They take no control of it: done at once, or refused.
+// Commands that change parameters of an axis at run time. They do not take control of it: done at once, or rejected.
 #pragma once
 
 #include <optional>
@@ -26,7 +26,7 @@ enum class Parameter : std::int32_t {
   kMaxDeceleration = 15,
   kMaxJerkSystem = 16,
   kMaxJerk = 17,
-  // Numbers from 1000 on are the maker's own.
+  // Numbers from 1000 on are vendor-specific.
   kLoopKp = 1001,
   kLoopKi = 1002,
   kLoopKd = 1003,
@@ -37,27 +37,29 @@ enum class Parameter : std::int32_t {
   kTorqueLimit = 1008,
 };
 
-// In the parameter's unit, 0 and 1 for no and yes. Nothing: there is no such parameter. The limits of the system are
-// those of the machine file; those of the application may lie below them. What is switched off keeps its value; what
-// there never was is infinite.
+// Returns the value of a parameter in its unit, booleans as 0 and 1; empty if there is no such parameter. System limits
+// are those of the machine file; application limits may be lower. A limit that is switched off keeps its value; one
+// that was never set is infinite.
 std::optional<double> ValueOf(const AxisParams& params, const State& state, std::int32_t number) noexcept;
 
-// kTargetBehindLimit: a SW limit would lie before where the axis is, or before the end of a move that was promised.
-// kParameter: a value is out of its range, or the parameter cannot be written.
+// Return kTargetBehindLimit if a SW limit would be passed by the axis, its stop or a promised end of its motion,
+// kParameter if a value is out of its range or the parameter cannot be written, kState if the axis is in no state for
+// it.
 Status CarryOut(const Context& c, Ticket ticket, const SetConstants& command, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const SetLoad& command, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const WriteParameter& command, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const ReadParameter& command, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const SetSoftLimits& command, State& s) noexcept;
-// kPowerOn: only while the axis is Disabled. kState: its drive takes no voltage.
+// Returns kPowerOn unless the axis is Disabled, kState if its drive takes no voltage, kDirection if the direction is
+// not enabled.
 Status CarryOut(const Context& c, Ticket ticket, const DirectOutput& command, State& s) noexcept;
-// Likewise; done when it is over.
+// Returns the same; done at the end of the pulse.
 Status CarryOut(const Context& c, Ticket ticket, const PulseOutput& command, State& s) noexcept;
-// Each cycle of a pulse (`pulsing`): ends it.
+// Ends a pulse when due; each cycle of it (`pulsing`).
 void WatchPulse(const Context& c, State& s) noexcept;
 Status CarryOut(const Context& c, Ticket ticket, const WriteOutput& command, State& s) noexcept;
-// Calls where the axis is by another number: nothing moves, a motion in progress goes on to where it went. kState: in
-// Homing and Stopping. kTargetBehindLimit: the axis, or the end of its motion, would lie outside the SW limits.
+// Renumbers the present position: nothing moves, a motion in progress ends at the same point. Returns kState in Homing,
+// Stopping and ErrorStop, kTargetBehindLimit if the axis, or the end of its motion, would be outside the SW limits.
 Status CarryOut(const Context& c, Ticket ticket, const SetPosition& command, State& s) noexcept;
 
 }  // namespace takt::axis

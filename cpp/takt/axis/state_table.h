@@ -9,7 +9,7 @@
 
 namespace takt::axis {
 
-// In: how an axis gets there. Out: how it leaves.
+// In: how an axis enters the state. Out: how it leaves it.
 enum class PlcState : std::uint8_t {
   kDisabled,            // in: start, power off, reset with an open loop. out: power on
   kStandstill,          // in: powered and at rest, nothing commanded. out: any motion, power off, fault

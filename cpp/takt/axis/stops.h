@@ -1,4 +1,4 @@
-// Stops of an axis (MC_Stop) as levels: several commands may stop it and hold it stopped, each by itself.
+// Stops of an axis (MC_Stop) as levels: several commands may stop the axis and hold it stopped independently.
 #pragma once
 
 #include <array>
@@ -16,54 +16,54 @@ struct Request;
 struct State;
 
 // Invariants:
-// - While any stop is held nothing moves the axis: it is in Stopping or ErrorStop, or its loop is open. Power off,
+// - While any stop is held no command moves the axis: it is in Stopping or ErrorStop, or its loop is open. Power off,
 //   faults, resets and emergency stops do not end a hold; its release or the end of its lease does.
 // - The axis brakes on the ramp with the shortest time to rest; all stops are done at standstill.
 // - A stop that is reported and not held is removed. While one is not reported a stop is in control.
 struct StopOrder {
-  Ticket ticket = 0;  // 0: another component's
+  Ticket ticket = 0;  // 0: of another component
   double lease_s = 0;
   std::uint64_t lease_end_cycle = 0;
   bool hold = false;
-  bool reported = false;  // its final feedback is out
+  bool reported = false;  // its final feedback has been reported
 };
 
-// Of an axis, or of a group of axes.
+// The stops of an axis, or of a group of axes.
 struct StopOrders {
   static constexpr std::size_t kMost = 8;
   std::array<StopOrder, kMost> of{};
   std::uint32_t count = 0;
 
-  // Returns the oldest stop that is held; null: there is none.
+  // Returns the oldest stop that is held; null if there is none.
   const StopOrder* Holder() const noexcept;
   // Adds a stop, or joins it to one with the same ticket. Returns false if there is no room.
   bool Add(const StopOrder& order) noexcept;
   // Ends a hold. Returns false if there is no stop with this ticket.
   bool LetGo(Ticket ticket) noexcept;
-  // Extends a lease. Returns false if there is none with this ticket.
+  // Extends a lease. Returns false if there is no stop with a lease and this ticket.
   bool Renew(const Cycle& cycle, Ticket ticket) noexcept;
-  // Ends the holds whose lease is over. Returns true if this ended the last hold.
+  // Ends holds whose lease has expired. Returns true if this ended the last hold.
   bool EndLeases(const Cycle& cycle) noexcept;
-  // Removes what is reported and not held.
+  // Removes stops that are reported and not held.
   void Tidy() noexcept;
 };
 
-// Whether nothing may move the axis before it is released.
+// Returns true if no command may move the axis until it is released.
 bool IsHeldStopped(const State& s) noexcept;
 bool HoldsStop(Ticket ticket, const State& s) noexcept;
 
-// A stop takes control. If there is no room for it the axis brakes, but the stop is not held: error kBufferFull.
+// Adds a stop that takes control. If there is no room the axis brakes, but the stop is not held: error kBufferFull.
 void BeginStop(const Context& c, const Request& request, State& s) noexcept;
-// Another one while the axis stops already.
+// Adds another stop while the axis is stopping.
 void JoinStop(const Context& c, const Request& request, State& s) noexcept;
-// A stop with no motion to brake: the drive gets ready, the brake opens, or a voltage was put out with the loop open.
-// Buffered commands are aborted; the stop is done at once.
+// Adds a stop while there is no motion to brake: the drive becomes ready, the brake opens, or a voltage was output with
+// the loop open. Buffered commands are aborted; the stop is done at once.
 void StopAtOnce(const Context& c, const Request& request, State& s) noexcept;
-// The axis is at rest: reports held stops as done, the others one cycle later, so that Stopping is seen.
+// Handles an axis at rest: held stops are reported as done, the others one cycle later, so that Stopping is visible.
 void TellStopped(const Context& c, bool just_arrived, State& s) noexcept;
-// The stop in control ends before the axis is at rest; holds stay.
+// Ends the stop in control before the axis is at rest; holds stay.
 void EndStops(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
-// Ends expired leases, and enters Stopping again if the axis is held and has come to Standstill (powered or reset
+// Ends expired leases, and enters Stopping again if the axis is held and has reached Standstill (powered or reset
 // since).
 void FollowStops(const Context& c, State& s) noexcept;
 

@@ -1,4 +1,5 @@
-// What a command that follows a table (a cam, or a table over time) carries: which one, and how it is scaled.
+// The part of a request that only commands with a table (a cam, or a table over time) have: which table, and its
+// scaling.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +12,11 @@ namespace takt::axis {
 inline constexpr std::uint32_t kNoTable = 0xffffffff;
 
 struct TableRequest {
-  Name name;                       // empty: the command follows none
-  std::uint32_t index = kNoTable;  // among the machine's cams, found when the command arrives
-  double time_scale = 1;           // tables over time: s per s of the table
+  Name name;                       // empty: no table
+  std::uint32_t index = kNoTable;  // among the machine's cams, looked up when the command arrives
+  double time_scale = 1;           // tables over time: [s per s of the table]
   double scale = 1;                // of y
-  double offset = 0;               // added to that
+  double offset = 0;               // added to the scaled y
 };
 
 void describe(Description<TableRequest>&);

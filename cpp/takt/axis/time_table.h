@@ -13,28 +13,28 @@ struct Context;
 struct MotionStart;
 struct State;
 
-// The time counts as that of the motion in progress does.
+// The time counts like that of the motion in progress.
 struct TimeTableState {
   trajectory::DemandFollowerState chase;
-  double turns = 0;       // u over all turns: where position 0 of the table's turn is
-  KinematicState demand;  // of the cycle before; tables of velocity and acceleration: summed up, u over all turns
-  bool over = false;      // its end was reached; the motion in progress goes on from there
+  double turns = 0;       // [u] over all turns: position 0 of the table's turn
+  KinematicState demand;  // of the previous cycle; tables of velocity or acceleration: integrated, [u] over all turns
+  bool over = false;      // its end was reached; the motion in progress continues from there
 };
 
 inline bool FollowsTable(RequestKind kind) noexcept {
   return kind == RequestKind::kPositionProfile || kind == RequestKind::kVelocityProfile ||
          kind == RequestKind::kAccelerationProfile;
 }
-// Refuses what can be told from the lowest and highest value of the table, scaled: kTargetBehindLimit for positions
-// outside the SW limits, kParameter for velocities or accelerations beyond the axis' own. What follows from them (the
-// velocity of a table of positions, ...) is held against the limits on the way. kNoReference: positions mean nothing
-// yet.
+// Rejects what is known from the lowest and highest value of the scaled table. Returns kTargetBehindLimit for positions
+// outside the SW limits, kParameter for velocities or accelerations beyond the axis' own, kNoReference if an absolute
+// position needs a reference that the axis does not have. Derived values (the velocity of a table of positions, ...)
+// are limited during the motion.
 Status MayFollowTable(const Context& c, const Request& r, const State& s) noexcept;
-// Puts a request that follows a table in control. What was in control must have been ended.
+// Puts a request that follows a table in control. Requires: the command that was in control has been ended.
 void BeginTable(const Context& c, const Request& r, const MotionStart& start, State& s) noexcept;
-// Takes over from the one in control, of the same kind and table, with other scales (AX-111).
+// Takes over from the request in control, of the same kind and table, with other scales (AX-111).
 void UpdateTable(const Context& c, const Request& r, State& s) noexcept;
-// The next set point; false: the table is over, the motion in progress counts.
+// Computes the next set point. Returns false if the table is over: the motion in progress then gives it.
 bool FollowTime(const Context& c, State& s) noexcept;
 
 void describe(Description<TimeTableState>&);

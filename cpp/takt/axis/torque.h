@@ -1,10 +1,10 @@
-// MC_TorqueControl (AX-42): the drive follows a torque, no faster than a speed.
+// MC_TorqueControl (AX-42): the drive follows a torque up to a velocity limit.
 //
-// Velocity and acceleration are limited where they meet the torque, in the drive: each cycle it gets the torque and the
-// velocity up to which the torque may drive (DriveMode::kCyclicTorque); there its velocity loop takes over. That
-// velocity runs on a ramp within the command's limits towards its largest one, never further ahead of what is measured
-// than kMostLead. While the torque is what holds the axis, the set point follows what is measured, with acceleration 0;
-// else it is the ramp. So the next command starts from where the axis is, and as fast as it is.
+// Velocity and acceleration are limited in the drive, where they meet the torque: each cycle it gets the torque and the
+// velocity up to which the torque may drive it (DriveMode::kCyclicTorque); there its velocity loop takes over. That
+// velocity runs on a ramp within the command's limits towards its velocity limit, never further ahead of the actual
+// velocity than kMostLead allows. While the torque determines the motion, the set point follows the actual position,
+// with acceleration 0; else it is the ramp. So the next command starts from the actual position and velocity.
 #pragma once
 
 #include "takt/core/describe_fwd.h"
@@ -16,23 +16,23 @@ struct Context;
 struct State;
 
 struct TorqueState {
-  bool engaged = false;        // the drive is told a torque
-  bool holds = false;          // the torque is what holds the axis: the set point follows what is measured
+  bool engaged = false;        // the drive gets a torque
+  bool holds = false;          // the torque determines the motion: the set point follows the actual position
   double set_torque_nm = 0;    // on its ramp, from the measured torque on
-  double velocity_before = 0;  // [u/s] measured in the cycle before
-  double until = 0;            // [u/s] on its ramp: where the torque ends in this cycle
-  Ticket ticket = 0;           // of the command that the ramp was planned for
+  double velocity_before = 0;  // [u/s] actual velocity in the previous cycle
+  double until = 0;            // [u/s] on its ramp: velocity up to which the torque acts in this cycle
+  Ticket ticket = 0;           // of the command for which the ramp was planned
 };
 
-// Whether the drive is to follow a torque in this cycle.
+// Returns true if the drive is to follow a torque in this cycle.
 bool FollowsTorque(const State& state) noexcept;
 
-// sense: where the torque holds the axis, the set point is where that is.
+// sense: while the torque determines the motion, the set point becomes the actual position and velocity.
 void SenseTorque(State& state) noexcept;
 
-// move: the next torque. Before a stop inside the SW limits gets impossible, foreseen one cycle ahead by the measured
-// acceleration (or the axis' own, if that is more), the axis goes to ErrorStop and brakes. False: no torque command is
-// in control.
+// move: computes the next torque. Before a stop inside the SW limits becomes impossible, predicted one cycle ahead with
+// the measured acceleration (or the axis' own, if that is larger), the axis enters ErrorStop and brakes. Returns false
+// if no torque command is in control.
 bool MoveTorque(const Context& context, State& state) noexcept;
 
 void describe(Description<TorqueState>&);

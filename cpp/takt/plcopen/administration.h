@@ -1,4 +1,4 @@
-// Blocks that switch an axis, clear its faults and change its settings.
+// Blocks that power an axis, clear its faults and change its settings.
 #pragma once
 
 #include <optional>
@@ -7,18 +7,19 @@
 
 namespace takt::plcopen {
 
-// Keeps power stage and position loop as the level of Enable says, whoever switched them: gives a command whenever the
-// axis is Disabled and Enable true, or the other way round. Status: the loop is closed.
+// Keeps the power stage and the position loop on or off as Enable says, whatever switched them: gives a command if the
+// axis is Disabled while Enable is true, or not Disabled while it is false. Status: the loop is closed.
 //
-// A fault that opened the loop is shown by Error until the axis is reset; then the loop is closed again. Enable true on
-// a Disabled axis with a fault leads to ErrorStop. A command that is refused is given again once the axis is in another
-// state. After an emergency stop it shows error 3100 until Enable has risen anew: nothing resumes by itself (AX-100).
-// One instance an axis: two with different Enable switch it to and fro.
+// Error shows a fault that opened the loop until the axis is reset; then the loop is closed again. Enable on a Disabled
+// axis with a fault leads to ErrorStop. A rejected power on is given again at the next call; one with a wrong
+// parameter, and a rejected power off, only once Enable changes or the axis is in another state. After an emergency
+// stop the block shows error 3100 until a new rising edge of Enable: nothing resumes by itself (AX-100). Use one
+// instance per axis: two with different Enable switch it on and off alternately.
 class MC_Power {
  public:
   bool Enable = false;
-  bool EnablePositive = true;  // whether the axis may move upwards ...
-  bool EnableNegative = true;  // ... and downwards (AX-111)
+  bool EnablePositive = true;  // the axis may move upwards
+  bool EnableNegative = true;  // the axis may move downwards (AX-111)
   axis::BufferMode buffer_mode = axis::BufferMode::kAborting;
 
   explicit MC_Power(AxisRef axis) : axis_(axis), feedback_(axis.program()) {}
@@ -34,7 +35,7 @@ class MC_Power {
   ErrorId ErrorID() const noexcept { return out_.error; }
 
  private:
-  struct Refusal {  // of a command, and the axis' state then
+  struct Refusal {  // error of a command, and the state of the axis then
     axis::PlcState state;
     ErrorId error;
   };
@@ -51,17 +52,17 @@ class MC_Power {
   void TakeEnd() noexcept;
 
   AxisRef axis_;
-  Feedback feedback_;                                                    // of the command in progress ...
-  axis::Power given_;                                                    // ... and that command
-  axis::Power taken_{.enable_positive = true, .enable_negative = true};  // the last one that was not refused
-  bool level_ = false;                                                   // Enable in the call before
-  bool anew_ = false;  // it has risen, and the axis has not been on since
+  Feedback feedback_;                                                    // of the command in progress
+  axis::Power given_;                                                    // the command in progress
+  axis::Power taken_{.enable_positive = true, .enable_negative = true};  // the last command that was not rejected
+  bool level_ = false;                                                   // Enable in the previous call
+  bool anew_ = false;  // Enable has risen, and the axis has not been powered since
   std::optional<Refusal> refusal_;
   Outputs out_;
 };
 
-// Clears the fault of an axis. A reset that another one supersedes follows the axis: it is Busy while the axis still
-// brakes, then Done when the fault is cleared, and Error when it is not.
+// Clears the fault of an axis. A reset superseded by another one follows the axis: it is Busy while the axis still
+// brakes, then Done if the fault was cleared, Error if not.
 class MC_Reset : public AxisBlock {
  public:
   using AxisBlock::AxisBlock;
@@ -71,8 +72,8 @@ class MC_Reset : public AxisBlock {
   End EndOfReset() noexcept;
 };
 
-// All drives of the machine off and all brakes on at once; faults are cleared, every axis is Disabled, and stays so as
-// long as Execute is true, whatever asks for power (AX-100). Done: they all are.
+// Switches all drives of the machine off and closes all brakes at once; faults are cleared, and every axis is Disabled
+// and stays so while Execute is true, whatever requests power (AX-100). Done: all axes are Disabled.
 class GT_EStop : public AxisBlock {
  public:
   using AxisBlock::AxisBlock;
@@ -83,8 +84,8 @@ class GT_EStop : public AxisBlock {
   bool done_ = false;
 };
 
-// Keeps the factors of the override as they are at the inputs as long as Enable is true; false, the last ones stay.
-// Enabled: they are in force. Several instances an axis: the one whose inputs changed last counts.
+// Applies the inputs as override factors while Enable is true; when it is false, the last ones stay. Enabled: they are
+// in force. With several instances for an axis, the one whose inputs changed last counts.
 template <typename Ref, typename Kind, typename Set>
 class OverrideBlock {
  public:
@@ -113,11 +114,11 @@ class OverrideBlock {
   Ref subject_;
   Feedback feedback_;
   Set given_;
-  bool level_ = false;  // Enable in the call before
+  bool level_ = false;  // Enable in the previous call
 };
 using MC_SetOverride = OverrideBlock<AxisRef, axis::Command, axis::SetOverride>;
 
-// Switches outputs by the position of the axis as long as Enable is true; the other inputs count when it rises.
+// Switches outputs by the position of the axis while Enable is true; the other inputs are read when it rises.
 class MC_DigitalCamSwitch : private axis::DigitalCamSwitch {
  public:
   using axis::DigitalCamSwitch::enable_mask;
@@ -137,10 +138,10 @@ class MC_DigitalCamSwitch : private axis::DigitalCamSwitch {
  private:
   AxisRef axis_;
   Feedback feedback_;
-  bool level_ = false;  // Enable in the call before
+  bool level_ = false;  // Enable in the previous call
 };
 
-// Writes a parameter that is a yes or no: 4, 5 or 6. Others are refused, whatever `value` is.
+// Writes a Boolean parameter: 4, 5 or 6. Other numbers are rejected, whatever `value` is.
 class MC_WriteBoolParameter : public Block<axis::WriteParameter> {
  public:
   using Block::Block;

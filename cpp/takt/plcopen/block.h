@@ -1,11 +1,11 @@
-// The interface rules that all function blocks with Execute keep (AX-11). A block is called once a cycle.
+// The interface rules of all function blocks with Execute (AX-11). A block is called once per cycle.
 //
-// Inputs count on the rising edge of Execute, and keep their values from call to call. While Execute is true, exactly
-// one of Busy, Done, CommandAborted and Error is. Active is as Busy, but for a command that may have to wait, where it
-// says that the command is in control. Done, CommandAborted and Error are cleared with the falling edge of Execute, but
-// are seen in one call at least. A new rising edge before the end starts the command again; of the one before nothing
-// more is heard. Velocity, acceleration, deceleration and jerk are never negative; the engine refuses them, which shows
-// one cycle later.
+// Inputs are read at the rising edge of Execute, and keep their values from call to call. While Execute is true,
+// exactly one of Busy, Done, CommandAborted and Error is true. Active equals Busy, except for a command that may have
+// to wait: then it says that the command is in control. Done, CommandAborted and Error are cleared at the falling edge
+// of Execute, but are shown for at least one call. A new rising edge before the end gives the command again; the
+// previous one is not reported any more. Velocity, acceleration, deceleration and jerk must not be negative; the engine
+// rejects negative ones, which shows one cycle later.
 #pragma once
 
 #include <type_traits>
@@ -17,7 +17,7 @@
 
 namespace takt::plcopen {
 
-// What is the same whatever the command.
+// The part of a block that is the same for all commands.
 class ExecuteBlock {
  public:
   bool Execute = false;
@@ -29,23 +29,23 @@ class ExecuteBlock {
   bool Aborted() const noexcept { return CommandAborted(); }
   bool Error() const noexcept { return end_shown_ == FeedbackState::kError; }
   ErrorId ErrorID() const noexcept { return Error() ? end_error_ : ErrorId::kNone; }
-  // A command that never ends by itself has what it was given for: InVelocity and the like. Cleared with Execute.
+  // True once a command that never ends by itself has reached its goal: InVelocity and the like. Cleared with Execute.
   bool Reached() const noexcept { return reached_; }
-  // What the command was to read or capture, once done.
+  // Returns the value that the command read or captured, once Done; else 0.
   double Value() const noexcept { return Done() ? feedback_.value() : 0; }
-  // The same however it ended.
+  // Returns the value after any end, also an abort or an error; else 0.
   double ValueAtEnd() const noexcept { return IsFinal(end_shown_) ? feedback_.value() : 0; }
 
  protected:
   explicit ExecuteBlock(Program& program) : feedback_(program) {}
 
-  // How a command ended; kBusy: it has not.
+  // The end of a command; kBusy: not ended.
   struct End {
     FeedbackState state = FeedbackState::kBusy;
     ErrorId error = ErrorId::kNone;
   };
 
-  // One call has these parts, in this order. True: a rising edge, so the command is to be given.
+  // The parts of a call, in this order. Rises returns true at a rising edge, when the command is to be given.
   bool Rises() noexcept;
   void Start(std::uint32_t target, const engine::CommandBody& body, bool may_wait) noexcept;
   void Show() noexcept { Show(EndOf(feedback_)); }
@@ -53,20 +53,20 @@ class ExecuteBlock {
 
   static End EndOf(const Feedback& feedback) noexcept;
   Feedback& feedback() noexcept { return feedback_; }
-  // The command was accepted, does not wait any more, and has not ended.
+  // True if the command was accepted, is not waiting and has not ended.
   bool CommandInControl() const noexcept { return feedback_.active() || (feedback_.busy() && !may_wait_); }
-  // Reached once, whatever Execute does.
+  // True if the goal was reached, whatever Execute is, and the command has not ended.
   bool EverReached() const noexcept { return busy_ && feedback_.reached(); }
 
  private:
-  // Whether an output that Execute clears is to be shown: while it is true, and in one call at least.
+  // Returns true if an output that Execute clears is to be shown: while Execute is true, and for at least one call.
   bool IsDue(bool& seen) const noexcept;
 
   Feedback feedback_;
   End end_;                // of the command
   bool edge_ = false;      // Execute in this call
-  bool may_wait_ = false;  // the command; else it is in control from the first moment on
-  bool end_seen_ = false;  // outputs that were shown for this command
+  bool may_wait_ = false;  // the command may have to wait; else it is in control at once
+  bool end_seen_ = false;  // the output was shown for this command
   bool reached_seen_ = false;
   bool busy_ = false;  // outputs
   bool active_ = false;
@@ -75,7 +75,7 @@ class ExecuteBlock {
   ErrorId end_error_ = ErrorId::kNone;
 };
 
-// Of an axis or a group.
+// A block of an axis or a group.
 template <typename Ref>
 class BlockOf : public ExecuteBlock {
  public:
@@ -94,8 +94,8 @@ class AxisBlock : public BlockOf<AxisRef> {
   AxisRef axis() const noexcept { return subject(); }
 };
 
-// The block of a command: the command's own fields are its inputs. `Base` is the block of what it is given to, `Kind`
-// the commands of that.
+// The block of a command: the fields of the command are its inputs. `Base`: the block of the component that gets it;
+// `Kind`: the variant of its commands.
 template <typename Base, typename Kind, typename C>
 class CommandBlock : public Base, public C {
  public:
@@ -108,7 +108,7 @@ class CommandBlock : public Base, public C {
 
  protected:
   void StartWith(const C& command) noexcept { StartAs(command); }
-  // As another command, that carries on with its own.
+  // Gives another command, which continues its own one.
   template <typename Given>
   void StartAs(const Given& command) noexcept {
     bool may_wait = true;
@@ -120,16 +120,16 @@ class CommandBlock : public Base, public C {
   }
 };
 
-// Of a command of axes.
+// The block of an axis command.
 template <typename C>
 class Block : public CommandBlock<AxisBlock, axis::Command, C> {
  public:
   using CommandBlock<AxisBlock, axis::Command, C>::CommandBlock;
 };
 
-// Of a command whose inputs may change while Execute is true (AX-111): with ContinuousUpdate true at the rising edge
-// each change is commanded, once the command is in control, and the motion goes on from where it is. A change that is
-// refused is an error of the block; the motion goes on as it did.
+// The block of a command whose inputs may change while Execute is true (AX-111): if ContinuousUpdate is true at the
+// rising edge, each change is commanded once the command is in control, and the motion continues from its present
+// state. A rejected change is an error of the block; the motion continues unchanged.
 template <typename C>
 class UpdatedBlock : public Block<C> {
  public:
@@ -150,14 +150,14 @@ class UpdatedBlock : public Block<C> {
   }
 
  protected:
-  // The inputs of the command in progress.
+  // Returns the inputs of the command in progress.
   const C& given() const noexcept { return given_; }
 
  private:
   void Change(C wanted) noexcept {
     if constexpr (requires { wanted.buffer_mode; }) wanted.buffer_mode = axis::BufferMode::kAborting;
     if constexpr (std::is_same_v<C, axis::MoveRelative> || std::is_same_v<C, axis::MoveAdditive>) {
-      // The distance counts from where the move began: what it has more now is added to where that ends.
+      // The distance counts from the start of the move: the increase is added to its end.
       this->StartAs(axis::MoveAdditive{wanted.distance - given_.distance, wanted.velocity, wanted.acceleration,
                                        wanted.deceleration, wanted.jerk, wanted.buffer_mode, true});
     } else {

@@ -1,5 +1,5 @@
-// All function blocks, by PLCopen's names and those of the GT-775x modules. A block of a new command is one line here;
-// without one it is Block<axis::NewCommand>.
+// All function blocks, by the names of PLCopen and of the GT-775x modules. A block for a new command is one line here;
+// without it, use Block<axis::NewCommand>.
 #pragma once
 
 #include "takt/plcopen/administration.h"

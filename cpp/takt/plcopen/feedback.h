@@ -1,4 +1,4 @@
-// What became of the command that was given last.
+// Feedback of the last command that a block gave.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,12 @@ class Feedback {
   Feedback(const Feedback&) = delete;
   Feedback& operator=(const Feedback&) = delete;
 
-  // Of the command before nothing is heard any more. A command for which the engine has no room is in error at once.
+  // Gives a command; the previous one is not reported any more. If the engine has no room, the command is in error at
+  // once.
   void Give(std::uint32_t target, const engine::CommandBody& body) noexcept;
-  // Lets go of a level-sensitive command; to be called again until released(), for the engine's queue may be full.
+  // Releases a level-sensitive command. To be called until released(), as the engine's queue may be full.
   void Release() noexcept;
-  // Forgets the command, which goes on.
+  // Ignores the command from now on; it continues.
   void Forget() noexcept;
 
   bool given() const noexcept { return given_; }

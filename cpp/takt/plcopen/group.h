@@ -18,7 +18,7 @@ class GroupBlock : public BlockOf<GroupRef> {
   GroupRef AxesGroup() const noexcept { return subject(); }
 };
 
-// Of a command of groups. Axes and paths go by their names: add.axis = Name::Of("x").
+// The block of a group command. Axes and paths are given by name: add.axis = Name::Of("x").
 template <typename C>
 class BlockOfGroup : public CommandBlock<GroupBlock, group::Command, C> {
  public:
@@ -39,7 +39,7 @@ using MC_SetKinTransform = BlockOfGroup<group::SetKinTransform>;
 using MC_SetCartesianTransform = BlockOfGroup<group::SetCartesianTransform>;
 using MC_SetCoordinateTransform = BlockOfGroup<group::SetCoordinateTransform>;
 
-// `carrier` is the MasterAxesGroup, or what else the coordinate system goes along with.
+// `carrier` is the MasterAxesGroup, or whatever else the coordinate system moves with.
 using MC_SetDynCoordTransform = BlockOfGroup<group::SetDynCoordTransform>;
 
 using MC_GroupHalt = BlockOfGroup<group::Halt>;
@@ -51,10 +51,10 @@ using MC_MoveCircularAbsolute = BlockOfGroup<group::MoveCircularAbsolute>;
 using MC_MoveCircularRelative = BlockOfGroup<group::MoveCircularRelative>;
 using MC_MoveDirectAbsolute = BlockOfGroup<group::MoveDirectAbsolute>;
 using MC_MoveDirectRelative = BlockOfGroup<group::MoveDirectRelative>;
-// With the path that MC_PathSelect names; here the name is its input.
+// Moves along the path that MC_PathSelect names; here the name is an input.
 using MC_MovePath = BlockOfGroup<group::MovePath>;
 
-// Brakes to standstill on the path. The group stays in GroupStopping as long as Execute is true.
+// Brakes to standstill on the path. The group stays in GroupStopping while Execute is true.
 class MC_GroupStop : public BlockOfGroup<group::Stop> {
  public:
   using BlockOfGroup::BlockOfGroup;
@@ -65,11 +65,11 @@ class MC_SyncAxisToGroup : public BlockOfGroup<group::SyncAxis> {
  public:
   using BlockOfGroup::BlockOfGroup;
   void operator()() noexcept;
-  // The set point of the slave is where the path has it.
+  // The set point of the slave is in step with the path.
   bool InSync() const noexcept;
 
  private:
-  std::uint32_t slave_ = axis::kNoAxis;  // of the command given: its index among the axes
+  std::uint32_t slave_ = axis::kNoAxis;  // index, among the axes, of the slave of the last command
 };
 
 class MC_MovePathSynchronized : public BlockOfGroup<group::MovePathSynchronized> {
@@ -79,13 +79,13 @@ class MC_MovePathSynchronized : public BlockOfGroup<group::MovePathSynchronized>
   bool InSync() const noexcept { return Active() && AxesGroup().outputs().synchronized; }
 };
 
-// The tool goes along with an object, from the first place where it may to the last one; moves in the object's
-// coordinate system run on top. Done when the object has left.
+// The tool follows an object, from the first position where it may to the last one; moves in the object's coordinate
+// system are superimposed. Done when the object has left.
 template <typename C>
 class TrackingBlock : public BlockOfGroup<C> {
  public:
   using BlockOfGroup<C>::BlockOfGroup;
-  // The tool is in step with the object; its speed is that of the object only where no move runs on top.
+  // The tool is in step with the object; it has the velocity of the object only if no move is superimposed.
   bool InSync() const noexcept {
     return this->EverReached() && this->AxesGroup().outputs().track_state == group::TrackState::kInSync;
   }
@@ -114,16 +114,16 @@ class MC_GroupReadStatus : public GroupReadBlock {
   bool Accelerating() const noexcept { return shown().path_acceleration > 0; }
   bool Decelerating() const noexcept { return shown().path_acceleration < 0; }
   bool InPosition() const noexcept { return shown().in_position; }
-  // The tool goes along with what moves, gets into step with it or out of it; or its path follows a master.
+  // The tool follows a moving object, or gets into or out of step with it; or its path follows a master.
   bool SynchronizedMotion() const noexcept { return GroupMoving() && (Rides() || shown().synchronized); }
-  // A move is in control, also one on what moves; or the tool comes to rest.
+  // A move is in control, possibly on top of a moving object; or the tool comes to rest.
   bool DiscreteMotion() const noexcept { return GroupMoving() && (shown().command != 0 || !Rides()); }
 
  private:
   bool Rides() const noexcept { return shown().track_state >= group::TrackState::kSynchronizing; }
 };
 
-// Why the group is in GroupErrorStop. The block itself has no error; Error and ErrorID say that of the group, too.
+// The reason for GroupErrorStop. The block itself has no error; Error and ErrorID also give that of the group.
 class MC_GroupReadError : public GroupReadBlock {
  public:
   using GroupReadBlock::GroupReadBlock;
@@ -132,7 +132,7 @@ class MC_GroupReadError : public GroupReadBlock {
   ErrorId GroupErrorID() const noexcept { return shown().error; }
 };
 
-// Where the tool is as measured, in the machine coordinate system: X, Y, Z in mm, A, B, C in degrees. NaN without
+// The actual pose of the tool in the machine coordinate system: X, Y, Z [mm], A, B, C [degrees]. NaN without
 // kinematics.
 class MC_GroupReadActualPosition : public GroupReadBlock {
  public:
@@ -146,7 +146,7 @@ class MC_GroupReadActualVelocity : public GroupReadBlock {
   double PathVelocity() const noexcept { return shown().actual_velocity; }  // [mm/s]
 };
 
-// As commanded: nothing measures it.
+// As commanded: it is not measured.
 class MC_GroupReadActualAcceleration : public GroupReadBlock {
  public:
   using GroupReadBlock::GroupReadBlock;
@@ -156,12 +156,12 @@ class MC_GroupReadActualAcceleration : public GroupReadBlock {
 class MC_ReadKinTransform : public GroupReadBlock {
  public:
   using GroupReadBlock::GroupReadBlock;
-  // There are kinematics, and they are switched on.
+  // The group has kinematics, and they are switched on.
   bool KinTransform() const noexcept { return shown().kinematics_on; }
 };
 
-// Where product coordinate system Pcs, from 1, is now in another one: MCS, WCS, or PCS number ReferencePcs. mm, and
-// degrees about X, Y, Z.
+// The present pose of product coordinate system Pcs, from 1, in another one: MCS, WCS, or PCS number ReferencePcs.
+// [mm], and [degrees] about X, Y, Z.
 class MC_ReadCoordinateTransform : public GroupReadBlock {
  public:
   using GroupReadBlock::GroupReadBlock;
@@ -178,7 +178,7 @@ class MC_ReadCoordinateTransform : public GroupReadBlock {
   std::optional<kinematics::Pose> found_;
 };
 
-// The same, number by number.
+// The same transform as six numbers.
 class MC_ReadCartesianTransform : public MC_ReadCoordinateTransform {
  public:
   using MC_ReadCoordinateTransform::MC_ReadCoordinateTransform;
@@ -190,7 +190,7 @@ class MC_ReadCartesianTransform : public MC_ReadCoordinateTransform {
   double RotAngle3() const noexcept { return CoordTransform().c; }
 };
 
-// Which axis of the machine is in the place IdentInGroup, from 1; 0: none.
+// The axis of the machine with index IdentInGroup in the group, both from 1; 0: none.
 class MC_GroupReadConfiguration : public GroupReadBlock {
  public:
   using GroupReadBlock::GroupReadBlock;

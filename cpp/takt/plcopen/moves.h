@@ -1,5 +1,5 @@
-// Blocks of motions that are more than their command: a stop that holds, a jog by keys, a touch that slows down; and
-// those of commands that never end, with the standard's name for having reached what they are for.
+// Blocks that do more than give a command: a stop that holds, a jog by keys, a touch that slows down; and blocks of
+// commands that never end, with the standard's output for having reached their goal.
 #pragma once
 
 #include <array>
@@ -11,17 +11,17 @@
 
 namespace takt::plcopen {
 
-// Brakes to standstill. The axis stays in Stopping, and takes no other motion, as long as Execute is true, through
-// power off, faults and emergency stops, too. All stops of an axis are done when it stands, whichever of them brakes.
+// Brakes to standstill. The axis stays in Stopping and accepts no other motion while Execute is true, also through
+// power off, faults and emergency stops. All stops of an axis are done when it is at rest, whichever of them brakes.
 class MC_Stop : public Block<axis::Stop> {
  public:
   using Block::Block;
   void operator()() noexcept;
 };
 
-// Moves as long as JogPos or JogNeg is held, while Enable is true. The direction pressed first wins; both must be let
-// go before the next jog, so a key that is held while Enable becomes true does nothing. Velocities and ramps count when
-// a key is pressed or let go; a jog that cannot go on with them ends.
+// Moves while JogPos or JogNeg is held and Enable is true. The direction pressed first wins; both must be released
+// before the next jog, so a key that is held when Enable becomes true has no effect. Velocities and ramps are read when
+// a key is pressed or released; a jog that cannot continue with them ends.
 class GT_Jog : private axis::Jog {
  public:
   using axis::Jog::acceleration;
@@ -44,24 +44,24 @@ class GT_Jog : private axis::Jog {
   Feedback& before() noexcept { return feedbacks_[1 - current_]; }
 
   AxisRef axis_;
-  std::array<Feedback, 2> feedbacks_;  // of the jog in progress, and of the one before until that is accepted
+  std::array<Feedback, 2> feedbacks_;  // of the jog in progress, and of the previous one until the new one is accepted
   std::size_t current_ = 0;
-  bool up_ = true;    // both keys were, Enable or not
-  bool seen_ = true;  // the error of the one in progress, if any
+  bool up_ = true;    // both keys were up, whatever Enable is
+  bool seen_ = true;  // the error of the jog in progress, if any, was shown
   ErrorId error_ = ErrorId::kNone;
 };
 using MC_Jog = GT_Jog;
 
-// Moves a standing axis by one increment on each rising edge of Execute.
+// Moves an axis at rest by one increment at each rising edge of Execute.
 class MC_Inch : public Block<axis::Inch> {
  public:
   using Block::Block;
   bool Active() const noexcept { return Busy(); }
 };
 
-// Whether the set point of an axis whose command has reached `velocity` [u/s] has it now, as the override in force
-// scales it, up to the largest velocity of the axis. What is on top of the motion is published together with it: then
-// the axis only must not be held.
+// Returns true if the set point of an axis whose command has reached `velocity` [u/s] has this velocity now, scaled by
+// the override in force and limited to the axis' velocity. With a superimposed motion, whose sum is published: returns
+// true unless the axis is held.
 bool HasVelocity(AxisRef axis, double velocity) noexcept;
 
 class MC_MoveVelocity : public UpdatedBlock<axis::MoveVelocity> {
@@ -73,11 +73,11 @@ class MC_MoveVelocity : public UpdatedBlock<axis::MoveVelocity> {
 class MC_MoveSuperimposed : public UpdatedBlock<axis::MoveSuperimposed> {
  public:
   using UpdatedBlock::UpdatedBlock;
-  // How much of it was added so far, or at last.
+  // Returns the distance [u] added so far, or at the end.
   double CoveredDistance() const noexcept { return Active() ? axis().outputs().covered_distance : ValueAtEnd(); }
 };
 
-// How much of the shift was added so far, or at last.
+// AbsolutePhaseShift, CoveredPhaseShift: the shift [master's u] added so far, or at the end.
 class MC_PhasingAbsolute : public Block<axis::PhasingAbsolute> {
  public:
   using Block::Block;
@@ -108,8 +108,8 @@ class MC_TorqueControl : public UpdatedBlock<axis::TorqueControl> {
   bool InTorque() const noexcept { return Reached(); }
 };
 
-// Couplings. The axis of the block is the slave; its masters go by their names: gear.master = Name::Of("x"). In step as
-// long as it follows exactly.
+// Couplings. The axis of the block is the slave; its masters are given by name: gear.master = Name::Of("x"). In step
+// while it follows exactly.
 template <typename C, typename Base = UpdatedBlock<C>>
 class CouplingBlock : public Base {
  public:
@@ -128,24 +128,24 @@ class MC_GearIn : public CouplingBlock<axis::GearIn> {
 class MC_GearInPos : public CouplingBlock<axis::GearInPos, Block<axis::GearInPos>> {
  public:
   using CouplingBlock::CouplingBlock;
-  // Getting into step has begun.
+  // Synchronisation has begun.
   bool StartSync() const noexcept { return Active() && !EverReached() && axis().outputs().synchronizing; }
   bool InSync() const noexcept { return InStep(); }
 };
 
-// cam.master and cam.cam are names, of an axis and of a cam of the machine.
+// cam.master and cam.cam are the names of an axis and of a cam of the machine.
 class MC_CamIn : public CouplingBlock<axis::CamIn> {
  public:
   using CouplingBlock::CouplingBlock;
   void operator()() noexcept;
   bool InSync() const noexcept { return InStep(); }
-  // The end of the cam was passed since the call before, while this command was in control; also in the call in which
+  // An end of the cam was passed since the previous call, while this command was in control; also in the call in which
   // the next command has taken over.
   bool EndOfProfile() const noexcept { return end_of_profile_; }
 
  private:
-  std::optional<std::uint32_t> ends_;  // profile_ends in the last call; unset: the command was not in control then
-  bool level_ = false;                 // Execute in the last call
+  std::optional<std::uint32_t> ends_;  // profile_ends in the previous call; unset: the command was not in control
+  bool level_ = false;                 // Execute in the previous call
   bool end_of_profile_ = false;
 };
 
@@ -161,8 +161,8 @@ class MC_TouchProbe : public Block<axis::TouchProbe> {
   double RecordedPosition() const noexcept { return Value(); }
 };
 
-// Waits for the touch probe, then ends the motion in progress, stops and goes to where the probe was touched. With mode
-// kSlow it slows down whatever moves while the probe is on instead, no longer than Execute is true.
+// Waits for the touch probe, then ends the motion in progress, stops and returns to the position of the touch. In mode
+// kSlow it instead slows down any motion while the probe is on, as long as Execute is true.
 class GT_Touch : public Block<axis::Touch> {
  public:
   explicit GT_Touch(AxisRef axis) : Block(axis) {}
@@ -170,7 +170,7 @@ class GT_Touch : public Block<axis::Touch> {
   double RecordedPosition() const noexcept { return Value(); }
 
  private:
-  bool slows_ = false;  // the command given
+  bool slows_ = false;  // mode of the last command was kSlow
 };
 
 }  // namespace takt::plcopen

@@ -15,8 +15,8 @@
 //   for (;;) scan(), engine.RunCycle();                  // virtual time, or
 //   Run(engine, {.program = scan}, signals);             // real time, in the cycle's own thread
 //
-// takt/plcopen/blocks.h has all blocks. Blocks and the program are for the thread that runs the cycle and are made
-// before it does; calling them allocates, locks and throws nothing. Blocks must not outlive their program.
+// takt/plcopen/blocks.h has all blocks. Blocks and the program must be made before the cycle runs, and be used only by
+// the thread that runs it; calling them never allocates, locks or throws. Blocks must not outlive their program.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +33,7 @@ namespace takt::plcopen {
 class Feedback;
 class Program;
 
-// One component of the program's machine.
+// A component of the program's machine.
 class ComponentRef {
  public:
   ComponentRef(Program& program, std::uint32_t target) : program_(&program), target_(target) {}
@@ -59,31 +59,31 @@ class GroupRef : public ComponentRef {
       : ComponentRef(program, target), index_(index) {}
   // As of the last cycle.
   const group::Outputs& outputs() const noexcept;
-  // What the machine file says of it.
+  // The parameters of the machine file.
   const group::GroupParams& params() const noexcept;
 
  private:
-  std::uint32_t index_;  // among the groups
+  std::uint32_t index_;  // index among the groups
 };
 
-// Hands what the engine says of commands to the blocks that gave them. It is the one consumer of the engine's feedback
-// and its one producer of commands, so there is one program an engine, and none beside an LCM service.
+// Passes the engine's feedback on commands to the blocks that gave them. It is the only consumer of the engine's
+// feedback and the only producer of its commands: one program per engine, and not together with an LCM service.
 class Program {
  public:
   explicit Program(engine::Engine& engine) : engine_(engine) {}
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
-  // Throws std::invalid_argument: the machine has no such axis.
+  // Returns the axis of this name. Throws std::invalid_argument if the machine has none.
   AxisRef Axis(std::string_view name);
-  // The same: no such group.
+  // Returns the group of this name. Throws std::invalid_argument if the machine has none.
   GroupRef Group(std::string_view name);
   engine::Engine& engine() noexcept { return engine_; }
 
-  // Every axis of the machine is in Disabled, as of the last cycle.
+  // Returns true if every axis of the machine was Disabled in the last cycle.
   bool AllDisabled() const noexcept;
 
-  // To be called once a cycle, before the blocks.
+  // Must be called once per cycle, before the blocks.
   void Update() noexcept;
 
  private:
@@ -98,8 +98,8 @@ class Program {
   void Remove(Ticket ticket) noexcept;
 
   engine::Engine& engine_;
-  std::size_t feedbacks_ = 0;     // that there are; each has one command at most
-  std::vector<Waiting> waiting_;  // by ticket
+  std::size_t feedbacks_ = 0;     // number of feedbacks; each has one command at most
+  std::vector<Waiting> waiting_;  // sorted by ticket
 };
 
 }  // namespace takt::plcopen

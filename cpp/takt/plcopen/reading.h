@@ -1,4 +1,4 @@
-// Blocks that show something as long as Enable is true.
+// Blocks that show values while Enable is true.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace takt::plcopen {
 
-// What they show is what was published in the cycle before the call; default values while not Valid.
+// They show the values published in the cycle before the call; default values while not Valid.
 template <typename Ref, typename Outputs>
 class ReadBlockOf {
  public:
@@ -57,7 +57,7 @@ class MC_ReadStatus : public ReadBlock {
   bool Ref() const noexcept { return shown().homed; }
 };
 
-// The fault of the axis. The block itself has none; Error and ErrorID say that of the axis, too.
+// The fault of the axis. The block itself has no error; Error and ErrorID also give that of the axis.
 class MC_ReadAxisError : public ReadBlock {
  public:
   using ReadBlock::ReadBlock;
@@ -82,7 +82,7 @@ class MC_ReadDigitalInput : public ReadBlock {
   }
 };
 
-// OutputNumber: from 1 to 32, of those that MC_WriteDigitalOutput and MC_DigitalCamSwitch switch.
+// OutputNumber: 1 to 32, outputs of MC_WriteDigitalOutput and MC_DigitalCamSwitch.
 class MC_ReadDigitalOutput : public ReadBlock {
  public:
   using ReadBlock::ReadBlock;
@@ -109,7 +109,7 @@ class MC_ReadActualVelocity : public ReadBlock {
 class MC_ReadActualTorque : public ReadBlock {
  public:
   using ReadBlock::ReadBlock;
-  double Torque() const noexcept { return shown().torque_nm; }  // [Nm] N on linear motors
+  double Torque() const noexcept { return shown().torque_nm; }  // [Nm]; [N] on linear motors
 };
 
 // How the set point of the axis moves.
@@ -129,7 +129,7 @@ class MC_ReadMotionState : public ReadBlock {
   }
 };
 
-// The inputs of the axis and what it is ready for. GT_SInfo's LIMpos, LIMneg, REF and TP are here, too.
+// The inputs of the axis and its readiness, including GT_SInfo's LIMpos, LIMneg, REF and TP.
 class MC_ReadAxisInfo : public ReadBlock {
  public:
   using ReadBlock::ReadBlock;
@@ -143,7 +143,7 @@ class MC_ReadAxisInfo : public ReadBlock {
   bool AxisWarning() const noexcept { return shown().limited_by != LimitedBy::kNothing; }
 };
 
-// What the position loop works with: where the axis should be and is.
+// The signals of the position loop: set points and actual values.
 class GT_Show : public ReadBlock {
  public:
   using ReadBlock::ReadBlock;
@@ -153,11 +153,11 @@ class GT_Show : public ReadBlock {
   double ModelVelocity() const noexcept { return shown().set_velocity; }  // [u/s]
   double Velocity() const noexcept { return shown().actual_velocity; }    // [u/s]
   double Voltage() const noexcept { return shown().voltage_v; }           // [V]
-  double Torque() const noexcept { return shown().torque_nm; }            // [Nm] N on linear motors
+  double Torque() const noexcept { return shown().torque_nm; }            // [Nm]; [N] on linear motors
 };
 
-// A parameter by PLCopen's number, asked for again and again as long as Enable is true. Value is valid from the first
-// answer on, one or more cycles after Enable.
+// Reads a parameter by PLCopen's number repeatedly while Enable is true. Value is valid from the first answer on, one
+// or more cycles after Enable.
 class MC_ReadParameter {
  public:
   bool Enable = false;
@@ -180,7 +180,7 @@ class MC_ReadParameter {
   double value_ = 0;
 };
 
-// One that is a yes or no.
+// Reads a Boolean parameter.
 class MC_ReadBoolParameter : public MC_ReadParameter {
  public:
   using MC_ReadParameter::MC_ReadParameter;

@@ -1,4 +1,4 @@
-// Commands that tie an axis to a master by a cam.
+// Commands that couple an axis to a master by a cam.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace takt::axis {
 
-// How a slave gets onto its cam.
+// How a slave gets into step with its cam.
 enum class CamStart : std::uint8_t { kAbsolute, kRelative, kRampIn };
 
 struct CamTableSelect {  // MC_CamTableSelect
@@ -35,12 +35,12 @@ struct CamIn {  // MC_CamIn
   std::optional<double> master_start_distance{};
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
-  bool update = false;  // of the one in control: the cam stays laid as it is, but for what changes
+  bool update = false;  // changes the one in control: the cam keeps its beginning, except for what changes
 
   bool operator==(const CamIn&) const = default;
 };
 
-// Another cam on top of that of cam_in, over the same master: slave_scaling * y(master_scaling * master's position +
+// Adds another cam to that of cam_in, over the same master: slave_scaling * y(master_scaling * master's position +
 // master_offset) is added to the slave's position.
 struct CamAdd {  // MC_CamAdd
   Name cam;

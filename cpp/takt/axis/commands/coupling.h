@@ -1,4 +1,4 @@
-// Commands that tie an axis to one or two masters.
+// Commands that couple an axis to one or two masters.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@
 
 namespace takt::axis {
 
-// Which position of a master counts.
+// Which position of a master is followed.
 enum class MasterSource : std::uint8_t { kSetValue, kActualValue };
-// How a rotary axis reaches its place in a coupling.
+// Which of its turns a rotary axis synchronises to.
 enum class SyncMode : std::uint8_t { kShortest, kCatchUp, kSlowDown };
-// What becomes of two masters.
+// How two masters are combined.
 enum class CombineMode : std::uint8_t { kAdd, kSubtract };
 
 struct GearIn {  // MC_GearIn
@@ -25,7 +25,7 @@ struct GearIn {  // MC_GearIn
   std::optional<double> master_filter{};
   std::optional<double> acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
-  bool update = false;  // only changes the one of its kind that is in control
+  bool update = false;  // only changes the command of its kind in control
 
   bool operator==(const GearIn&) const = default;
 };
@@ -64,7 +64,7 @@ struct CombineAxes {  // MC_CombineAxes
   MasterSource source2 = MasterSource::kSetValue;
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
-  bool update = false;  // only changes the one of its kind that is in control
+  bool update = false;  // only changes the command of its kind in control
 
   bool operator==(const CombineAxes&) const = default;
 };

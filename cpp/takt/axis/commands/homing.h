@@ -1,4 +1,4 @@
-// Commands that find an axis' reference (PLCopen Part 5).
+// Commands that establish the reference of an axis (PLCopen Part 5).
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace takt::axis {
 
-// Where a search goes first.
+// Direction in which a search begins.
 enum class HomingDirection : std::uint8_t { kPositive, kNegative, kSwitchPositive, kSwitchNegative };
-// What of a switch ends a search.
+// State or edge of a switch that ends a search.
 enum class SwitchMode : std::uint8_t { kOn, kOff, kEdgeOn, kEdgeOff, kEdgeSwitchPositive, kEdgeSwitchNegative };
 
 struct Home {  // MC_Home

@@ -1,4 +1,4 @@
-// Commands that switch an axis and move it by itself.
+// Commands that power an axis and move it by itself.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 namespace takt::axis {
 
-// Sense of travel on a rotary axis; linear axes have no choice.
+// Sense of travel on a rotary axis; linear axes ignore it.
 enum class Direction : std::uint8_t { kCurrent, kPositive, kShortest, kNegative };
 
-// When a command takes over from the one before it, and with what speed (PLCopen's MC_BufferMode; AX-12).
+// When a command takes over from the previous one, and at which velocity (PLCopen's MC_BufferMode; AX-12).
 enum class BufferMode : std::uint8_t {
   kAborting,
   kBuffered,
@@ -21,11 +21,11 @@ enum class BufferMode : std::uint8_t {
   kBlendingHigh
 };
 
-// Unset velocities, accelerations and jerks are the axis' own limits.
+// Velocities, accelerations and jerks that are unset are the axis' own limits.
 struct Power {  // MC_Power
   bool enable = true;
   BufferMode buffer_mode = BufferMode::kAborting;
-  // Whether the axis may move upwards and downwards, from this command on; unset: as before, at first both (AX-111).
+  // True: the axis may move upwards or downwards, from this command on; unset: as before, initially both (AX-111).
   std::optional<bool> enable_positive{}, enable_negative{};
 };
 struct Reset {};       // MC_Reset
@@ -34,7 +34,7 @@ struct MoveAbsolute {  // MC_MoveAbsolute
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   Direction direction = Direction::kShortest;
   BufferMode buffer_mode = BufferMode::kAborting;
-  bool update = false;  // only changes the one of its kind that is in control
+  bool update = false;  // only changes the command of its kind in control
 
   bool operator==(const MoveAbsolute&) const = default;
 };
@@ -49,7 +49,7 @@ struct MoveAdditive {  // MC_MoveAdditive
   double distance = 0;
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
-  bool update = false;  // only changes the one of its kind that is in control
+  bool update = false;  // only changes the command of its kind in control
 
   bool operator==(const MoveAdditive&) const = default;
 };
@@ -58,7 +58,7 @@ struct MoveVelocity {  // MC_MoveVelocity
   std::optional<double> acceleration{}, deceleration{}, jerk{};
   Direction direction = Direction::kPositive;  // positive, negative or current
   BufferMode buffer_mode = BufferMode::kAborting;
-  bool update = false;  // only changes the one of its kind that is in control
+  bool update = false;  // only changes the command of its kind in control
 
   bool operator==(const MoveVelocity&) const = default;
 };
@@ -66,8 +66,8 @@ struct Halt {  // MC_Halt
   std::optional<double> deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
 };
-struct Straighten {                  // the skew of an axis that follows another from load on goes to 0
-  std::optional<double> velocity{};  // [u/s] of the follower against its master; unset: a tenth of the limit
+struct Straighten {                  // moves the skew of an axis that follows another from load on to 0
+  std::optional<double> velocity{};  // [u/s] relative to its master; unset: a tenth of the limit
 };
 struct Stop {  // MC_Stop
   std::optional<double> deceleration{}, jerk{};
@@ -80,7 +80,7 @@ struct MoveContinuousAbsolute {  // MC_MoveContinuousAbsolute
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   Direction direction = Direction::kShortest;
   BufferMode buffer_mode = BufferMode::kAborting;
-  bool update = false;  // only changes the one of its kind that is in control
+  bool update = false;  // only changes the command of its kind in control
 
   bool operator==(const MoveContinuousAbsolute&) const = default;
 };
@@ -89,7 +89,7 @@ struct MoveContinuousRelative {  // MC_MoveContinuousRelative
   double end_velocity = 0;
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
-  bool update = false;  // of the one in control: the distance counts from where that began
+  bool update = false;  // of the one in control: the distance counts from its start
 
   bool operator==(const MoveContinuousRelative&) const = default;
 };
@@ -97,7 +97,7 @@ struct Inch {  // MC_Inch: one increment a press
   double distance = 0;
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};
 };
-struct Jog {  // GT_Jog: level-sensitive; give it again to change the levels, both false (or a release) to let go
+struct Jog {  // GT_Jog: level-sensitive; repeat it to change the keys; both false, or a release, end it
   bool forward = false;
   bool backward = false;
   std::optional<double> velocity{}, acceleration{}, deceleration{}, jerk{};

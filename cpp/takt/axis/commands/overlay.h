@@ -1,4 +1,4 @@
-// Commands that move on top of another motion.
+// Commands for motions superimposed on another.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@ namespace takt::axis {
 struct MoveSuperimposed {  // MC_MoveSuperimposed
   double distance = 0;
   std::optional<double> velocity_difference{}, acceleration{}, deceleration{}, jerk{};
-  bool update = false;  // of the one in progress: the distance counts from where that began
+  bool update = false;  // of the one in progress: the distance counts from its start
 
   bool operator==(const MoveSuperimposed&) const = default;
 };

@@ -1,4 +1,4 @@
-// Commands that watch positions: touch probe and cam switches; and the torque mode.
+// Commands that watch positions (touch probe and cam switches), and torque control.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@
 
 namespace takt::axis {
 
-// Which edge of the probe counts.
+// Edge of the probe that captures.
 enum class ProbeEdge : std::uint8_t { kRising, kFalling };
-// What GT_Touch does.
+// What GT_Touch does at the edge.
 enum class TouchMode : std::uint8_t { kCapture, kSlow };
 
 struct TouchProbe {  // MC_TouchProbe
@@ -42,7 +42,7 @@ struct TorqueControl {  // MC_TorqueControl
   std::optional<double> velocity{};
   std::optional<double> acceleration{}, deceleration{}, jerk{};
   BufferMode buffer_mode = BufferMode::kAborting;
-  bool update = false;  // only changes the one of its kind that is in control
+  bool update = false;  // only changes the command of its kind in control
 
   bool operator==(const TorqueControl&) const = default;
 };

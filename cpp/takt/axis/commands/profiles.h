@@ -7,14 +7,14 @@
 
 namespace takt::axis {
 
-// t seconds after the start, at x = begin of the table + t / time_scale: scale * y(x) + offset.
+// At t seconds after the start, x = begin of the table + t / time_scale: scale * y(x) + offset.
 struct PositionProfile {  // MC_PositionProfile
   Name profile;
   double time_scale = 1;
   double position_scale = 1;
   double offset = 0;
   BufferMode buffer_mode = BufferMode::kAborting;
-  bool update = false;  // of the one in control: at the place in the table where that is
+  bool update = false;  // changes the one in control: continues at its present time in the table
 
   bool operator==(const PositionProfile&) const = default;
 };
@@ -24,7 +24,7 @@ struct VelocityProfile {  // MC_VelocityProfile
   double velocity_scale = 1;
   double offset = 0;
   BufferMode buffer_mode = BufferMode::kAborting;
-  bool update = false;  // of the one in control: at the place in the table where that is
+  bool update = false;  // changes the one in control: continues at its present time in the table
 
   bool operator==(const VelocityProfile&) const = default;
 };
@@ -34,7 +34,7 @@ struct AccelerationProfile {  // MC_AccelerationProfile
   double acceleration_scale = 1;
   double offset = 0;
   BufferMode buffer_mode = BufferMode::kAborting;
-  bool update = false;  // of the one in control: at the place in the table where that is
+  bool update = false;  // changes the one in control: continues at its present time in the table
 
   bool operator==(const AccelerationProfile&) const = default;
 };

@@ -1,4 +1,4 @@
-// Commands that change what an axis works with.
+// Commands that change parameters of an axis.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ struct SetConstants {  // GT_SetConstant
   std::optional<double> velocity_at_10v{};
   std::optional<double> lower{}, upper{};
 };
-struct SetLoad {  // of `drive: torque_offset`, from now on; unset: as before
+struct SetLoad {  // `drive: torque_offset`, from now on; unset: as before
   std::optional<double> inertia{}, coulomb_friction{}, viscous_friction{}, load_torque{};
 };
 struct WriteParameter {  // MC_WriteParameter, MC_WriteBoolParameter

@@ -1,4 +1,4 @@
-// Set points from outside, one after another.
+// Set points streamed from outside.
 #pragma once
 
 #include <cstdint>

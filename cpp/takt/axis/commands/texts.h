@@ -1,4 +1,4 @@
-// What many commands say of the same inputs.
+// Descriptions of inputs that many commands have.
 #pragma once
 
 #include "takt/core/describe.h"
@@ -18,7 +18,7 @@ void DescribeRamps(Description<T>& d) {
   d.template defaulted<&T::jerk>(unit::u_s3, not_negative, kJerk);
 }
 
-// Of commands that ContinuousUpdate changes.
+// For commands that ContinuousUpdate changes.
 inline constexpr std::string_view kChange =
     "True: only changes the command of this kind that is in control, and is aborted where there is none any more. "
     "Where "
