@@ -1,4 +1,4 @@
-// Commands as they arrive: carried out, buffered or refused.
+// Commands on arrival: executed, buffered or rejected.
 #include <algorithm>
 
 #include "takt/axis/cam_switch.h"
@@ -31,7 +31,7 @@ Status Enqueue(const Context& c, const Request& r, State& s) {
   const bool all_blend = std::all_of(s.buffer.begin(), s.buffer.begin() + s.buffered,
                                      [](const Request& waiting) { return waiting.blends(); });
   if (all_blend) ReplanActive(c, s);  // there is more room ahead
-  // Beneath what is superimposed nothing is in control: its turn has come.
+  // Beneath an overlay no command is in control: the command begins now.
   if (s.buffered == 1 && s.active.kind == RequestKind::kNone && Carries(r) && StandsBeneath(s)) {
     const ScopedBaseMotion beneath(s);
     StartNext(c, 0, s);
@@ -39,13 +39,13 @@ Status Enqueue(const Context& c, const Request& r, State& s) {
   return Status::Ok();
 }
 
-// The same jog with other keys, another speed or other ramps: the motion goes on.
+// Replaces a jog by one with other keys, another velocity or other ramps: the motion continues.
 void ChangeJog(const Context& c, const Request& r, State& s) {
   Report(c, s.active.ticket, FeedbackState::kAborted);
   const bool key_held = s.jog_sense > 0 ? r.forward : r.backward;
   Grant(c, r, s);
   if (s.jog_sense == 0 || !key_held) return;
-  Request held = r;  // the first key wins, whatever the other one does
+  Request held = r;  // the first key wins, whatever the other key does
   held.forward = s.jog_sense > 0;
   const ScopedBaseMotion base(s);
   Plan plan;
@@ -70,14 +70,14 @@ Status JogBy(const Context& c, const Request& r, State& s) {
   return Status::Ok();
 }
 
-// What a change is for has ended: it must not take over from what came since.
+// Returns true if the command that a request would change has ended: it must not take over from a later one.
 bool ComesTooLate(const Request& r, const State& s) {
   const RequestKind now = s.active.kind;
   const bool adds = r.kind == RequestKind::kMoveAdditive && now == RequestKind::kMoveRelative;
   return r.update && now != r.kind && !adds;
 }
 
-// Whether a request that changes the one in control keeps its place in the same table; others begin anew.
+// Returns true if a request that changes the one in control keeps its position in the same table; others begin anew.
 bool KeepsPlace(const Request& r, const State& s) {
   const Request& now = s.active;
   const bool kept = FollowsTable(r.kind) || r.kind == RequestKind::kCamIn;
@@ -86,7 +86,7 @@ bool KeepsPlace(const Request& r, const State& s) {
          r.coupling.terms[0].source == now.coupling.terms[0].source && r.coupling.periodic == now.coupling.periodic;
 }
 
-// Changes the command in control (AX-111): what waits behind it and what is on top of it stay.
+// Changes the command in control (AX-111): buffered commands and an overlay stay.
 Status Change(const Context& c, const Request& r, State& s) {
   const ScopedBaseMotion base(s);
   if (FollowsDemand(r.kind)) {
@@ -136,7 +136,7 @@ Status SwitchOn(const Context& c, const Request& r, State& s) {
   if (s.emergency == Emergency::kHeld) return Status::Failed(ErrorId::kEmergencyStop);
   if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
   if (SwitchingOff(s)) return Status::Failed(ErrorId::kAxisStopping);
-  if (s.loop_closed && SwitchingOn(s)) {  // the brake opens: it counts for this one, too
+  if (s.loop_closed && SwitchingOn(s)) {  // the brake is opening: that counts for this command, too
     EndActive(c, FeedbackState::kAborted, ErrorId::kNone, s);
     Grant(c, r, s);
     return Status::Ok();
@@ -152,7 +152,7 @@ Status SwitchOn(const Context& c, const Request& r, State& s) {
     return Status::Failed(ErrorId::kErrorStop);
   }
   EndActive(c, FeedbackState::kAborted, ErrorId::kNone,
-            s);  // an earlier power on; what waits behind it goes on waiting
+            s);  // an earlier power on; commands buffered behind it stay
   Grant(c, r, s);
   if (!s.enable) s.enable_cycle = c.cycle.count;
   s.enable = true;
@@ -165,7 +165,7 @@ Status SwitchOff(const Context& c, const Request& r, State& s) {
   const bool moves = s.active.kind != RequestKind::kNone || s.superimposed;
   const bool waits = r.buffer_mode == BufferMode::kBuffered && moves && !SwitchingOff(s);
   if (waits && s.plc != PlcState::kErrorStop) return Enqueue(c, r, s);
-  const bool guided = IsGuided(s);  // in a fault braked by its component: it has no motion of its own
+  const bool guided = IsGuided(s);  // in a fault its component brakes it: it has no motion of its own
   AbortAll(c, s);
   s.direct_voltage_v = 0;
   Grant(c, r, s);
@@ -190,7 +190,7 @@ Status Admit(const Context& c, const Request& r, State& s) {
   const bool moves = s.active.kind != RequestKind::kNone || s.superimposed;
   const bool buffered = r.buffer_mode != BufferMode::kAborting && moves;
   if (ComesTooLate(r, s)) return Report(c, r.ticket, FeedbackState::kAborted), Status::Ok();
-  if (SwitchingOn(s)) {  // the drive gets ready or the brake opens
+  if (SwitchingOn(s)) {  // the drive becomes ready or the brake opens
     if (buffered) return Enqueue(c, r, s);
     if (!stops) return Status::Failed(ErrorId::kPowerOff);
     // A drive that homes moves without set points: only switching it off ends that motion.
@@ -201,7 +201,7 @@ Status Admit(const Context& c, const Request& r, State& s) {
     }
     return StopAtOnce(c, r, s), Status::Ok();
   }
-  if (stops && s.direct_voltage_v != 0) {  // put out with the loop open
+  if (stops && s.direct_voltage_v != 0) {  // output with the loop open
     s.direct_voltage_v = 0;
     return StopAtOnce(c, r, s), Status::Ok();
   }
@@ -224,31 +224,31 @@ void BeginReset(const Context& c, Ticket ticket, State& s) {
   Report(c, ticket, FeedbackState::kActive);
 }
 
-// Commands that take no control of the axis: carried out beside what is in progress. The caller reports an
-// error; they report the rest themselves.
+// Commands that do not take control of the axis: executed besides the motion in progress. The caller reports an error;
+// they report everything else themselves.
 Status CarryOut(const Context& c, Ticket ticket, const Reset&, State& s) {
   BeginReset(c, ticket, s);
   return Status::Ok();
 }
-// That there is such a cam has been found already.
+// The lookup has found the cam already.
 Status CarryOut(const Context& c, Ticket ticket, const CamTableSelect&, State&) {
   Report(c, ticket, FeedbackState::kDone);
   return Status::Ok();
 }
-// Directions that a power command enables or not: from now on, also while it waits for its turn (AX-111).
+// Sets the directions that a power command enables or disables: from now on, also while it is buffered (AX-111).
 void Permit(const Context& c, const Power& power, State& s) {
   if (power.enable_positive || power.enable_negative) s.bars_cycle = c.cycle.count;
   if (power.enable_positive) s.bars_positive = !*power.enable_positive;
   if (power.enable_negative) s.bars_negative = !*power.enable_negative;
 }
 
-// What asks for control never comes here.
+// Never called: these commands take control.
 template <typename T>
 Status CarryOut(const Context&, Ticket, const T&, State&) {
   return Status::Failed(ErrorId::kInternal);
 }
 
-// The command with this ticket, in control or waiting; null: neither.
+// Returns the command with this ticket, in control or buffered; null if there is none.
 Request* Find(Ticket ticket, State& s) {
   if (ticket == 0) return nullptr;
   if (s.active.ticket == ticket) return &s.active;
@@ -279,7 +279,7 @@ bool AsksToMove(const Command& command) noexcept {
 
 namespace {
 
-// A motion of an axis that is held stopped, and not in Stopping: power was off or is, an emergency stop was on.
+// Returns true for a motion command to an axis that is held stopped but not in Stopping: with power off, or after it.
 bool BarsHeld(const Command& command, const State& s) {
   if (s.plc == PlcState::kStopping || s.plc == PlcState::kErrorStop || !IsHeldStopped(s)) return false;
   return AsksToMove(command) && !std::holds_alternative<Power>(command);

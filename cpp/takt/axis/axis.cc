@@ -16,11 +16,11 @@ namespace takt::axis {
 
 namespace {
 
-// An axis whose measured position moves further than this many times its largest velocity allows has a broken encoder.
+// A measured displacement beyond this multiple of what the velocity limit allows means a broken encoder.
 constexpr double kJumpFactor = 4;
-// Of the largest velocity: a loop is not closed on an analogue drive that still turns faster.
+// Share of the velocity limit: the loop is not closed while an analogue drive still turns faster.
 constexpr double kCoastingShare = 0.05;
-// Rotary axes: positions are brought back once they are so many turns out.
+// Rotary axes: positions are brought back into the first turn once they are this many turns away.
 constexpr double kFarTurns = 1000;
 
 double LargestStep(const Context& c) {
@@ -42,7 +42,7 @@ void WatchDeviation(const Context& c, State& s) {
   if (limit && std::abs(s.following_error) > *limit && !OwnsLag(s)) Fail(c, ErrorId::kDeviation, true, s);
 }
 
-// On a new edge, or when the axis moves further out.
+// Faults at a new edge of a limit switch, or if the axis moves further out.
 void WatchSwitches(const Context& c, State& s) {
   if (s.plc == PlcState::kErrorStop || OwnsLimitSwitches(s)) return;
   if (s.limit_positive && (!s.limit_positive_before || s.setpoint.velocity > 0)) {
@@ -52,7 +52,7 @@ void WatchSwitches(const Context& c, State& s) {
   }
 }
 
-// Speeds below this are rounding.
+// Returns the speed [u/s] below which a velocity is rounding.
 double Standing(const Context& c) {
   return 1e-9 * c.params.limits.velocity;
 }
@@ -64,16 +64,17 @@ bool BrakesByCommand(const State& s) {
   return (brakes && !s.superimposed) || (IsGuided(s) && s.guidance.comes_to_rest);
 }
 
-// The axis is on its way to rest already, by a command: of its own, of what guides it or of the axis that it follows.
+// Returns true if the axis is already braking by a command: its own, of the component that guides it, or of the axis
+// that it follows.
 bool BrakesAnyway(const Context& c, const State& s) {
   if (BrakesByCommand(s)) return true;
   if (!c.params.follows || !s.coupled) return false;
-  const State& master = *c.master;  // has moved in this cycle already, perhaps to its rest
+  const State& master = *c.master;  // has stepped in this cycle already, perhaps to rest
   return BrakesByCommand(master) || (master.motion.arrived && master.motion.arrived_cycle == c.cycle.count);
 }
 
-// A motion in a direction that MC_Power does not enable ends as at a limit switch (AX-111). Under torque control it is
-// the torque that counts: what is measured trembles.
+// A motion in a direction that MC_Power does not enable ends as at a limit switch (AX-111). Under torque control the
+// torque counts, as the measured velocity is noisy.
 void WatchDirections(const Context& c, State& s) {
   if (s.plc == PlcState::kErrorStop || BrakesAnyway(c, s)) return;
   const bool torque = s.active.kind == RequestKind::kTorqueControl;
@@ -82,7 +83,7 @@ void WatchDirections(const Context& c, State& s) {
   if ((s.bars_positive && way > least) || (s.bars_negative && way < -least)) Fail(c, ErrorId::kDirection, false, s);
 }
 
-// A voltage that is put out with the loop open ends at a limit switch and at a SW limit.
+// A voltage output with the loop open ends at a limit switch and at a SW limit.
 void WatchDirectOutput(const Context& c, State& s) {
   const AxisLimits& limits = c.params.limits;
   const bool up = s.direct_voltage_v > 0;
@@ -95,7 +96,7 @@ void WatchDirectOutput(const Context& c, State& s) {
 }
 
 void WatchLease(const Context& c, State& s) {
-  const bool watched = s.active.lease_s > 0 && s.active.kind != RequestKind::kStop;  // stops watch their own
+  const bool watched = s.active.lease_s > 0 && s.active.kind != RequestKind::kStop;  // stops have leases of their own
   if (!watched || c.cycle.count < s.lease_end_cycle) return;
   const Ticket ticket = s.active.ticket;
   const bool jog = s.active.kind == RequestKind::kJog;
@@ -122,7 +123,7 @@ void Supervise(const Context& c, State& s) {
   WatchLease(c, s);
 }
 
-// Holds the axis while its brake opens; then power is done.
+// Holds the axis while its brake opens; then the power command is done.
 void AwaitBrake(const Context& c, State& s) {
   const double open_s = static_cast<double>(c.cycle.count - s.brake_cycle) * c.cycle.period_s;
   if (open_s < c.params.drive.brake_opens_s) return;
@@ -130,11 +131,11 @@ void AwaitBrake(const Context& c, State& s) {
   StartNext(c, 0, s);
 }
 
-// Between power on and the drive's readiness.
+// Waits from power on until the drive is ready.
 void AwaitDrive(const Context& c, State& s) {
   if (s.active.kind != RequestKind::kPower || !s.active.enable) return;
-  if (s.enable_cycle == c.cycle.count) return;  // it was open for a cycle at least
-  // After a voltage was put out directly the drive comes to rest by itself, at 0 V.
+  if (s.enable_cycle == c.cycle.count) return;  // the loop stays open for at least one cycle
+  // After a direct voltage output the drive coasts to rest at 0 V.
   const bool coasts = c.params.drive.mode == DriveMode::kAnalog &&
                       std::abs(s.actual.velocity) > kCoastingShare * c.params.limits.velocity;
   if (s.drive_ready && !coasts) {
@@ -156,13 +157,13 @@ void BringBackTurns(const AxisParams& p, State& s) {
   ShiftCoordinates(-turns, s);
 }
 
-// Whether a motion has no end of its own, or is left with a velocity.
+// Returns true if a motion has no end of its own, or ends with a velocity.
 bool GoesOn(const State& s) {
   return s.plc == PlcState::kContinuousMotion || s.plc == PlcState::kSynchronizedMotion ||
          FollowsTable(s.active.kind) || s.motion.profile.end().velocity != 0;
 }
 
-// Whether the ramp for faults leads out of the SW limits from here, in the sense of the motion.
+// Returns true if the ramp for faults, begun now, ends beyond the SW limit ahead.
 bool StopsBeyond(const Context& c, const KinematicState& before, const State& s) {
   const double stop = trajectory::StopPosition(s.setpoint, WithFaultRamp(c, s));
   const AxisLimits& limits = c.params.limits;
@@ -170,9 +171,9 @@ bool StopsBeyond(const Context& c, const KinematicState& before, const State& s)
          (limits.lower && stop < *limits.lower && s.setpoint.position < before.position);
 }
 
-// Takes a set point back from which the axis could not stop in time, and brakes instead.
+// Drops a set point from which the axis could not stop in time, and brakes instead.
 void GuardLimits(const Context& c, const KinematicState& before, State& s) {
-  if (s.superimposed) return;  // the limits are those of both motions together
+  if (s.superimposed) return;  // the limits apply to the sum
   const bool positions_count = s.plc != PlcState::kErrorStop && s.plc != PlcState::kHoming;
   if (!positions_count || !GoesOn(s)) return;
   const bool early = s.fault_ramp.leaves_limits && IsGuided(s) && StopsBeyond(c, before, s);
@@ -185,8 +186,7 @@ void GuardLimits(const Context& c, const KinematicState& before, State& s) {
   s.setpoint = s.motion.profile.At(Elapsed(c, s));
 }
 
-// Takes back a set point with which a motion towards a limit switch that is on, or in a direction that is not enabled,
-// would begin.
+// Drops a set point that would begin a motion towards a limit switch that is on, or in a direction that is not enabled.
 void GuardSwitches(const Context& c, const KinematicState& before, State& s) {
   if (s.superimposed || s.plc == PlcState::kErrorStop || OwnsLimitSwitches(s)) return;
   const bool up = s.setpoint.velocity > std::max(0.0, before.velocity);
@@ -200,14 +200,14 @@ void GuardSwitches(const Context& c, const KinematicState& before, State& s) {
   const ErrorId at_switch = up ? ErrorId::kLimitSwitchPositive : ErrorId::kLimitSwitchNegative;
   if (!own && !barred) s.fault_of = FollowerThatBars(c, s, up ? 1 : -1);
   Fail(c, own ? at_switch : barred ? ErrorId::kDirection : ErrorId::kAxisFault, false, s);
-  if (IsGuided(s)) {  // braked by its component, with others: there is no motion of its own
+  if (IsGuided(s)) {  // its component brakes it, together with others: it has no motion of its own
     s.setpoint = next;
     return;
   }
   s.setpoint = s.motion.profile.At(Elapsed(c, s));
 }
 
-// The sense in which a motion came to its end; `otherwise` if it did not move at all.
+// Returns the sense in which a motion came to its end; `otherwise` if it did not move at all.
 std::int8_t SenseAtEnd(const trajectory::Profile& profile, std::int8_t otherwise) {
   if (profile.size() == 0) return otherwise;
   const std::size_t last = static_cast<std::size_t>(profile.size()) - 1;
@@ -216,8 +216,8 @@ std::int8_t SenseAtEnd(const trajectory::Profile& profile, std::int8_t otherwise
   return velocity == 0 ? otherwise : static_cast<std::int8_t>(velocity > 0 ? 1 : -1);
 }
 
-// The motion in progress is over. Blended moves may be shorter than a cycle: as many begin and end in this one as their
-// times say.
+// Handles the end of the motion in progress. Blended moves may be shorter than a cycle: as many begin and end in this
+// cycle as their times require.
 void ConcludeDue(const Context& c, const KinematicState& before, State& s) {
   for (int i = 0; i <= kBufferSize; ++i) {
     const double late_s = Elapsed(c, s) - s.motion.profile.duration();
@@ -236,12 +236,12 @@ void ConcludeDue(const Context& c, const KinematicState& before, State& s) {
   }
 }
 
-// The next set point where the motion is over, or never is.
+// Computes the next set point of a motion that is over or has no end.
 void AdvanceWatched(const Context& c, double t, State& s) {
   const KinematicState before = s.setpoint;
   s.setpoint = s.motion.profile.At(t);
   const bool over = t >= s.motion.profile.duration();
-  // A move that ends in this cycle hands over first: what it is left with is another command's set point.
+  // A move that ends in this cycle hands over first: the rest of the cycle belongs to another command.
   if (!over || s.plc == PlcState::kContinuousMotion) GuardLimits(c, before, s);
   // The end of a motion that is over concerns no command.
   const bool rests = s.motion.arrived && s.active.kind == RequestKind::kNone;
@@ -252,7 +252,7 @@ void NoteSense(State& s) {
   if (s.setpoint.velocity != 0) s.last_sense = s.setpoint.velocity > 0 ? 1 : -1;
 }
 
-// Inlined where every cycle of a moving axis needs it: a tenth of that.
+// Inlined: every cycle of a moving axis needs it, and a call would add a tenth to its time.
 [[gnu::always_inline]] inline void Advance(const Context& c, State& s) {
   const double t = Elapsed(c, s);
   if (t >= s.motion.profile.duration() || GoesOn(s)) {
@@ -263,7 +263,7 @@ void NoteSense(State& s) {
   NoteSense(s);
 }
 
-// The next set point of what follows something; false: the motion in progress gives it.
+// Computes the next set point of an axis that follows something. Returns false if the motion in progress gives it.
 bool FollowNow(const Context& c, State& s) {
   if (Couples(s.active.kind)) return FollowMasters(c, s);
   if (FollowsTable(s.active.kind)) return FollowTime(c, s);
@@ -272,7 +272,7 @@ bool FollowNow(const Context& c, State& s) {
   return true;
 }
 
-// Masters, a table over time or another component give the set point.
+// Takes the set point from masters, a table over time, a stream or another component.
 void FollowSource(const Context& c, State& s) {
   const KinematicState before = s.setpoint;
   const bool coupled = Couples(s.active.kind);
@@ -290,19 +290,19 @@ void StayOpen(const Context& c, State& s) {
   s.torque = TorqueState{};
   s.setpoint = {s.actual.position, 0, 0};
   AwaitDrive(c, s);
-  if (s.loop_closed && c.params.follows) Follow(c, s);  // a member of a gantry is one from its first cycle on
+  if (s.loop_closed && c.params.follows) Follow(c, s);  // a member of a gantry follows from its first closed cycle on
 }
 
-// The next set point of the motion in progress. What is unlikely is laid out of the way of a move with an end.
+// Computes the next set point. Unlikely cases are kept off the path of a move with an end.
 void MoveOne(const Context& c, State& s) {
   if (!s.loop_closed) [[unlikely]]
     return StayOpen(c, s);
   if (s.active.kind == RequestKind::kPower && s.active.enable) [[unlikely]]
     return AwaitBrake(c, s);
   if (s.active.kind == RequestKind::kJog) FollowKeys(c, s);
-  // The master's set point is this axis' too.
+  // The set point comes from the master.
   if (c.params.follows && Follow(c, s)) return;
-  // The drive follows a torque, the set point the axis.
+  // The drive follows a torque, the set point follows the axis.
   if ((s.active.kind == RequestKind::kTorqueControl || s.torque.engaged) && MoveTorque(c, s)) return;
   if (FollowsDemand(s.active.kind)) [[unlikely]]
     return FollowSource(c, s);
@@ -319,7 +319,7 @@ void FinishReset(const Context& c, State& s) {
     Report(c, s.reset_ticket, FeedbackState::kError, ErrorId::kAxisFault);
     return;
   }
-  if (s.error != ErrorId::kNone) {  // of an axis that is well nothing is sensed anew: it may follow what is measured
+  if (s.error != ErrorId::kNone) {  // an axis without an error keeps its measurement, which other axes may follow
     Trust(s.encoder);
     Trust(s.correction.load);
     s.correction.load_known = false;
@@ -332,7 +332,7 @@ void FinishReset(const Context& c, State& s) {
   Report(c, s.reset_ticket, FeedbackState::kDone);
 }
 
-// The state of a switch, once its wire has said otherwise than before for long enough.
+// Returns the state of a switch: it changes once its wire has differed for long enough.
 bool Settled(const Context& c, bool wire, bool before, std::uint32_t& changed) {
   if (wire == before) {
     changed = 0;
@@ -344,7 +344,7 @@ bool Settled(const Context& c, bool wire, bool before, std::uint32_t& changed) {
   return wire;
 }
 
-// The switches behind inversion and debouncing; at the first look as they are.
+// Reads the switches behind inversion and debouncing; without debouncing the first time.
 void ReadSwitches(const Context& c, const ServoInputs& in, State& s) {
   const InputSense& sense = c.params.inputs;
   const bool positive = in.limit_positive != sense.invert_limit_positive;
@@ -359,7 +359,7 @@ void ReadSwitches(const Context& c, const ServoInputs& in, State& s) {
   s.switches_known = true;
 }
 
-// [Nm] of the command in control or of the axis; 0: none.
+// Returns the torque limit [Nm] of the command in control or of the axis; 0 if there is none.
 double TorqueLimit(const AxisParams& p, const State& s) {
   const double own = p.limits.torque.value_or(0);
   const double asked = s.plc == PlcState::kHoming ? s.active.homing.torque_limit : 0;
@@ -378,7 +378,7 @@ trajectory::Limits StopLimits(const AxisParams& p, ErrorId error) noexcept {
   return limits;
 }
 
-// A ramp of its own is stronger than any that planning would take for the axis'.
+// A fault ramp of its own is stronger than any ramp that planning with the axis' limits would take.
 void BrakeInFault(const Context& c, ErrorId error, State& s) noexcept {
   const trajectory::Limits own = c.params.planner_limits();
   const trajectory::Limits limits = StopLimits(c.params, error);
@@ -436,7 +436,7 @@ void Move(const Context& c, State& s) noexcept {
   s.end_of_profile = false;
   Supervise(c, s);
   if (c.params.follows) WatchSkew(c, s);
-  // What seldom happens is asked for here: a call that finds nothing to do would cost as much as the set point.
+  // Rare conditions are tested here: a call that finds nothing to do would cost as much as the set point.
   if (s.homing.flying_ticket != 0) WatchFlying(c, s);
   if (s.probe.watch != ProbeWatch::kNothing) FollowProbe(c, s);
   if (s.pulsing) WatchPulse(c, s);
@@ -454,7 +454,7 @@ void Move(const Context& c, State& s) noexcept {
   s.cam_outputs = s.cam_switch.list < 0 ? 0 : SwitchCams(c, s);
 }
 
-// Torque that the set point of this cycle takes by what is known of the load.
+// Returns the torque that the set point of this cycle requires by the load model.
 double OffsetOf(const TorqueOffset& offset, const KinematicState& set) noexcept {
   const double along = std::clamp(set.velocity / offset.full_at, -1.0, 1.0);
   return offset.inertia * set.acceleration + offset.viscous_friction * set.velocity + offset.coulomb_friction * along +
@@ -468,11 +468,11 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   const bool engine_closes = mode == DriveMode::kCyclicVelocity || mode == DriveMode::kAnalog;
   const double sign = p.drive.invert ? -1 : 1;
   ControlLoopOutputs loop;
-  // The new set point is the one for the end of this cycle. What is measured now is held against the one before, and
-  // the speed fed forward is the one that leads from there to the new one.
+  // The new set point is for the end of this cycle. The measured position is compared with the previous one, and the
+  // velocity fed forward leads from there to the new one.
   if (p.compensation.any()) Correct(c, s);
   const double correction = s.correction.now;
-  const double corrected = p.load_encoder ? 0 : s.correction.rate;  // [u/s] by which the motor is told to go beyond
+  const double corrected = p.load_encoder ? 0 : s.correction.rate;  // [u/s] additional velocity of the motor
   const double mean_velocity = (s.setpoint.position - s.due) / c.cycle.period_s + corrected;
   const ControlLoopInputs inputs{p.drive.mode,     s.loop_closed && engine_closes, p.drive.invert, s.due, mean_velocity,
                                  s.actual.position};
@@ -510,7 +510,7 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   if (direct) out.voltage_v = sign * InConverterSteps(s.direct_voltage_v);
   s.voltage_v = out.voltage_v;
   out.enable = s.enable || direct;
-  out.release_brake = (s.loop_closed && !s.brake_falls) || (direct && s.drive_ready);  // the drive holds the load
+  out.release_brake = (s.loop_closed && !s.brake_falls) || (direct && s.drive_ready);  // else the drive holds the load
   return sound;
 }
 
@@ -524,7 +524,7 @@ void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
   if (s.plc != PlcState::kErrorStop) {
     const bool has_ramp = IsGuided(s) && s.fault_ramp.deceleration > 0;  // of the component in control
     const trajectory::Limits braking = FaultLimits(c, s);
-    // A fault that brakes on the way to power off does not end that: it opens the loop all the same, at rest.
+    // A fault while braking for power off does not end that: the loop is opened all the same, at rest.
     const bool switching_off = s.active.kind == RequestKind::kPower && !s.active.enable && !opens;
     if (!switching_off) EndActive(c, FeedbackState::kError, error, s);
     AbortBuffer(c, s);
@@ -534,7 +534,7 @@ void Fail(const Context& c, ErrorId error, bool open_loop, State& s) noexcept {
   }
   if (!opens) return;
   if (IsGuided(s)) s.active = Request{};
-  const bool switching_off = s.active.kind == RequestKind::kPower;  // while braking in ErrorStop: now it is off
+  const bool switching_off = s.active.kind == RequestKind::kPower;  // while braking in ErrorStop: it is off now
   switching_off ? SwitchedOff(c, s) : OpenLoop(s);
 }
 
@@ -591,7 +591,7 @@ void Publish(const AxisParams& p, const State& s, Outputs& out) noexcept {
   out.in_step = (s.coupled && InStep(p, s)) || (Streams(s.active.kind) && s.stream.chase.in_step) ||
                 (coupled && s.coupling.in_step) || (s.active.kind == RequestKind::kGuided && s.guidance.chase.in_step);
   out.synchronizing = coupled && !out.in_step && s.coupling.joining != Joining::kWaiting;
-  out.master1 = coupled ? terms[0].master + 1 : 0;  // none: 0
+  out.master1 = coupled ? terms[0].master + 1 : 0;  // kNoAxis + 1 is 0: none
   out.master2 = coupled ? terms[1].master + 1 : 0;
   out.buffered_commands = s.buffered;
   out.loop_closed = s.loop_closed;

@@ -12,9 +12,9 @@ namespace takt::axis {
 
 namespace {
 
-constexpr double kCycleRounding = 1e-6;  // of a cycle: a duration of whole cycles is that many
+constexpr double kCycleRounding = 1e-6;  // of a cycle: rounding of durations that are whole cycles
 
-// A way of the place compared, in one sense of travel; of no length: none.
+// A displacement of the compared position in one sense of travel; none if its length is not positive.
 struct Way {
   double from = 0, to = 0;
   int sense = 1;
@@ -22,10 +22,10 @@ struct Way {
   double length() const { return sense * (to - from); }
 };
 
-// What the axis did between two cycles.
+// The motion of the axis between two cycles.
 struct Travel {
   int sense = 1;
-  double velocity = 0;  // [u/s] that way: against it is none
+  double velocity = 0;  // [u/s] in that sense; 0 if the axis moves against it
   bool turned = false;
   double turning_point = 0;
 };
@@ -49,13 +49,13 @@ Travel Follow(const CamSwitchInputs& in, CamSwitchState& s) {
   return travel;
 }
 
-// One and the same for a switch in all cycles, so that what is short of an edge in one cycle is so in the next, too.
+// The same for a switch in all cycles, so that a position short of an edge in one cycle is so in the next, too.
 double Slack(const CamSwitchInputs& in, const CamSwitch& sw) {
   const double last = sw.last_on_position.value_or(0);
   return Rounding(std::max({in.modulus, std::abs(sw.first_on_position), std::abs(last)}));
 }
 
-// How far `x` is past the end of the range at which it is entered in this sense; where positions repeat: in [0,
+// Returns how far `x` [u] is past the end at which the range is entered in this sense; where positions repeat: in [0,
 // modulus), but for rounding.
 double Past(const CamSwitchInputs& in, const CamSwitch& sw, int sense, double x) {
   const double entry = sense > 0 ? sw.first_on_position : sw.last_on_position.value_or(sw.first_on_position);
@@ -83,14 +83,14 @@ bool Enters(const CamSwitchInputs& in, const CamSwitch& sw, const Way& way) {
   return past >= -slack && past < way.length() - slack;
 }
 
-// Further, but never back.
+// Advances `reach`, but never back, and returns its displacement.
 Way Advance(double to, int sense, double& reach) {
   const Way way{reach, to, sense};
   if (way.length() > 0) reach = to;
   return way;
 }
 
-// Whether the axis entered the range since the cycle before.
+// Returns true if the axis entered the range since the previous cycle.
 bool Enters(const CamSwitchInputs& in, const CamSwitch& sw, const Travel& travel, double x, bool started,
             double& reach) {
   if (!started) {
@@ -145,7 +145,7 @@ CamTrack OptionsOf(const CamSwitches& list, std::int32_t track) {
   return {.track = track};
 }
 
-// The first switch whose range ends below its beginning; none: null.
+// Returns the first switch whose range ends below its beginning; null if there is none.
 const CamSwitch* EndsBelow(const CamSwitches& list) {
   const auto backwards = [](const CamSwitch& sw) {
     return sw.last_on_position.value_or(sw.first_on_position) < sw.first_on_position;
@@ -154,7 +154,8 @@ const CamSwitch* EndsBelow(const CamSwitches& list) {
   return found == list.switches.end() ? nullptr : &*found;
 }
 
-// A list without one of its own repeats as its axis does.
+// Returns true if a turn of the axis is a whole number of the list's modulus. A list without one repeats as its axis
+// does.
 bool FitsTurn(const CamSwitches& list, const AxisParams& params) {
   if (!params.rotary() || !list.modulus) return true;
   const double times = params.modulus / *list.modulus;
@@ -195,7 +196,7 @@ std::uint32_t SwitchCams(const Context& c, State& s) noexcept {
   in.cycle = c.cycle.count;
   in.period_s = c.cycle.period_s;
   const std::uint32_t outputs = Step(list, in, cams) & cams.enable_mask;
-  // Where it is next has nothing to do with where it seemed to be.
+  // After an encoder error the next position is unrelated to the last one.
   const bool measured = cams.source == MasterSource::kActualValue || !s.loop_closed;
   if (measured && s.encoder_error) cams.started = false;
   return outputs;

@@ -31,7 +31,7 @@ void Step(const ControlLoop& p, const ControlLoopInputs& in, Cycle cycle, Contro
   }
   const bool analogue = in.mode == DriveMode::kAnalog;
   const double largest_speed = p.velocity_at_10v;                          // [u/s]
-  const double largest_output = analogue ? kVoltageLimit : largest_speed;  // V or u/s
+  const double largest_output = analogue ? kVoltageLimit : largest_speed;  // [V] or [u/s]
   const double sense = in.invert ? -1 : 1;
   const double output_per_speed = sense * (analogue ? kVoltageLimit / largest_speed : 1);
   const double output_per_sum = output_per_speed / cycle.period_s;
@@ -40,7 +40,7 @@ void Step(const ControlLoop& p, const ControlLoopInputs& in, Cycle cycle, Contro
   const double last_error = s.error;
   s.error = in.model_position - in.feedback;
   s.p = p.kp * s.error;
-  s.i = p.ki > 0 ? s.integral + p.ki * s.error : 0;  // without integration nothing of it stays
+  s.i = p.ki > 0 ? s.integral + p.ki * s.error : 0;  // without integration I is 0
   s.d = s.closed ? p.kd * (s.error - last_error) : 0;
 
   s.sum = s.p + s.i + s.d;

@@ -10,10 +10,10 @@ namespace takt::axis {
 
 namespace {
 
-// Speeds below this share of the largest are no motion.
+// Share of the velocity limit below which a velocity counts as standstill.
 constexpr double kStandingShare = 1e-9;
 
-// How much further the load is than the motor says, between two entries on the line from one to the other.
+// Returns the displacement [u] of the load relative to the encoder on the motor, linear between two entries.
 double ScrewError(const std::vector<ScrewPoint>& table, double position) noexcept {
   if (table.empty()) return 0;
   const auto above = std::upper_bound(table.begin(), table.end(), position,
@@ -24,15 +24,15 @@ double ScrewError(const std::vector<ScrewPoint>& table, double position) noexcep
   return low.error + (above->error - low.error) * (position - low.position) / (above->position - low.position);
 }
 
-// The largest speed from which steps of `step` a cycle come to rest within `left` exactly: in n cycles, each slower by
-// one step than the one before, so n (left / n period + (n - 1) step / 2) lead there.
+// Returns the highest velocity from which steps of `step` per cycle come to rest within `left` exactly: in n cycles,
+// each slower than the previous one by one step, so n (left / n period + (n - 1) step / 2) reach it.
 double LandingSpeed(double left, double step, double period_s) noexcept {
   if (left == 0) return 0;
   const double cycles = std::max(1.0, std::ceil(std::sqrt(0.25 + 2 * left / (step * period_s)) - 0.5));
   return left / (cycles * period_s) + 0.5 * (cycles - 1) * step;
 }
 
-// From where it is to the target with a limited velocity and acceleration; no further.
+// Moves the correction towards the target with limited velocity and acceleration, without overshoot.
 void Approach(double target, double velocity, double acceleration, double period_s, CorrectionState& k) noexcept {
   const double left = target - k.now;
   const double step = acceleration * period_s;
@@ -67,7 +67,7 @@ void Correct(const Context& c, State& s) noexcept {
   const double standing = kStandingShare * c.params.limits.velocity;
   const double velocity = s.setpoint.velocity;
   if (s.loop_closed && !s.torque.engaged && std::abs(velocity) > standing) k.sense = velocity > 0 ? 1 : -1;
-  // A table is one of positions as the reference names them, which an axis without one does not know.
+  // The table refers to positions as the reference defines them, which an axis without reference does not know.
   const double place = Reported(c.params, s.setpoint.position - s.homing.renamed);
   const double screw = s.homing.homed ? ScrewError(p.screw, place) : 0;
   const double target = k.sense * p.backlash / 2 - screw;

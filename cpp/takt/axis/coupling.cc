@@ -19,7 +19,7 @@ KinematicState PhaseAt(const Context& c, const CouplingState& k) {
   return k.phase.At(static_cast<double>(c.cycle.count - k.phase_start) * c.cycle.period_s);
 }
 
-// What is no axis; null: an axis.
+// Returns the outside master of this number; null if it is an axis.
 const OutsideMaster* Outside(const Context& c, std::uint32_t master) {
   const std::size_t axes = c.machine.states.size();
   return master < axes ? nullptr : &c.machine.outside[master - axes];
@@ -35,17 +35,17 @@ double ReportedOf(const Context& c, std::uint32_t master, double position) {
   return Outside(c, master) ? position : Reported(c.machine.params[master], position);
 }
 
-// An axis over all turns, as it is set or measured.
+// Returns the state of an axis over all turns, set or measured.
 KinematicState AsItIs(const Context& c, const CouplingTerm& term) {
   const State& master = c.machine.states[term.master];
   const bool measured = term.source == MasterSource::kActualValue;
   KinematicState its = measured ? master.actual : master.setpoint;
-  if (measured && master.loop_closed) its.acceleration = master.setpoint.acceleration;  // it is not measured
+  if (measured && master.loop_closed) its.acceleration = master.setpoint.acceleration;  // not measured
   its.position += master.origin;
   return its;
 }
 
-// A master as this axis sees it: over all turns, with the phase.
+// Returns a master as this axis sees it: over all turns, with the phase.
 KinematicState Seen(const Context& c, const CouplingState& k, const CouplingTerm& term, const KinematicState& phase) {
   if (const OutsideMaster* outside = Outside(c, term.master)) {
     const KinematicState& its = outside->at;
@@ -56,13 +56,13 @@ KinematicState Seen(const Context& c, const CouplingState& k, const CouplingTerm
   return {its.position + phase.position, its.velocity + phase.velocity, its.acceleration + phase.acceleration};
 }
 
-// [s] of the filter of a measured master; 0: none.
+// Returns the time constant [s] of the filter of a measured master; 0 if it has none.
 double FilterTime(const Context& c, const CouplingTerm& term) {
   if (term.master == kNoAxis || term.source == MasterSource::kSetValue || Outside(c, term.master)) return 0;
   return term.filter_s < 0 ? c.machine.params[term.master].encoder.velocity_filter_s : term.filter_s;
 }
 
-// Once a cycle, where there are any: the filters of measured masters.
+// Runs the filters of measured masters; once per cycle.
 void FilterMasters(const Context& c, CouplingState& k) {
   for (std::size_t i = 0; i < k.law.terms.size(); ++i) {
     const CouplingTerm& term = k.law.terms[i];
@@ -70,12 +70,12 @@ void FilterMasters(const Context& c, CouplingState& k) {
     if (time_s <= 0) continue;
     KinematicState its = AsItIs(c, term);
     const State& master = c.machine.states[term.master];
-    if (master.loop_closed) its.velocity = master.setpoint.velocity;  // to begin with: better known than measured
+    if (master.loop_closed) its.velocity = master.setpoint.velocity;  // to begin with: better than measured
     Filter(time_s, 1 / c.machine.params[term.master].encoder.increments_per_unit, c.cycle, its, k.filters[i]);
   }
 }
 
-// The sum of all terms, as a demand over all own turns.
+// Returns the sum of all terms, as a demand over all own turns.
 KinematicState Sum(const Context& c, const CouplingState& k, const KinematicState& phase) {
   KinematicState sum;
   for (const CouplingTerm& term : k.law.terms) {
@@ -88,15 +88,16 @@ KinematicState Sum(const Context& c, const CouplingState& k, const KinematicStat
   return sum;
 }
 
-// Of the places every `turn` from `position` on the next one ahead of `from` in this sense; no turn: as it is.
+// Returns, of the positions that repeat after `turn` from `position` on, the next one ahead of `from` in this sense;
+// `position` if turn is 0.
 double NextAhead(double turn, double position, double from, double sense) {
   if (turn == 0) return position;
   const double turns = (from - position) / turn;
   return position + turn * (sense < 0 ? std::floor(turns) : std::ceil(turns));
 }
 
-// Where the slave is to be when both are in step, over all turns, if it continues to about `expected` meanwhile.
-// `sense`: of its travel then; catching up is further in that sense, slowing down less far.
+// Returns the slave position at the end of synchronisation, over all turns, for a slave that would reach about
+// `expected` meanwhile. `sense`: of its travel then; catching up is further in that sense, slowing down less far.
 double SlaveSync(const AxisParams& p, double position, double expected, SyncMode mode, double sense) {
   if (!p.rotary()) return position;
   const double turns = (expected - position) / p.modulus;
@@ -111,12 +112,12 @@ double Fastest(const Context& c, std::uint32_t master) {
   return outside ? outside->velocity : c.machine.params[master].limits.velocity;
 }
 
-// Speeds below this are standstill: there is no slope over the master's position then.
+// Returns the speed below which a master is at rest: there is no slope over its position then.
 double Standing(const Context& c, std::uint32_t master) {
   return 1e-6 * Fastest(c, master);
 }
 
-// By place from the beginning, not from when they are in step.
+// Returns true if the coupling follows the position from the start, not only once in step.
 bool Joins(RequestKind kind) {
   return kind == RequestKind::kGearInPos || kind == RequestKind::kCamIn;
 }
@@ -130,7 +131,7 @@ CamLaw LawOf(const Context& c, const AddedCam& added) {
   return {c.machine.cams[added.table], added.ratio, added.periodic, added.scale};
 }
 
-// What all cams on top add for a master here; derivatives over the master's position.
+// Returns what the added cams contribute at this position of the master; derivatives over the master's position.
 cam::Value Added(const Context& c, double master, const CouplingState& k) {
   cam::Value sum;
   for (const AddedCam& added : k.added) {
@@ -144,7 +145,7 @@ cam::Value Added(const Context& c, double master, const CouplingState& k) {
   return sum;
 }
 
-// Where an axis that is in step has its place for a master here; derivatives over the master's position.
+// Returns the slave position in step at this position of the master; derivatives over the master's position.
 cam::Value InStep(const Context& c, double master, const State& s) {
   const CouplingState& k = s.coupling;
   if (s.active.kind == RequestKind::kCamIn) {
@@ -159,8 +160,9 @@ KinematicState DemandOf(const cam::Value& at, const KinematicState& master) {
   return trajectory::AlongWay({at.y, at.dy, at.ddy}, master);
 }
 
-// Moves the place where both are in step to the turn, or for a relative cam the place, that is the nearest if the
-// slave continues to about `expected` meanwhile. `master_sense`: of the master's travel.
+// Chooses the slave position where synchronisation ends: of its repetitions the one that the SyncMode selects for a
+// slave that would reach about `expected` meanwhile; for a relative cam `expected` plus the offset. `master_sense`: of
+// the master's travel.
 void PlaceSlave(const Context& c, double expected, double master_sense, State& s) {
   CouplingState& k = s.coupling;
   const cam::Value place = InStep(c, k.master_sync, s);
@@ -174,8 +176,8 @@ void PlaceSlave(const Context& c, double expected, double master_sense, State& s
   k.cam.slave += wanted - place.y;
 }
 
-// The curve over the master's displacement that begins as the slave moves now and ends in step. A master that is there
-// already, or beyond, leaves none: the slave gets into step within the limits of the command.
+// Begins the curve over the master's displacement, from the present motion of the slave to being in step. If the master
+// is already there, or beyond, there is no curve: the slave gets into step within the limits of the command.
 void BeginCurve(const Context& c, const KinematicState& master, State& s) {
   CouplingState& k = s.coupling;
   const double planned = k.master_sync - k.curve_begin;
@@ -203,7 +205,7 @@ KinematicState OnCurve(const CouplingState& k, const KinematicState& master) {
   return trajectory::AlongWay(k.curve.At(master.position - k.curve_begin), master);
 }
 
-// From where on a waiting slave gets into step.
+// Begins the wait for the master position, `distance` before `master_sync`, at which synchronisation starts.
 void Wait(double master, double distance, CouplingState& k) {
   const double side = k.master_sync < master ? -1 : 1;
   k.curve_begin = k.master_sync - side * distance;
@@ -211,8 +213,8 @@ void Wait(double master, double distance, CouplingState& k) {
   k.joining = Joining::kWaiting;
 }
 
-// Whether the master is where the waiting ends: past the beginning, or already behind it on its way to the place. One
-// that turns round on a circle meets the place from the other side.
+// Returns true if the wait is over: the master has passed the start, or is between it and `master_sync`, moving towards
+// the latter. If a master on a circle moves away from `master_sync`, the next repetition in its sense replaces it.
 bool HasBegun(double standing, const KinematicState& master, CouplingState& k) {
   const double way = k.master_sync - k.curve_begin;
   const double side = master.position - k.curve_begin;
@@ -233,7 +235,8 @@ bool HasBegun(double standing, const KinematicState& master, CouplingState& k) {
   return passes;
 }
 
-// GearInPos, CamIn: waits for the place where it begins, goes along the curve, then stays in step.
+// Computes the demand of GearInPos and CamIn: waits for the start, follows the curve, then stays in step. Returns false
+// while it waits.
 bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, KinematicState& demand) {
   CouplingState& k = s.coupling;
   const CouplingTerm& term = k.law.terms[0];
@@ -246,7 +249,7 @@ bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, Kinem
     const double way = k.master_sync - k.curve_begin;
     const double share = way == 0 ? 1 : (master.position - k.curve_begin) / way;
     if (share < 1) {
-      // A master that goes back before the curve finds the slave where the curve began.
+      // If the master returns to before the curve, the slave stays where the curve began.
       demand = share >= 0 ? OnCurve(k, master) : KinematicState{k.curve.At(0).position, 0, 0};
       return true;
     }
@@ -276,7 +279,7 @@ void BeginJoining(const Context& c, const Request& r, State& s) {
   Wait(seen.position, distance, k);
 }
 
-// Lays a cam over the master's way. One that takes over at the end of another begins exactly there.
+// Lays a cam over the master's positions. A cam that takes over at the end of another begins exactly there.
 void BeginCam(const Context& c, const Request& r, State& s) {
   CouplingState& k = s.coupling;
   const CouplingTerm& term = k.law.terms[0];
@@ -288,8 +291,8 @@ void BeginCam(const Context& c, const Request& r, State& s) {
   const double sense = seen.velocity < 0 ? -1 : 1;
   const bool waits = k.law.master_start_distance >= 0;
   const double distance = std::max(0.0, k.law.master_start_distance);
-  double at = takes_over ? k.cam.end_master : seen.position;   // the place that counts, over all turns ...
-  double zero = at - ReportedOf(c, term.master, at - origin);  // ... and the master's zero in that turn
+  double at = takes_over ? k.cam.end_master : seen.position;   // reference position of the master, over all turns
+  double zero = at - ReportedOf(c, term.master, at - origin);  // the master's zero in that turn
   const double begin = (law.table.begin() - k.law.master_offset) / law.ratio;  // from zero
   if (k.law.at_sync_position) {
     k.turn = turn;
@@ -311,7 +314,7 @@ void BeginCam(const Context& c, const Request& r, State& s) {
   PlaceSlave(c, takes_over ? k.cam.end_slave : s.setpoint.position + s.origin, sense, s);
 }
 
-// A master that is measured is known to its increments only: what lies within so many is one place.
+// Returns the tolerance [u] for being in step with measured masters, which are known only to their increments.
 double Blur(const Context& c, const State& s) {
   double blur = 0;
   for (const CouplingTerm& term : s.coupling.law.terms) {
@@ -323,7 +326,7 @@ double Blur(const Context& c, const State& s) {
   return blur;
 }
 
-// Looks whether the master has passed the end of the cam.
+// Checks whether the master has passed an end of the cam.
 void NoteEnd(const Context& c, const KinematicState& phase, State& s) {
   CouplingState& k = s.coupling;
   if (s.active.kind != RequestKind::kCamIn || k.joining != Joining::kJoined) return;
@@ -357,16 +360,16 @@ void EndPhase(const Context& c, FeedbackState feedback, State& s) {
   s.coupling.phase_ticket = 0;
 }
 
-// Returns how far a master may move away from the only position at which synchronisation begins: for a cam by one
-// cycle of it, for a gear as far as a master that reverses may overshoot.
+// Returns how far a master may move away from the only position at which synchronisation can start: for a cam by one
+// cycle, for a gear as far as a master that reverses may overshoot.
 double Excursion(const Context& c, const State& s) {
   const CouplingState& k = s.coupling;
   if (s.active.kind == RequestKind::kCamIn) return std::abs(CamOf(c, s.active).way());
-  constexpr double kReversal = 1;  // s at the largest velocity
+  constexpr double kReversal = 1;  // [s] at the velocity limit
   return std::max(k.law.master_start_distance, kReversal * Fastest(c, k.law.terms[0].master));
 }
 
-// Returns whether the axis waits for the only position of its master at which synchronisation can begin, and the master
+// Returns true if the axis waits for the only position of its master at which synchronisation can start, and the master
 // has moved away from it by more than Excursion since the wait began (CAM-82).
 bool LeavesSyncPosition(const Context& c, const KinematicState& phase, const State& s) {
   const CouplingState& k = s.coupling;
@@ -400,7 +403,7 @@ void TakeCoupling(const Context& c, const Request& r, State& s) {
   k.filtered = std::ranges::any_of(k.law.terms, [&](const CouplingTerm& term) { return FilterTime(c, term) > 0; });
 }
 
-// Lays what has a position over that of the master with its phase.
+// Starts the synchronisation of couplings by position, with the phase of the master.
 void BeginCoupling(const Context& c, const Request& r, State& s) {
   if (r.kind == RequestKind::kGearInPos) BeginJoining(c, r, s);
   if (r.kind == RequestKind::kCamIn) BeginCam(c, r, s);
@@ -508,19 +511,19 @@ void UpdateCam(const Context& c, const Request& r, State& s) noexcept {
   const CamLaw was = CamOf(c, s.active);
   const CamLaw law = CamOf(c, r);
   const bool absolute = k.law.master_absolute;
-  const bool fixed = absolute || k.law.at_sync_position;  // x counts from a place of the master
+  const bool fixed = absolute || k.law.at_sync_position;  // x counts from a fixed position of the master
   const double offset = r.coupling.master_offset - k.law.master_offset;
   const double slave_offset = r.table.offset - s.active.table.offset;
   Grant(c, r, s);
   k.law = r.coupling;
   const KinematicState master = Seen(c, k, k.law.terms[0], PhaseAt(c, k));
-  // On the way there: where it will be in step.
+  // On the curve: the position where both will be in step.
   const double place = k.joining == Joining::kOnCurve ? k.master_sync : master.position;
   const double cycle = WholeCycles(was, k.cam, place);
-  const double begin = k.cam.master + cycle * was.way();  // of the cycle that the master is in
+  const double begin = k.cam.master + cycle * was.way();  // of the present cycle
   if (fixed) {
-    // Cycles of another length are counted from the master's zero, those of a relative cam from its sync position, as
-    // BeginCam does; of the same length, from any.
+    // Cycles of another length count from the master's zero, those of a relative cam from its sync position, as in
+    // BeginCam; cycles of the same length from any beginning.
     const std::uint32_t its = k.law.terms[0].master;
     const bool other_length = law.periodic && law.ratio != was.ratio;
     const double zero = other_length && k.law.master_absolute
@@ -535,7 +538,7 @@ void UpdateCam(const Context& c, const Request& r, State& s) noexcept {
     const double x = was.ratio * (place - begin) + offset;  // from the beginning of the cam
     k.cam.master = place - x / law.ratio - cycle * law.way();
   }
-  // In a later cycle the cam stands higher by its strokes: that is not scaled anew.
+  // In a later cycle the cam is offset by its strokes, which are not rescaled.
   k.cam.slave += slave_offset + (was.scale - law.scale) * cycle * law.table.stroke();
   k.cam.share = ShareOf(law, k.cam, place);
   k.cam.over = false;
@@ -555,7 +558,7 @@ bool FollowMasters(const Context& c, State& s) noexcept {
     return false;
   }
   if (k.filtered) FilterMasters(c, k);
-  // On the way to the lock a phase would be lost in part: it rests meanwhile.
+  // Until the position is locked a phase shift would be lost in part: it pauses meanwhile.
   if (!k.locked && k.phase_moves) ++k.phase_start;
   KinematicState phase = PhaseAt(c, k);
   if (!k.locked) phase = {phase.position, 0, 0};
@@ -564,14 +567,14 @@ bool FollowMasters(const Context& c, State& s) noexcept {
     return false;
   }
   NoteEnd(c, phase, s);
-  if (s.end_of_profile && s.buffered > 0 && Couples(s.buffer[0].kind)) {  // takes over in this very cycle
+  if (s.end_of_profile && s.buffered > 0 && Couples(s.buffer[0].kind)) {  // takes over in this cycle
     Conclude(c, 0, s);
     if (!Couples(s.active.kind)) return false;
     phase = PhaseAt(c, k);
   }
   KinematicState demand;
   const bool begun = Joins(s.active.kind) ? JoinedDemand(c, phase, s, demand) : (demand = Sum(c, k, phase), true);
-  if (!begun) {  // keeps its velocity until it begins
+  if (!begun) {  // keeps its velocity until synchronisation starts
     demand = {s.setpoint.position + s.origin + s.setpoint.velocity * c.cycle.period_s, s.setpoint.velocity, 0};
   }
   demand.position -= s.origin;
@@ -603,7 +606,7 @@ Status CarryOut(const Context& c, Ticket ticket, const PhasingRelative& p, State
 
 namespace {
 
-// What the slave is to be in step with has changed while it is on its way there.
+// The target of synchronisation has changed: begins the curve anew if the slave is on it.
 void JoinAnew(const Context& c, State& s) {
   CouplingState& k = s.coupling;
   if (k.joining == Joining::kOnCurve) BeginCurve(c, Seen(c, k, k.law.terms[0], PhaseAt(c, k)), s);

@@ -147,7 +147,8 @@ bool Fill(const RequestBuilder& m, const CamOut&) {
 
 namespace {
 
-// The limits of a shift are in the master's unit: the axis' own say nothing about them but that they are finite.
+// The limits of a shift are in the master's unit, so they are not compared with the axis' own: they must only be
+// finite.
 template <typename T>
 bool Shift(const RequestBuilder& m, const T& c) {
   const auto above_zero = [&](const char* field, const std::optional<double>& value) {

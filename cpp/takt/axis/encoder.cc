@@ -24,13 +24,13 @@ std::uint32_t Decode(const Encoder& p, std::uint32_t counts) noexcept {
   return word;
 }
 
-// The shortest way from one word to another round the counter.
+// Returns the shortest difference of two words around the counter.
 std::int64_t Difference(const Encoder& p, std::uint32_t from, std::uint32_t to) noexcept {
   const int unused = 32 - Bits(p);
   return static_cast<std::int32_t>((to - from) << unused) >> unused;
 }
 
-// Where a counter of 32 bits begins: as a number with a sign, which position objects of drives are.
+// Returns true if the counter starts as a signed number, as position objects of drives are.
 bool IsSigned(const Encoder& p) noexcept {
   return p.type == EncoderType::kIncremental || (p.ssi_bits == 32 && p.coding == SsiCoding::kBinary);
 }
@@ -40,7 +40,7 @@ double PositionOf(const Encoder& p, std::int64_t count) noexcept {
   return p.offset + (p.invert ? -distance : distance);
 }
 
-// Takes the sample into the state; the distance since the last one in u. False: it cannot be right.
+// Accepts the sample into the state; `distance`: displacement since the last one [u]. Returns false if it is a jump.
 bool Take(const Encoder& p, const EncoderInputs& in, EncoderState& s, double& distance) noexcept {
   const std::uint32_t word = Decode(p, in.counts);
   distance = 0;
@@ -87,7 +87,8 @@ double LatchedPosition(const Encoder& p, const EncoderState& s, std::uint32_t co
   return PositionOf(p, s.count + Difference(p, s.word, Decode(p, counts)));
 }
 
-// Upwards from a fixed mark its coded one is half the distance and some steps away, the next fixed one what is left.
+// Upwards from a fixed mark, its coded mark is half the distance plus some steps away, the next fixed one the
+// remainder.
 std::optional<double> MarkPosition(const CodedMarks& m, double before, double mark) noexcept {
   const double apart = m.reversed ? before - mark : mark - before;
   const double steps = (std::abs(apart) - m.distance / 2) / m.step;

@@ -14,10 +14,10 @@ using trajectory::Profile;
 namespace {
 
 constexpr double kTolerance = 1e-9;  // of a limit
-// Slower than this share of the largest velocity is standing still, where speed neither grows nor falls.
+// Share of the velocity limit below which a velocity counts as standstill, where speed neither grows nor falls.
 constexpr double kStanding = 1e-6;
-// Instants of a motion that turns round at which a stop is tried. Between them its end changes little: it is stationary
-// where it is furthest.
+// Number of instants at which a stop is tried in a motion that reverses. Between them its end changes little: it is
+// stationary where it is furthest.
 constexpr int kStopsLookedAt = 128;
 
 bool BreaksVelocity(const AxisLimits& limits, const KinematicState& from, const Profile& profile) {
@@ -50,8 +50,8 @@ bool BreaksAcceleration(const AxisParams& params, const Profile& profile) {
   return false;
 }
 
-// How far a motion gets, or would get if the axis were stopped on its way. A motion that turns round passes standstill
-// with acceleration left, which a stop from just before has to end first, and so goes further.
+// Returns the range that a motion passes, or would pass if the axis were stopped during it. A motion that reverses
+// passes standstill with an acceleration, which a stop begun just before must end first, and so gets further.
 Profile::Range Reach(const AxisParams& params, const Profile& profile) {
   const Profile::Range velocity = profile.VelocityRange();
   Profile::Range reach = profile.PositionRange();
@@ -80,9 +80,8 @@ bool TurnsRound(const AxisLimits& limits, const KinematicState& from, const Prof
   return (from.velocity > slack && range.min < -slack) || (from.velocity < -slack && range.max > slack);
 }
 
-// Whether SW limits are further away than any stop can lead: its largest speed for as long as it takes to end the
-// acceleration and to brake then. That is half of what planning the stop costs, and says all there is to know on nearly
-// all of the way.
+// Returns true if the SW limits are further away than any stop gets: its highest speed, for the time to end the
+// acceleration and to brake then. This costs half of planning the stop, and suffices for nearly all of the travel.
 bool StopsFarInside(const AxisParams& p, const KinematicState& x) {
   const AxisLimits& l = p.limits;
   if (!l.lower && !l.upper) return true;

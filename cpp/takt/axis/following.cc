@@ -11,7 +11,7 @@ namespace takt::axis {
 
 namespace {
 
-// Positions of the master over all turns.
+// Returns the set position of the master over all turns.
 double Total(const State& master) {
   return master.setpoint.position + master.origin;
 }
@@ -40,7 +40,7 @@ std::string CannotFollow(const AxisParams& follower, const AxisParams& master) {
 
 namespace {
 
-// Visits all that follow this axis, with those that follow them: visit(params, state, ratio to this axis).
+// Visits all direct and indirect followers of this axis: visit(params, state, ratio to this axis).
 template <typename Visit>
 void ForFollowers(const Context& c, const AxisParams& leader, double ratio, const Visit& visit) {
   for (std::size_t i = 0; i < c.machine.params.size(); ++i) {
@@ -57,12 +57,12 @@ void ForFollowers(const Context& c, const Visit& visit) {
   ForFollowers(c, c.params, 1, visit);
 }
 
-// Where the master has it without a skew.
+// Returns the position due by the master without a skew.
 double Due(const Context& c, const State& s) {
   return c.params.follows->ratio * Total(*c.master) + s.follow_offset - s.origin;
 }
 
-// Set points that lie so close to one another belong together.
+// Returns true if the skew of the set points is within the tolerance and not being straightened.
 bool IsStraight(const AxisParams& p, const State& s) {
   return std::abs(s.skew.commanded) <= p.follows->in_step && !s.skew.straightens;
 }
@@ -74,7 +74,7 @@ void EndStraightening(const Context& c, FeedbackState end, State& s) {
   s.skew.ticket = 0;
 }
 
-// The skew of this cycle, with its derivatives.
+// Returns the skew of this cycle, with its derivatives.
 KinematicState Skew(const Context& c, State& s) {
   if (!s.skew.straightens) return {s.skew.commanded, 0, 0};
   const double t = static_cast<double>(c.cycle.count - s.skew.start_cycle) * c.cycle.period_s;
@@ -84,7 +84,7 @@ KinematicState Skew(const Context& c, State& s) {
   return now;
 }
 
-// The sense in which straightening moves the axis; 0: it stands straight.
+// Returns the sense in which straightening moves the axis; 0 if it has no skew.
 int SenseOfStraightening(const State& s) {
   return s.skew.commanded < 0 ? 1 : s.skew.commanded > 0 ? -1 : 0;
 }
@@ -112,8 +112,8 @@ bool Couple(const Context& c, State& s) {
   return true;
 }
 
-// While the master searches its reference switch this axis looks for its own. Once both are found they are one place:
-// the offset is what lies between them, and what is left is the skew.
+// While the master searches its reference switch this axis looks for its own. Once both are found they define the same
+// position: the offset is the difference between them, and the remainder is the skew.
 void WatchSquaring(const Context& c, State& s) {
   const HomingState& search = c.master->homing;
   SkewState& skew = s.skew;
@@ -129,9 +129,9 @@ void WatchSquaring(const Context& c, State& s) {
   skew.squared_cycle = search.found_cycle;
   const double ratio = c.params.follows->ratio;
   const double offset = skew.edge - ratio * search.edge;
-  skew.commanded += s.follow_offset - offset;  // nothing moves by it
+  skew.commanded += s.follow_offset - offset;  // nothing moves
   s.follow_offset = offset;
-  ShiftCoordinates(ratio * c.master->setpoint.position - Due(c, s), s);  // it is called as its master is
+  ShiftCoordinates(ratio * c.master->setpoint.position - Due(c, s), s);  // is numbered like its master
   s.homing.renamed = ratio * c.master->homing.renamed;
   s.homing.homed = true;
   const Status status = MayMove(c, s, SenseOfStraightening(s));
@@ -139,14 +139,14 @@ void WatchSquaring(const Context& c, State& s) {
   BeginStraightening(c, 0.1 * c.params.limits.velocity, s);
 }
 
-// Comes to rest by itself: there is no set point to follow any more.
+// Brakes by itself: there is no set point to follow any more.
 void Uncouple(const Context& c, State& s) {
   s.coupled = false;
   if (!s.loop_closed) return;
   if (s.plc == PlcState::kSynchronizedMotion) {
     return ComeToRest(c, c.params.planner_limits(), FromCycleBefore(c), s);
   }
-  Brake(c, c.params.planner_limits(), FromCycleBefore(c), s);  // in a fault, or being switched off
+  Brake(c, c.params.planner_limits(), FromCycleBefore(c), s);  // in a fault, or during power off
 }
 
 }  // namespace
@@ -154,12 +154,12 @@ void Uncouple(const Context& c, State& s) {
 bool Follow(const Context& c, State& s) noexcept {
   if (!c.master) return false;
   if (s.coupled && !c.master->loop_closed) Uncouple(c, s);
-  // A fault that left the loop closed was reset.
+  // A fault that left the loop closed has been reset.
   if (s.coupled && s.plc == PlcState::kStandstill) Enter(s, PlcState::kSynchronizedMotion);
   if (!s.coupled && !Couple(c, s)) return false;
   const State& master = *c.master;
   const double ratio = c.params.follows->ratio;
-  // What stops one member stops its straightening, too: it goes on only while both are well and nothing stops them.
+  // A stop of either member also stops the straightening: it continues only while neither has a fault or is stopped.
   const bool stops = s.plc != PlcState::kSynchronizedMotion ||
                      (master.plc != PlcState::kStandstill && master.plc != PlcState::kHoming &&
                       master.plc != PlcState::kSynchronizedMotion);
@@ -187,7 +187,7 @@ void WatchSkew(const Context& c, State& s) noexcept {
   if (c.params.follows->square) WatchSquaring(c, s);
   if (!skew.known) return;
   const State& master = *c.master;
-  // As of the cycle before, both: the master may have made its step already.
+  // By actual positions, which are those of the previous cycle's set points: the master may have stepped already.
   const double due = c.params.follows->ratio * (master.actual.position + master.origin) + s.follow_offset - s.origin;
   skew.measured = s.actual.position - due;
   const auto& largest = c.params.follows->largest_skew;
@@ -288,7 +288,7 @@ bool Fill(const RequestBuilder& m, const Straighten& straighten) {
 }
 
 Status CarryOut(const Context& c, Ticket ticket, const Straighten& straighten, State& s) noexcept {
-  constexpr double kShare = 0.1;  // of the largest velocity, where none is given
+  constexpr double kShare = 0.1;  // of the velocity limit, if none is given
   if (!c.params.follows || !c.master) return Status::Failed(ErrorId::kState);
   if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
   if (!s.loop_closed) return Status::Failed(ErrorId::kPowerOff);

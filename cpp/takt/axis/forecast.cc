@@ -20,7 +20,7 @@ bool IsPlanned(const AxisParams& p, const State& s) {
          s.active.kind != RequestKind::kTorqueControl && !s.torque.engaged;
 }
 
-// When a motion is first exactly at `position`, at `begin_s` or later.
+// Returns the time [s] at which a motion is first exactly at `position`, at `begin_s` or later; NaN if never.
 double TimeAt(const trajectory::Profile& profile, bool goes_on, double position, double begin_s) {
   const double t = profile.TimeAt(position, begin_s);
   if (!std::isnan(t) || !goes_on) return t;
@@ -72,7 +72,7 @@ double Forecast::TimeTo(double position) const noexcept {
   const double begin = std::max(0.0, -start_s);
   const KinematicState from = profile.At(begin);
   double t = kNever;
-  if (modulus > 0) {  // the next one on either side: it passes one of them first
+  if (modulus > 0) {  // the next one on either side: the motion passes one of them first
     const double below = position + modulus * std::floor((from.position - position) / modulus);
     t = std::fmin(TimeAt(profile, goes_on, below, begin), TimeAt(profile, goes_on, below + modulus, begin));
   } else {

@@ -13,7 +13,7 @@ namespace takt::axis {
 
 namespace {
 
-constexpr double kGained = 0.05;  // of its velocity, while an axis that speeds up is braked
+constexpr double kGained = 0.05;  // of its velocity, while braking an axis that is speeding up
 
 Status MayGuide(const Context& c, const State& s) {
   if (s.plc == PlcState::kErrorStop) return Status::Failed(ErrorId::kErrorStop);
@@ -24,8 +24,8 @@ Status MayGuide(const Context& c, const State& s) {
   return FollowersReady(c, s);
 }
 
-// What holds an axis back that is not where the demand is. A demand that asks for no more than the axis can may have
-// jumped: then the limit says it that the axis catches up with.
+// Returns what restricts an axis that is not in step. If the demand is within the axis' limits it may have jumped: then
+// the limit at which the axis catches up.
 LimitedBy HeldBackBy(const trajectory::Limits& own, const KinematicState& demand, const KinematicState& set,
                      bool in_step) {
   const LimitedBy beyond = Beyond(own, demand, in_step);
