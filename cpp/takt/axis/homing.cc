@@ -14,8 +14,8 @@ using trajectory::Profile;
 
 namespace {
 
-constexpr double kBlockedShare = 0.05;  // of the search velocity: slower than that an axis is held up
-constexpr int kMostTurns = 3;           // then both ways were searched, and there is nothing
+constexpr double kBlockedShare = 0.05;  // of the search velocity: below it an axis is blocked
+constexpr int kMostTurns = 3;           // after more reversals both directions were searched in vain
 
 bool BySwitch(RequestKind kind) {
   return kind == RequestKind::kStepAbsSwitch || kind == RequestKind::kStepLimitSwitch;
@@ -31,7 +31,7 @@ HomingScope ScopeOf(RequestKind kind) {
   return kind == RequestKind::kStepBlock ? HomingScope::kBlock : HomingScope::kPulse;
 }
 
-// The side whose limit switch StepLimitSwitch searches.
+// Returns true if StepLimitSwitch searches the upper limit switch.
 bool Upper(const Request& r) {
   return r.homing.direction == HomingDirection::kPositive || r.homing.direction == HomingDirection::kSwitchPositive;
 }
@@ -41,7 +41,7 @@ bool SwitchOf(const Request& r, const State& s) {
   return Upper(r) ? s.limit_positive : s.limit_negative;
 }
 
-// The limit switch ahead in this sense.
+// Returns the state of the limit switch ahead in this sense.
 bool LimitAhead(const State& s, int sense) {
   return sense > 0 ? s.limit_positive : s.limit_negative;
 }
@@ -62,12 +62,12 @@ std::int8_t FirstSense(const Request& r, const State& s) {
       sense = on ? 1 : -1;
       break;
   }
-  if (BySwitch(r.kind) && LimitAhead(s, sense)) sense = -sense;  // that way is shut
+  if (BySwitch(r.kind) && LimitAhead(s, sense)) sense = -sense;  // that direction is blocked
   return static_cast<std::int8_t>(sense);
 }
 
 struct Edge {
-  bool on, off;  // the switch went on, went off
+  bool on, off;  // the switch went on; it went off
 };
 
 bool Ends(SwitchMode mode, bool on, const Edge& edge, int sense) {
@@ -92,13 +92,13 @@ bool Reverses(SwitchMode mode, const Edge& edge) {
   return (mode == SwitchMode::kEdgeOn && edge.off) || (mode == SwitchMode::kEdgeOff && edge.on);
 }
 
-// Where the encoder was at its last index pulse.
+// Returns the position [u] of the encoder at its last index pulse.
 double PulsePosition(const Context& c, const State& s) {
   return LatchedPosition(c.params.encoder, s.encoder, s.index_counts) - s.correction.now - s.origin;
 }
 
-// A mark was passed: with the one before it, its position is known. None is the one before where several came in a
-// cycle, for the latch has only the last.
+// Handles a mark that was passed: together with the previous one it gives the position. If several came in a cycle
+// there is no previous one, as the latch holds only the last.
 std::optional<HomingEvent> ReadCode(const Context& c, State& s) {
   HomingState& h = s.homing;
   const double mark = PulsePosition(c, s) + s.origin;
@@ -118,7 +118,7 @@ bool OnTheWay(HomingStage stage) {
   return stage == HomingStage::kSearching || stage == HomingStage::kTurning;
 }
 
-// What happened in this cycle, the weightiest first.
+// Returns the event of this cycle, the most important one if there are several.
 std::optional<HomingEvent> EventOf(const Context& c, State& s) {
   HomingState& h = s.homing;
   const Request& r = s.active;
@@ -132,7 +132,7 @@ std::optional<HomingEvent> EventOf(const Context& c, State& s) {
         h.found = true;
         h.edge = s.actual.position + s.origin;
       }
-      // The search continues until each follower is at its own switch.
+      // The search continues until each follower has found its own switch.
       const bool waits = h.found && r.kind == RequestKind::kStepAbsSwitch && !FollowersFound(c, s);
       if (h.found && !waits) {
         h.found_cycle = c.cycle.count;
@@ -189,7 +189,7 @@ void GoBack(const Context& c, State& s) {
   StartMotion(profile, s.homing.captured, FromThisCycle(c), s);
 }
 
-// The found place gets its name. Braking and the way back go on under the new numbers.
+// Sets the position of the point found. Braking and return continue with the new numbers.
 void GiveName(State& s) {
   if (!s.active.homing.sets_position) return;
   s.homing.renamed = 0;
@@ -197,7 +197,7 @@ void GiveName(State& s) {
   ShiftCoordinates(by, s);
 }
 
-// On from the switch to the index pulse.
+// Continues from the switch to the index pulse.
 void SearchPulse(const Context& c, State& s) {
   Request& r = s.active;
   r.kind = RequestKind::kStepRefPulse;
@@ -209,7 +209,7 @@ void SearchPulse(const Context& c, State& s) {
   Search(c, FromThisCycle(c), s);
 }
 
-// Of a search that is given up.
+// Returns the error of a search that is given up.
 ErrorId ErrorOf(HomingEvent event) {
   if (event == HomingEvent::kNoCode) return ErrorId::kMarkDistance;
   return event == HomingEvent::kTimeOver ? ErrorId::kTimeLimit : ErrorId::kDistanceLimit;
@@ -246,7 +246,7 @@ void Act(const Context& c, const HomingRow& row, State& s) {
     case HomingAction::kGiveUp: {
       EndActive(c, FeedbackState::kError, ErrorOf(row.event), s);
       AbortBuffer(c, s);
-      s.active.kind = RequestKind::kHalt;  // of no command: to Standstill once at rest
+      s.active.kind = RequestKind::kHalt;  // of no command: Standstill once at rest
       Profile profile{s.setpoint};
       c.planner.Stop(s.setpoint, c.params.planner_limits(), profile);
       StartMotion(profile, profile.end().position, FromThisCycle(c), s);
@@ -271,15 +271,15 @@ Status BeginFlying(const Context& c, Ticket ticket, bool pulse, const HomingRequ
   return Status::Ok();
 }
 
-// Under its new numbers a motion with an end may lead out of the SW limits. (Those without one are watched cycle by
-// cycle.)
+// A fault if a motion with an end leads out of the SW limits under its new numbers. (Motions without an end are watched
+// each cycle.)
 void KeepInside(const Context& c, State& s) {
   if (FollowsDemand(s.active.kind)) return;
-  const bool waits = s.motion.held && s.active.positions();  // the override holds it back from there
+  const bool waits = s.motion.held && s.active.positions();  // the override holds it before its target
   const double end = (waits ? s.motion.target : s.motion.profile.end().position) + AddedAtEnd(s);
   if ((s.motion.arrived && !waits && !s.superimposed) || Inside(c.params.limits, end)) return;
   const bool above = c.params.limits.upper && end > *c.params.limits.upper;
-  if (above ? end < s.setpoint.position : end > s.setpoint.position) return;  // it comes back
+  if (above ? end < s.setpoint.position : end > s.setpoint.position) return;  // it returns
   Fail(c, above ? ErrorId::kSoftLimitPositive : ErrorId::kSoftLimitNegative, false, s);
 }
 
@@ -312,7 +312,7 @@ bool OwnsLag(const State& s) noexcept {
 }
 
 Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) noexcept {
-  // A search that turns round is at rest for a moment, too.
+  // A search that reverses is at rest for a moment, too.
   const bool between = s.homing.stage == HomingStage::kNone || s.homing.stage == HomingStage::kWaiting;
   const bool from_here = s.plc == PlcState::kStandstill || (s.plc == PlcState::kHoming && between);
   if (!from_here || !AtRest(s)) return Status::Failed(ErrorId::kState);
@@ -323,17 +323,17 @@ Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) no
   if (r.kind == RequestKind::kStepDistanceCoded && !c.params.encoder.coded_marks) {
     return Status::Failed(ErrorId::kNoCodedMarks);
   }
-  if (Searches(r.kind)) {  // a search of a switch turns round at a limit switch of its own
+  if (Searches(r.kind)) {  // a search of a switch reverses at a limit switch
     const int sense = FirstSense(r, s);
     const Status status = MayMove(c, s, sense);
     if (status.failed()) return status;
   }
-  // As define_position: no place beyond a SW limit.
+  // As define_position: no position beyond a SW limit.
   const bool names = (r.homing.sets_position || r.homing.pulse_velocity > 0) && r.kind != RequestKind::kFinishHoming &&
                      r.kind != RequestKind::kStepAbsolute && r.kind != RequestKind::kStepDistanceCoded;
   if (names && !Inside(c.params.limits, r.homing.set_position)) return Status::Failed(ErrorId::kTargetBehindLimit);
   HomingState& h = s.homing;
-  const MotionStart start = aborts ? FromCycleBefore(c) : FromThisCycle(c);  // a buffered one: this cycle is done
+  const MotionStart start = aborts ? FromCycleBefore(c) : FromThisCycle(c);  // buffered: this cycle is done
   Plan plan;
   if (r.kind == RequestKind::kFinishHoming && r.value != 0) {
     Request leave = r;
@@ -407,7 +407,7 @@ void WatchFlying(const Context& c, State& s) noexcept {
   if (found) {
     h.captured = h.flying_pulse ? PulsePosition(c, s) : s.actual.position;
     ShiftCoordinates(h.flying.set_position - h.captured, s);
-    if (!BlendingQueue(s).empty()) ReplanActive(c, s);  // to the same place, which lies elsewhere now
+    if (!BlendingQueue(s).empty()) ReplanActive(c, s);  // to the same point, which has another number now
     h.captured = h.flying.set_position;
     h.renamed = 0;
     h.homed = true;

@@ -35,7 +35,7 @@ bool SwitchSearch(const RequestBuilder& m, RequestKind kind, const T& c) {
   return Search(m, kind, c) && m.In("set_position", c.set_position.value_or(0), -kMaxPosition, kMaxPosition);
 }
 
-// Without a switch there is nothing that could choose the direction.
+// Without a switch nothing could select the direction.
 bool OneWay(const RequestBuilder& m, HomingDirection direction) {
   const bool good = direction == HomingDirection::kPositive || direction == HomingDirection::kNegative;
   if (!good) m.why.field = "direction";

@@ -1,12 +1,11 @@
 // Look-ahead over buffered commands by a backward pass, as in the velocity profiles of path planners (LinuxCNC's tp.c
-// does it for lines): from the last command, which ends at rest, the highest speed at each border between two commands
-// from which the border behind it is reached with no more than its speed. Speeds at borders are without acceleration
-// there.
+// does it for lines): from the last command, which ends at rest, computes the highest speed at each border between two
+// commands from which the next border is reached with no more than its speed. The acceleration at borders is 0.
 //
-// What is ours: commands that blend and have the same limits have no border between them that anything asks for. They
-// are planned as one motion to the end of their run, and the profile is cut at the target. Each command of the run
-// plans the same motion anew from where the one before was cut; a time-optimal motion planned anew from one of its own
-// states is itself. So a run of short moves takes as long as one long move does.
+// What is ours: between blending commands with the same limits nothing requires a border. They are planned as one
+// motion to the end of their run, and the profile is cut at the target. Each command of the run plans the same motion
+// anew from where the previous one was cut; a time-optimal motion planned anew from one of its own states is itself. So
+// a run of short moves takes the same time as one long move.
 #include "takt/axis/look_ahead.h"
 
 #include <algorithm>
@@ -26,7 +25,7 @@ namespace {
 
 constexpr int kBisections = 12;  // of a speed: to 1/4096 of the speed asked for
 
-// [u] from one speed down to another.
+// Returns the distance [u] for slowing down from one speed to another.
 double BrakingDistance(double from, double to, const Limits& limits) {
   const double change = from - to;
   if (change <= 0) return 0;
@@ -38,7 +37,7 @@ double BrakingDistance(double from, double to, const Limits& limits) {
   return 0.5 * (from + to) * time;
 }
 
-// Distance of the positioning command `next` from `position` in this sense; 0 or less: no room.
+// Returns the distance [u] of the positioning command `next` from `position` in this sense; 0 or less: no room.
 double RoomToTarget(const AxisParams& params, double position, double sense, const Request& next) {
   const double target = next.by_distance() ? position + next.value
                                            : ResolveTarget(params, {position, 0, 0}, next.limits(), next.value,
@@ -46,7 +45,7 @@ double RoomToTarget(const AxisParams& params, double position, double sense, con
   return Inside(params.limits, target) ? sense * (target - position) : 0;
 }
 
-// The speed at which `next` is to take over at the end of `request`, as its buffer mode says.
+// Returns the speed at which `next` is to take over at the end of `request`, by its buffer mode.
 double AskedFor(const Request& request, const Request& next) {
   switch (next.buffer_mode) {
     case BufferMode::kBlendingLow:
@@ -62,8 +61,8 @@ double AskedFor(const Request& request, const Request& next) {
   }
 }
 
-// The speed at a border behind which there is no target: a gear takes over from any velocity, an endless motion from
-// one of its sense; homing begins at rest, and so does what follows a table.
+// Returns the speed at a border to a command without a target: a gear takes over at any velocity, an endless motion at
+// one of its sense; homing and tables over time begin at rest.
 double TakeOverSpeed(const AxisParams& params, const Request& request, double position, double sense,
                      const Request& next) {
   const Limits own = params.planner_limits();
@@ -79,13 +78,13 @@ bool SameLimits(const Request& a, const Request& b) {
          a.jerk == b.jerk;
 }
 
-// Between two commands.
+// The border between two commands.
 struct Border {
   double position = 0;
-  double speed = 0;     // as asked for, then as it can be
-  double room = 0;      // of the command behind, to its target
-  Limits limits;        // of the command behind
-  bool inside = false;  // of a run: nothing changes here
+  double speed = 0;     // as asked for, then as possible
+  double room = 0;      // of the next command, to its target
+  Limits limits;        // of the next command
+  bool inside = false;  // inside a run: nothing changes here
 };
 
 }  // namespace
@@ -115,7 +114,7 @@ LookAhead LookAheadOf(const AxisParams& params, const Override& factors, const K
   std::array<Border, kBufferSize + 1> borders;
   std::size_t count = 0;
   double position = target;
-  double last_speed = 0;  // at the end of all
+  double last_speed = 0;  // at the end of the last command
   Request before = request;
   bool ends = true;
   for (const Request& commanded : queue.first(std::min<std::size_t>(queue.size(), kBufferSize))) {
@@ -137,13 +136,13 @@ LookAhead LookAheadOf(const AxisParams& params, const Override& factors, const K
     border.speed = AskedFor(before, next);
     border.inside = !next.continuous() && SameLimits(before, next);
     position += out.sense * border.room;
-    if (next.continuous()) break;  // it is left as it says, once it is in control
+    if (next.continuous()) break;  // its end velocity is planned once it is in control
     before = next;
   }
   double behind = last_speed;
   for (std::size_t i = count; i-- > 0;) {
     Border& border = borders[i];
-    // A command that is entered faster than its own velocity comes down to that first.
+    // A command that is entered above its own velocity slows down to that first.
     const double down_to = std::min(behind, border.limits.velocity);
     if (border.room > 0) border.speed = FastestWithin(border.speed, down_to, border.limits, border.room);
     behind = border.speed;

@@ -1,13 +1,13 @@
 // A g-h filter (alpha-beta filter: Brookner, Tracking and Kalman Filtering Made Easy, chapter 1), fed forward with the
-// acceleration that is known. It has no lag at constant velocity, nor at a constant known acceleration. g is that of
-// the critically damped filter with both poles at exp(-T / tau), h half of its own: overdamped. In its first
-// cycles its memory grows up to tau, so that it starts well from a rough first velocity; and it spans a few increments,
-// also where the master is slow.
+// known acceleration. It has no lag at constant velocity, nor at a constant known acceleration. g is that of the
+// critically damped filter with both poles at exp(-T / tau), h half of its own: overdamped. In its first cycles its
+// memory grows up to tau, so that it starts well from a rough first velocity; and it spans a few increments, also if
+// the master is slow.
 //
-// What is ours: the error that corrects it is the distance of the prediction to the increment that was measured, not to
-// the middle of it. A prediction inside the increment agrees with what is measured and is left alone; so at constant
-// velocity the estimate ends in a straight line through all increments. With less damping it would swing between
-// their borders.
+// What is ours: the correcting error is the distance of the prediction from the measured increment, not from its
+// middle. A prediction inside the increment agrees with the measurement and is not corrected; so at constant velocity
+// the estimate ends in a straight line through all increments. With less damping it would oscillate between their
+// borders.
 #include "takt/axis/master_filter.h"
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace takt::axis {
 
 namespace {
 
-constexpr double kDamping = 0.5;   // of the h of critical damping
-constexpr double kIncrements = 4;  // that the memory spans
+constexpr double kDamping = 0.5;   // of the critically damped h
+constexpr double kIncrements = 4;  // spanned by the memory
 constexpr double kLongest = 10;    // times the time constant
 
 }  // namespace

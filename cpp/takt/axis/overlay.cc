@@ -31,8 +31,8 @@ double OverlayTime(const Context& c, const OverlayState& o) {
   return static_cast<double>(c.cycle.count - o.start_cycle) * c.cycle.period_s;
 }
 
-// What has been added up to the set point of the cycle before. Where the axis lags behind the sum, what is planned goes
-// on from what came of it: the lag is forgotten.
+// Returns the motion added up to the previous set point. If the axis lags behind the sum, the plan continues from what
+// was really added: the lag is dropped.
 KinematicState AddedMotion(const Context& c, const State& s) {
   if (!s.superimposed) return {};
   const OverlayState& o = s.overlay;
@@ -41,12 +41,12 @@ KinematicState AddedMotion(const Context& c, const State& s) {
   return added;
 }
 
-// The motion beneath follows masters or a table over time, not a profile.
+// Returns true if the base motion follows masters or a table over time, not a profile.
 bool FollowsNow(const State& s) {
   return Couples(s.active.kind) || (FollowsTable(s.active.kind) && !s.time_table.over);
 }
 
-// The motion beneath has no end that is known: it follows something, or goes on with a velocity.
+// Returns true if the base motion has no known end: it follows something, or ends with a velocity.
 bool IsEndless(const State& s) {
   return FollowsNow(s) || s.motion.profile.end().velocity != 0;
 }
@@ -57,26 +57,27 @@ BaseAhead AheadOf(const Context& c, double late_s, const State& s) {
   return {&s.motion.profile, Elapsed(c, s) - late_s, now};
 }
 
-// Where the motion beneath ends that has an end: an override may hold it back from there.
+// Returns the end of a base motion that has one, also if an override holds the axis before it.
 double BaseEnd(const State& s) {
   return s.motion.held && s.active.positions() ? s.motion.target : s.motion.profile.end().position;
 }
 
-// Where everything together would end, as far as that is known now.
+// Returns the end of the sum, as far as it is known now.
 double EndWith(double added, const State& s) {
   const KinematicState& now = s.superimposed ? s.overlay.base : s.setpoint;
   return (IsEndless(s) ? now.position : BaseEnd(s)) + added;
 }
 
-// An axis that moves on without an end is watched cycle by cycle.
+// Returns true if the sum ends inside the SW limits. An axis that moves on without an end is watched each cycle
+// instead.
 bool EndsInside(const Context& c, double added, const State& s) {
   const KinematicState& now = s.superimposed ? s.overlay.base : s.setpoint;
   return (IsEndless(s) && !Stands(now)) || Inside(c.params.limits, EndWith(added, s));
 }
 
-// Brakes what is added as the command asks, but not so weakly that it would turn round or go further than without the
-// halt: then with all the axis has. An axis that lags behind the sum may stand before a SW limit already while what is
-// added would come to rest behind it: then it ends there.
+// Brakes the added motion as commanded, but not so weakly that it would reverse or get further than without the halt:
+// then with the axis' own limits. If the added motion would come to rest beyond a SW limit, before which an axis that
+// lags behind the sum may already be at rest, it ends at that limit.
 Status PlanHalt(const Context& c, const KinematicState& from, const Limits& limits, const State& s, Profile& out) {
   const Limits own = c.params.planner_limits();
   const double promised = AddedAtEnd(s);
@@ -97,7 +98,7 @@ Status PlanHalt(const Context& c, const KinematicState& from, const Limits& limi
   return c.planner.ToPosition(from, inside - base, 0, own, out);
 }
 
-// The command as the overrides let it be.
+// Returns the command with the overrides applied.
 Request Overridden(const Context& c, const OverlayState& o) {
   Request r;
   r.kind = RequestKind::kMoveRelative;
@@ -113,7 +114,7 @@ bool IsHeld(const OverlayState& o) {
   return o.factors.velocity == 0 && !o.halting;
 }
 
-// Plans what is still to be added, from `from` on, `late_s` before this cycle; held, that it comes to rest.
+// Plans the remainder to be added, from `from` on, `late_s` before this cycle; if held: a stop.
 Status PlanRest(const Context& c, const OverlayState& o, const KinematicState& from, const Limits& limits,
                 double late_s, const State& s, Profile& out) {
   if (IsHeld(o)) return c.planner.Stop(from, limits, out);
@@ -134,7 +135,7 @@ void RememberBase(State& s) {
   s.overlay.base_start_offset_s = s.motion.start_offset_s;
 }
 
-// Puts a planned motion on top, in the place of what is there.
+// Puts a planned motion on top, in place of the present one.
 void Begin(const Context& c, Ticket ticket, const KinematicState& from, OverlayState planned, State& s) {
   OverlayState& o = s.overlay;
   if (s.superimposed) {
@@ -153,8 +154,8 @@ void Begin(const Context& c, Ticket ticket, const KinematicState& from, OverlayS
   Report(c, ticket, FeedbackState::kActive, ErrorId::kNone, false, o.profile.duration());
 }
 
-// The motion beneath became another one, or the overrides: what is left to add is planned for that. Ramps that became
-// weaker do not take it beyond its target.
+// Plans the remainder anew after the base motion or the overrides changed. Weaker ramps do not make it overshoot its
+// target.
 void PlanAgain(const Context& c, const KinematicState& added, State& s) {
   OverlayState& o = s.overlay;
   const bool overridden = o.factors != s.override_factors;
@@ -169,7 +170,7 @@ void PlanAgain(const Context& c, const KinematicState& added, State& s) {
   if (PlanRest(c, o, added, r.limits(), 0, s, o.profile).ok()) o.start_cycle = c.cycle.count;
 }
 
-// Makes what was added part of the motion beneath.
+// Makes the added distance part of the base motion.
 void Fold(double added, State& s) {
   s.motion.profile.Shift(added);
   s.motion.target += added;
@@ -187,16 +188,16 @@ void End(const Context& c, FeedbackState feedback, ErrorId error, State& s) {
   if (s.active.kind == RequestKind::kNone && (AtRest(s) || s.buffered > 0)) StartNext(c, 0, s);
 }
 
-// Whether the motion beneath, with all that was added, stays inside the SW limits to its end, and could stop there.
+// Returns true if the base motion with the added distance stays inside the SW limits to its end, and could stop there.
 bool StaysInside(const Context& c, const State& s) {
-  if (FollowsNow(s) || s.plc == PlcState::kContinuousMotion) return true;  // watched cycle by cycle
+  if (FollowsNow(s) || s.plc == PlcState::kContinuousMotion) return true;  // watched each cycle
   const Profile::Range range = s.motion.profile.PositionRange(Elapsed(c, s));
   const double stop = trajectory::StopPosition(s.motion.profile.end(), c.params.planner_limits());
   return Inside(c.params.limits, std::min({range.min, stop, BaseEnd(s)}) + AddedAtEnd(s)) &&
          Inside(c.params.limits, std::max({range.max, stop, BaseEnd(s)}) + AddedAtEnd(s));
 }
 
-// All is planned to be added: whether it is.
+// Ends the overlay once all of its distance is planned and added.
 void EndWhenDue(const Context& c, State& s) {
   const OverlayState& o = s.overlay;
   const double over_s = OverlayTime(c, o) - o.profile.duration();
@@ -207,16 +208,16 @@ void EndWhenDue(const Context& c, State& s) {
     if (!alone || InPosition(c.params, s)) return End(c, FeedbackState::kDone, ErrorId::kNone, s);
     if (over_s > c.params.supervision.in_position_timeout_s) End(c, FeedbackState::kError, ErrorId::kDeviationLimit, s);
   } else if (AtRest(s) && Stands(o.base) && !IsEndless(s) && !Inside(c.params.limits, EndWith(AddedAtEnd(s), s))) {
-    End(c, FeedbackState::kError, ErrorId::kTargetBehindLimit, s);  // the motion beneath ended elsewhere than promised
+    End(c, FeedbackState::kError, ErrorId::kTargetBehindLimit, s);  // the base motion ended elsewhere than promised
   }
 }
 
-// A buffered command on which nothing can lie takes over from a moving axis.
+// Returns true if a buffered command that carries no overlay is to take over from a moving axis.
 bool NextEndsOverlay(const State& s) {
   return s.active.kind == RequestKind::kNone && s.buffered > 0 && !Carries(s.buffer[0]) && !Stands(s.overlay.base);
 }
 
-// Why the axis lags behind the sum. Once the sum itself is within the limits again, it is what it was.
+// Returns the reason why the axis lags behind the sum; the previous one if the sum itself is within the limits again.
 LimitedBy WhatHoldsBack(const Limits& own, const KinematicState& demand, const OverlayState& o) {
   if (IsHeld(o)) return LimitedBy::kOverride;
   if (o.chase.in_step) return LimitedBy::kNothing;
@@ -225,7 +226,7 @@ LimitedBy WhatHoldsBack(const Limits& own, const KinematicState& demand, const O
   return o.limited_by != LimitedBy::kNothing ? o.limited_by : LimitedBy::kJerk;
 }
 
-// The next set point, before the SW limits are looked at.
+// Computes the next set point, before the check of the SW limits.
 KinematicState NextSetpoint(const Context& c, const KinematicState& before, State& s) {
   OverlayState& o = s.overlay;
   const KinematicState added = o.profile.At(OverlayTime(c, o));

@@ -15,11 +15,11 @@ using trajectory::Profile;
 namespace {
 
 constexpr double kRounding = 1e-9;  // of a limit
-// Less than this share of the axis' own limits is not worth a plan: it would take forever.
+// A smaller share of the axis' own limits is not worth a plan: it would take too long.
 constexpr double kLeastShare = 0.02;
 constexpr std::size_t kMostTimes = 2 * Profile::kCapacity + 2;
 
-// Ascending times at which the jerk of the base or of what is added may change.
+// Ascending times at which the jerk of the base or of the added motion may change.
 struct Times {
   std::array<double, kMostTimes> at{};
   std::size_t count = 0;
@@ -40,7 +40,7 @@ Times TimesOf(const BaseAhead& base, const Profile* added) {
   return times;
 }
 
-// The piece of constant jerk that a profile follows from `t` to the next of its times.
+// Returns the piece of constant jerk that a profile follows from `t` to its next time; `middle`: a time between them.
 Piece PieceAt(const Profile& profile, double t, double middle) {
   const double jerk = profile.JerkAt(middle);
   const KinematicState at = profile.At(middle);
@@ -75,7 +75,7 @@ bool KeepsPosition(const AxisLimits& limits, const Piece& piece, double duration
   return true;
 }
 
-// What the base needs of the axis' limits at most, from now on.
+// The largest part of the axis' limits that the base needs from now on.
 struct Needs {
   Profile::Range velocity{0, 0};
   double acceleration = 0;
@@ -100,12 +100,13 @@ Needs NeedsOf(const BaseAhead& base) {
   return needs;
 }
 
-// `wanted`, or what is left if that is less; nothing left: `wanted`, for it has to wait anyway.
+// Returns `wanted`, or the remainder if that is less; `wanted` if there is hardly a remainder, as the overlay must wait
+// then.
 double Leave(double wanted, double left, double own) {
   return left > kLeastShare * own ? std::min(wanted, left) : wanted;
 }
 
-// The ramps that are left all the time; false: too little.
+// Limits the ramps to those that are always left. Returns false if they are too small.
 bool LeaveRamps(const Limits& own, const Needs& needs, Limits& limits) {
   const double left = std::min(own.acceleration, own.deceleration) - needs.acceleration;
   const double jerk = own.jerk - needs.jerk;

@@ -10,7 +10,7 @@ namespace takt::axis {
 
 namespace {
 
-// A limit by its factor; 0: unlimited.
+// Returns a limit scaled by its factor, at most `own`; 0: unlimited.
 double Times(double limit, double factor, double own, LimitedBy reason, LimitedBy& clamped) {
   const double wanted = limit * factor;
   if (own == 0 || wanted <= own) return wanted;

@@ -13,20 +13,20 @@ using trajectory::Profile;
 namespace {
 
 constexpr int kBisections = 48;
-constexpr double kSwing = 1e-6;  // share of a speed that counts as none
+constexpr double kSwing = 1e-6;  // share of a speed that counts as 0
 
-// Between two limits so that what takes time (stopping) grows evenly. 0: unlimited.
+// Interpolates two limits so that the time they imply (of a stop) grows evenly. 0: unlimited.
 double Between(double weak, double strong, double share) {
   const double inverse = (1 - share) * (weak > 0 ? 1 / weak : 0) + share * (strong > 0 ? 1 / strong : 0);
   return inverse > 0 ? 1 / inverse : 0;
 }
 
-// Planned anew on its braking curve a motion ends at its target but for rounding.
+// A motion planned anew on its braking curve ends at its target but for this rounding.
 double Slack(double position, double way) {
   return Rounding(position) + 2e-8 * std::abs(way);
 }
 
-// Whether a motion that sets out in this sense gets beyond `furthest`.
+// Returns true if a motion that starts in this sense gets beyond `furthest`.
 bool Passes(const Profile& profile, double sense, double furthest) {
   const Profile::Range range = profile.PositionRange();
   const double slack = Slack(furthest, furthest - profile.start().position);
@@ -40,7 +40,8 @@ bool TurnsRound(const AxisParams& params, const Profile& profile) {
   return (start > 0 && velocity.min < -slack) || (start < 0 && velocity.max > slack);
 }
 
-// Whether the deceleration there is outlasts the speed, so that a stop must swing back. `margin`: by how little.
+// Returns true if the present deceleration outlasts the speed, so that a stop must swing back. `margin`: relative
+// tolerance.
 bool SwingsBack(const KinematicState& from, double jerk, double margin) {
   const bool brakes = from.velocity * from.acceleration < 0;
   return brakes && jerk > 0 &&

@@ -122,7 +122,7 @@ void describe(Description<ScrewPoint>& d) {
 }
 
 namespace {
-constexpr double kSteepestScrew = 0.1;  // [u per u] what is more is no error of a screw
+constexpr double kSteepestScrew = 0.1;  // [u per u] more is not the error of a screw
 
 bool Rises(const std::vector<ScrewPoint>& screw) {
   for (std::size_t i = 1; i < screw.size(); ++i) {

@@ -22,12 +22,13 @@ double Sense(double x) {
   return x < 0 ? -1.0 : 1.0;
 }
 
-// [u/s] what the acceleration there is still adds to the speed in this sense until it is taken away.
+// Returns the speed [u/s] in this sense that the present acceleration still adds until it is reduced to 0.
 double Gained(const KinematicState& from, double sense, double jerk) {
   return jerk > 0 && sense * from.acceleration > 0 ? from.acceleration * from.acceleration / (2 * jerk) : 0;
 }
 
-// Never backwards and never past the end: what a move that is to be left with a velocity must be.
+// Returns true if a motion never runs backwards, and so never past its end: required of a move that is left with a
+// velocity.
 bool RunsStraight(const Profile& profile, double sense) {
   const Profile::Range velocity = profile.VelocityRange();
   const double backwards = sense > 0 ? -velocity.min : velocity.max;
@@ -35,9 +36,9 @@ bool RunsStraight(const Profile& profile, double sense) {
   return backwards <= allowed + 1e-9 * (1 + allowed);
 }
 
-// To `target`, left with `speed` of this sense. An axis that is faster than asked the planner brakes to that velocity
-// first, as hard as it may, even where that takes it backwards: then gently, or, too near for that, to the target in
-// one go (`limited_by`).
+// Plans to `target`, left with `speed` in this sense. If the axis is faster than its limit, the planner first brakes to
+// the limit as hard as allowed, even if it runs backwards then: in that case the axis brakes gently, or, if it is too
+// near for that, moves to the target at its present speed (`limited_by`).
 Status PlanTo(Planner& planner, const KinematicState& from, double target, double sense, double speed,
               const Limits& limits, Plan& out) {
   const Status status = planner.ToPosition(from, target, sense * speed, limits, out.profile);
@@ -61,8 +62,8 @@ Status PlanTo(Planner& planner, const KinematicState& from, double target, doubl
   return status;
 }
 
-// To `target`, left with `speed` in the sense of travel: at the request's velocity first, then up to a higher `speed`
-// so late that it is reached at the target.
+// Plans to `target`, left with `speed` in the sense of travel: at the request's velocity first, then up to a higher
+// `speed` so late that it is reached at the target.
 bool PlanLeaving(Planner& planner, const KinematicState& from, double target, double sense, double speed,
                  const Limits& limits, Plan& out) {
   const double first = std::min(speed, limits.velocity);
@@ -86,7 +87,7 @@ bool PlanLeaving(Planner& planner, const KinematicState& from, double target, do
   return true;
 }
 
-// The plan with the highest speed at its end not above `speed`; standing still at the end is always one.
+// Plans with the highest end speed up to `speed`; standstill at the end is always possible.
 Status PlanBlended(Planner& planner, const KinematicState& from, double target, double sense, double speed,
                    const Limits& limits, Plan& out) {
   if (PlanLeaving(planner, from, target, sense, speed, limits, out)) return Status::Ok();
@@ -95,7 +96,7 @@ Status PlanBlended(Planner& planner, const KinematicState& from, double target, 
   double high = std::min(speed, limits.velocity);
   const bool at_own_velocity = PlanLeaving(planner, from, target, sense, high, limits, out);
   if (at_own_velocity && speed <= high) return Status::Ok();
-  if (at_own_velocity) {  // more than its own velocity, if not all of what was asked
+  if (at_own_velocity) {  // more than its own velocity, but not all that was asked for
     low = high;
     high = speed;
   }
@@ -107,19 +108,19 @@ Status PlanBlended(Planner& planner, const KinematicState& from, double target, 
   return low > 0 ? Status::Ok() : standing;
 }
 
-// How a plan begins, from nothing special to all that the axis can do. Only as much as is needed is taken from the
-// axis' own ramps; what follows keeps those of the command.
+// How a plan begins, from the ramps of the command alone to the axis' own. The axis' own ramps are used only as far as
+// needed; the remainder keeps those of the command.
 enum class Opening : std::uint8_t {
-  kNone,  // with the ramps of the command at once
-  kEase,  // the acceleration there is ends with the axis' jerk
-  kStop,  // the axis brakes to standstill with all it has
+  kNone,  // with the ramps of the command
+  kEase,  // the present acceleration ends with the axis' jerk
+  kStop,  // the axis brakes to standstill with its own limits
 };
 
 Profile Open(const AxisParams& params, Planner& planner, const KinematicState& from, Opening opening) {
   const Limits own = params.planner_limits();
   Profile profile{from};
   if (opening == Opening::kEase) {
-    // Without a jerk limit the acceleration may step to 0 at once.
+    // Without a jerk limit the acceleration may step to 0.
     if (own.jerk > 0) profile.Append(std::abs(from.acceleration) / own.jerk, -Sense(from.acceleration) * own.jerk);
     profile.SnapEnd({profile.end().position, profile.end().velocity, 0});
   } else if (opening == Opening::kStop) {
@@ -128,8 +129,8 @@ Profile Open(const AxisParams& params, Planner& planner, const KinematicState& f
   return profile;
 }
 
-// To `speed`, and on beyond the target however far that has come there. False: it does not get there, or could not stop
-// inside the SW limits from there.
+// Plans to `speed`, and past the target at whatever speed is reached there. Returns false if the motion does not reach
+// the target, or could not stop inside the SW limits from there.
 bool PassAt(const AxisParams& params, Planner& planner, const KinematicState& from, double target, double sense,
             double speed, const Limits& limits, Profile& out) {
   if (sense * from.velocity < 0) return false;
@@ -140,7 +141,7 @@ bool PassAt(const AxisParams& params, Planner& planner, const KinematicState& fr
     whole = Open(params, planner, from, opening);
     Profile ramp;
     if (planner.ToVelocity(whole.end(), sense * speed, ramps, ramp).failed() || !whole.Append(ramp)) return false;
-    // Beyond the target, too: there it goes on with the acceleration that it has.
+    // Beyond the target, too: the motion continues there with its acceleration.
     if (Breaks(params, from, whole, {.position = false}) == LimitedBy::kNothing) break;
   }
   const double t = whole.TimeAt(target);
@@ -157,7 +158,7 @@ bool PassAt(const AxisParams& params, Planner& planner, const KinematicState& fr
   return true;
 }
 
-// Left otherwise than planned: at `speed` if it can be, else braking.
+// Passes the target with another speed than planned: with `speed` if possible, else braking.
 bool PlanPast(const AxisParams& params, Planner& planner, const KinematicState& from, double target, double sense,
               double speed, const Limits& limits, Profile& out) {
   if (sense * from.velocity <= 0) return false;
@@ -165,8 +166,8 @@ bool PlanPast(const AxisParams& params, Planner& planner, const KinematicState& 
          PassAt(params, planner, from, target, sense, 0, params.planner_limits(), out);
 }
 
-// As one motion with the commands behind that have the same limits, cut at the target. False: there are none, or the
-// motion turns round.
+// Plans one motion with the following commands of the same limits, cut at the target. Returns false if there are none,
+// or if the motion reverses.
 bool PlanRun(Planner& planner, const KinematicState& from, double target, const Limits& limits, const LookAhead& ahead,
              Plan& out) {
   if (ahead.run_end == target) return false;
@@ -187,7 +188,7 @@ bool PlanRun(Planner& planner, const KinematicState& from, double target, const 
   return true;
 }
 
-// From `from` on to what the request asks for, with its own limits; positions: to `out.target`.
+// Plans the motion of a request with its own limits; positions: to `out.target`.
 Status PlanOn(const AxisParams& params, const PlanningContext& around, Planner& planner, const KinematicState& from,
               const Request& request, const LookAhead& ahead, Plan& out) {
   const Limits limits = request.limits();
@@ -208,7 +209,8 @@ Status PlanOn(const AxisParams& params, const PlanningContext& around, Planner& 
     speed = ahead.speed;
     if (speed < ahead.asked - Rounding(ahead.asked)) out.limited_by = LimitedBy::kDistance;
   }
-  // Too near to have its end velocity there, it passes as near to that as it can, and gets it beyond (AX-102).
+  // Too near for its end velocity, it passes its position at the nearest speed possible, and reaches the end velocity
+  // beyond (AX-102).
   if (request.continuous() && speed > 0) {
     if (PlanLeaving(planner, from, out.target, sense, speed, limits, out)) return Status::Ok();
     if (PassAt(params, planner, from, out.target, sense, speed, limits, out.profile)) {
@@ -230,7 +232,7 @@ Demands DemandsOn(const Request& request) {
   return {.position = !endless, .straight = !endless && !request.positions()};
 }
 
-// The first opening with which the plan keeps what it must; if none does, the strongest.
+// Plans with the first opening that violates nothing; if each does, with the strongest.
 Status PlanOpened(const AxisParams& params, const PlanningContext& around, Planner& planner, const KinematicState& from,
                   const Request& request, const LookAhead& ahead, Plan& out) {
   const bool endless = request.kind == RequestKind::kMoveVelocity;
@@ -250,7 +252,7 @@ Status PlanOpened(const AxisParams& params, const PlanningContext& around, Plann
   return Status::Ok();
 }
 
-// What of the motion in progress a request must keep.
+// Returns what the request must keep of the motion in progress.
 OvershootGuard KeptFor(const PlanningContext& around, const KinematicState& from, const Request& request,
                        double target) {
   const double sense = SenseOfTravel(from);
@@ -265,7 +267,7 @@ OvershootGuard KeptFor(const PlanningContext& around, const KinematicState& from
   return kept;
 }
 
-// With ramps that keep what was promised: those of the request, or stronger ones.
+// Plans so that promised ends are kept: with the ramps of the request, or stronger ones.
 Status PlanKept(const AxisParams& params, const PlanningContext& around, Planner& planner, const KinematicState& from,
                 const Request& request, const LookAhead& ahead, const OvershootGuard& kept, Plan& out) {
   const Status status = PlanOpened(params, around, planner, from, request, ahead, out);
@@ -278,12 +280,13 @@ Status PlanKept(const AxisParams& params, const PlanningContext& around, Planner
   return status;
 }
 
-// Where the commands behind the one in control come to rest, if the motion in progress already runs on towards that.
+// Returns where the commands behind the one in control come to rest, if the motion in progress already continues
+// towards it.
 std::optional<double> PassingTo(const PlanningContext& around, const LookAhead& ahead) {
   return around.passes && ahead.blends ? ahead.stops_at : std::nullopt;
 }
 
-// Past the target so that the move behind it can still stop where it was promised to.
+// Plans past the target so that the next move can still stop at its promised end.
 void PlanPassing(const AxisParams& params, const PlanningContext& around, Planner& planner, const KinematicState& from,
                  const Request& request, const LookAhead& ahead, const OvershootGuard& kept, Plan& out) {
   const Request stronger = WithStrongerRamps(params, from, request, kept);
@@ -298,7 +301,7 @@ void PlanPassing(const AxisParams& params, const PlanningContext& around, Planne
   out.limited_by = LimitedBy::kDistance;
 }
 
-// `request` is scaled, and moves.
+// Plans a request that moves, and is already scaled.
 Status PlanMoving(const AxisParams& params, const PlanningContext& around, Planner& planner, const KinematicState& from,
                   const Request& request, const LookAhead& ahead, Plan& out) {
   OvershootGuard kept = KeptFor(around, from, request, out.target);
@@ -313,7 +316,7 @@ Status PlanMoving(const AxisParams& params, const PlanningContext& around, Plann
   return status;
 }
 
-// To rest where the override holds the request; beyond its target where the next one goes on.
+// Plans to rest for a request that the override holds; past its target if the motion in progress continues beyond it.
 Status PlanHeld(const AxisParams& params, const PlanningContext& around, Planner& planner, const KinematicState& from,
                 const Request& request, const LookAhead& ahead, Plan& out) {
   const double sense = Sense(out.target - from.position);
@@ -335,13 +338,13 @@ Status PlanHeld(const AxisParams& params, const PlanningContext& around, Planner
   return status;
 }
 
-// `request` and `queue` as commanded; positions: to `out.target`.
+// Plans `request` and `queue` as commanded, before scaling; positions: to `out.target`.
 Status PlanScaled(const AxisParams& params, const PlanningContext& around, Planner& planner, const KinematicState& from,
                   const Request& request, std::span<const Request> queue, Plan& out) {
   LimitedBy clamped = LimitedBy::kNothing;
   const Request scaled = Scaled(params, around.factors, request, clamped);
   const LookAhead ahead = LookAheadOf(params, around.factors, from, scaled, out.target, queue);
-  // From a run of blended moves it may be too fast to come to rest at this target: the run was promised to go on.
+  // In a run of blended moves the axis may be too fast to come to rest at this target: it was promised to continue.
   PlanningContext now = around;
   now.passes |= ahead.blends && ahead.stops_at && !StopsBy(from, params.planner_limits(), out.target);
   if (Held(around.factors, request.kind)) return PlanHeld(params, now, planner, from, scaled, ahead, out);
@@ -350,16 +353,16 @@ Status PlanScaled(const AxisParams& params, const PlanningContext& around, Plann
   return status;
 }
 
-// Standing at a SW limit there is no way further out.
+// At rest at a SW limit, no motion further out is allowed.
 Status CheckAtLimit(const AxisLimits& limits, const KinematicState& from, double velocity) {
   if (from.velocity != 0 || velocity == 0) return Status::Ok();
   const bool stuck = RoomToLimit(limits, from.position, Sense(velocity)) <= Rounding(from.position);
   return stuck ? Status::Failed(ErrorId::kTargetBehindLimit) : Status::Ok();
 }
 
-// A torque is to push neither onto a limit switch that is on nor through a SW limit.
+// A torque must push neither onto a limit switch that is on nor through a SW limit.
 Status CheckTorque(const AxisParams& params, const PlanningContext& around, const KinematicState& from, double torque) {
-  if (params.drive.mode == DriveMode::kAnalog) return Status::Failed(ErrorId::kState);  // it takes no torque
+  if (params.drive.mode == DriveMode::kAnalog) return Status::Failed(ErrorId::kState);  // takes no torque
   if ((around.limit_positive && torque > 0) || (around.limit_negative && torque < 0))
     return Status::Failed(ErrorId::kAwayFromLimitOnly);
   if ((around.bars_positive && torque > 0) || (around.bars_negative && torque < 0))
@@ -381,7 +384,7 @@ double TargetOf(const AxisParams& params, const PlanningContext& around, const K
   return again ? *around.promised : resolved(request.limits());
 }
 
-// Resolves the target, where there is one, and refuses what can be refused before planning.
+// Resolves the target, if there is one, and rejects what can be rejected before planning.
 Status Check(const AxisParams& params, const PlanningContext& around, const KinematicState& from,
              const Request& request, Plan& out) {
   if (request.kind == RequestKind::kMoveVelocity) {
@@ -447,7 +450,7 @@ Status PlanRequest(const AxisParams& params, const PlanningContext& around, Plan
   const bool brakes = !request.positions() && request.kind != RequestKind::kMoveVelocity;
   if (status.failed() || brakes) return status;
   if (!out.held) return CheckSwitches(around, from, out.profile);
-  Plan released{.profile = {}, .target = out.target};  // what it is held back from must be allowed, too
+  Plan released{.profile = {}, .target = out.target};  // the motion after the hold must be allowed, too
   status = PlanMoving(params, around, planner, from, scaled, {}, released);
   return status.failed() ? status : CheckSwitches(around, from, released.profile);
 }

@@ -19,10 +19,10 @@ bool InWindow(const AxisParams& p, const Capture& capture, double position) {
   return across_zero ? above || below : above && below;
 }
 
-// Where the axis was `age_s` before this sample.
+// Returns the position `age_s` before this sample.
 double PositionBefore(const Context& c, const State& s, double age_s) {
   const double period = c.cycle.period_s;
-  if (s.sampling.age > 0 || s.sampling.step > 1) {  // samples that are not a cycle apart: by the speed
+  if (s.sampling.age > 0 || s.sampling.step > 1) {  // samples not one cycle apart: by the velocity
     return s.actual.position - s.actual.velocity * (age_s + s.sampling.age * period);
   }
   const double age = std::clamp(age_s, 0.0, period);
@@ -57,8 +57,8 @@ void CaptureAt(const Context& c, ProbeEdge edge, double position, State& s) {
   probe.touch_position = position;
 }
 
-// An edge of the wire since the sample before, and how long ago it came; the instant is unknown where drives do not
-// say.
+// Captures at an edge of the wire since the previous sample, by its age; if the drive does not report the age, at the
+// position of this sample.
 void LookForEdge(const Context& c, const ServoInputs& in, ProbeEdge edge, State& s) {
   const ProbeState& probe = s.probe;
   const bool rise = (edge == ProbeEdge::kRising) != c.params.inputs.invert_touch_probe;
@@ -126,7 +126,7 @@ Status TakeTouch(const Context& c, State& s) {
   return Status::Ok();
 }
 
-// Replaces the GT_Touch that waits.
+// Replaces the waiting GT_Touch.
 void Supersede(const Context& c, ProbeWatch watch, ProbeEdge edge, Ticket ticket, State& s) {
   Restore(c, s);
   ProbeState& probe = s.probe;
@@ -143,7 +143,7 @@ void Supersede(const Context& c, ProbeWatch watch, ProbeEdge edge, Ticket ticket
 bool Fill(const RequestBuilder& m, const TouchProbe& c) {
   const double low = m.params.rotary() ? 0 : -kMaxPosition;
   const double high = m.params.rotary() ? m.params.modulus : kMaxPosition;
-  const bool ordered = c.window_only && !m.params.rotary();  // a turn has no beginning
+  const bool ordered = c.window_only && !m.params.rotary();  // on a rotary axis the window may contain 0
   return m.In("first_position", c.first_position, low, high) &&
          m.In("last_position", c.last_position, ordered ? c.first_position : low, high);
 }

@@ -164,7 +164,7 @@ Status MakeRequest(const Command& command, const AxisParams& params, Request& ou
 
 namespace {
 
-// The buffer modes that a command takes, for people.
+// Returns the buffer modes of a command, for users.
 std::string ModesOf(const Command& command, const AxisParams& params) {
   Request request;
   Refusal refusal;

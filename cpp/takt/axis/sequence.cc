@@ -31,12 +31,12 @@ void Enter(State& s, PlcState to) noexcept {
 
 namespace {
 
-// A continuous move that has passed its position is a velocity.
+// Returns true for a continuous move that has passed its position: from there on it is a velocity.
 bool HasPassed(const State& s) {
   return s.active.continuous() && s.passed;
 }
 
-// How far the positioning command in control has promised to get at most.
+// Returns the furthest position [u] that the positioning command in control may reach.
 double FurthestOf(const Context& c, const State& s) {
   const trajectory::Profile::Range range = s.motion.profile.PositionRange(Elapsed(c, s) - c.cycle.period_s);
   return SenseOfTravel(s.setpoint) > 0 ? std::max(range.max, s.motion.target) : std::min(range.min, s.motion.target);
@@ -66,7 +66,7 @@ PlanningContext SurroundingsOfBoth(const Context& c, const State& s) noexcept {
   const double covered = s.setpoint.position - s.overlay.base.position;
   if (around.promised) *around.promised += covered;
   if (around.begin) *around.begin += covered;
-  around.furthest.reset();  // of the one alone
+  around.furthest.reset();  // that of the base motion alone
   return around;
 }
 
@@ -111,7 +111,7 @@ Request TakeFirst(State& s) {
   return first;
 }
 
-// The motion in control has come to its end; what is on top of it, if anything is, has not.
+// The motion in control has ended; an overlay may not have.
 void EnterRest(State& s) {
   Enter(s, s.superimposed ? PlcState::kDiscreteMotion : PlcState::kStandstill);
 }
@@ -122,7 +122,7 @@ double ArrivedFor(const Context& c, const State& s) {
 
 void ConcludePositioning(const Context& c, double late_s, State& s) {
   const bool leaves_moving = s.motion.profile.end().velocity != 0;
-  // Beneath another motion the axis is not to stand there.
+  // Beneath another motion the axis does not stop at its end.
   if (leaves_moving || s.superimposed || InPosition(c.params, s)) {
     EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
     StartNext(c, leaves_moving ? late_s : 0, s, leaves_moving);
@@ -139,12 +139,12 @@ void NoteReached(const Context& c, State& s) {
   s.reported = true;
 }
 
-// A command that never ends by itself gives way to the one behind it.
+// Hands over from a command that never ends by itself to the next one.
 void GiveWay(const Context& c, State& s) {
   if (s.buffered == 0) return;
   const Ticket ticket = s.active.ticket;
   if (Couples(s.active.kind)) Uncouple(c, false, s);
-  // Beneath a superimposed motion the next command may have to wait: the axis keeps its present velocity.
+  // Beneath an overlay the next command may have to wait: the axis keeps its present velocity.
   if (FollowsDemand(s.active.kind)) {
     StartMotion(Profile{s.setpoint}, s.setpoint.position, FromThisCycle(c), s);
   }
@@ -153,13 +153,13 @@ void GiveWay(const Context& c, State& s) {
   StartNext(c, 0, s);
 }
 
-// A command that never ends by itself has reached what it is for.
+// Handles a command that never ends by itself and has reached its goal.
 void ConcludeReached(const Context& c, State& s) {
   NoteReached(c, s);
   GiveWay(c, s);
 }
 
-// The velocity with which a continuous move goes on from its position.
+// Returns the request for the velocity with which a continuous move continues from its position.
 Request Onward(const State& s) {
   Request onward = s.active;
   onward.kind = RequestKind::kMoveVelocity;
@@ -174,9 +174,9 @@ void BrakeFromEnd(const Context& c, double late_s, State& s) {
   s.setpoint = s.motion.profile.At(Elapsed(c, s));
 }
 
-// On from the position of a continuous move that got there with another velocity than it is to have.
-// kTargetBehindLimit: there is no room for that. A command behind it takes over from a set point from which the axis
-// can stop inside the SW limits: its plan has to keep them from there.
+// Continues from the position of a continuous move that passed it at another velocity than its end velocity. Returns
+// kTargetBehindLimit if there is no room for that. A buffered command takes over at a set point from which the axis can
+// stop inside the SW limits: its plan must keep them from there.
 Status GoOn(const Context& c, double late_s, State& s) {
   const Profile passing = s.motion.profile;
   Plan plan;
@@ -186,7 +186,7 @@ Status GoOn(const Context& c, double late_s, State& s) {
     return status;
   }
   plan.target = s.motion.target;
-  if (plan.limited_by == LimitedBy::kNothing) plan.limited_by = s.limited_by;  // until it is there
+  if (plan.limited_by == LimitedBy::kNothing) plan.limited_by = s.limited_by;  // until the end velocity is reached
   StartMotion(plan, {c.cycle.count, late_s}, s);
   s.setpoint = s.motion.profile.At(Elapsed(c, s));
   if (s.buffered > 0 && !s.superimposed && !CanStopInside(c.params, passing.end(), s.setpoint)) {
@@ -196,7 +196,7 @@ Status GoOn(const Context& c, double late_s, State& s) {
   return status;
 }
 
-// The velocity that a continuous move goes on with, as the override has it.
+// Returns true if the motion ends with the end velocity of the continuous move, scaled by the override.
 bool HasEndVelocity(const Context& c, const State& s) {
   LimitedBy clamped = LimitedBy::kNothing;
   const double due = Scaled(c.params, s.override_factors, s.active, clamped).end_velocity;
@@ -204,7 +204,7 @@ bool HasEndVelocity(const Context& c, const State& s) {
   return end.acceleration == 0 && std::abs(std::abs(end.velocity) - due) <= Rounding(due);
 }
 
-// Reached is its end velocity, beyond its position (AX-102).
+// A continuous move reaches its goal with its end velocity, at or beyond its position (AX-102).
 void ConcludeContinuous(const Context& c, double late_s, State& s) {
   const bool arrives = !s.passed;
   s.passed = true;
@@ -227,13 +227,13 @@ void ConcludeCam(const Context& c, State& s) {
   if (s.coupling.cam.over) GiveWay(c, s);
 }
 
-// The last velocity stays.
+// The last velocity is kept.
 void ConcludeVelocityProfile(const Context& c, double late_s, State& s) {
   EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
   if (s.buffered > 0) StartNext(c, late_s, s);
 }
 
-// At rest: the brake closes, then the loop opens.
+// At rest: closes the brake, then opens the loop.
 void ConcludePower(const Context& c, State& s) {
   if (!s.loop_closed) return SwitchedOff(c, s);
   if (!s.brake_falls) {
@@ -245,9 +245,9 @@ void ConcludePower(const Context& c, State& s) {
   if (s.plc != PlcState::kStopping && IsLegal(s.plc, PlcState::kStopping)) Enter(s, PlcState::kStopping);
 }
 
-// Stopping is seen for one cycle at least.
+// Stopping is visible for at least one cycle.
 void ConcludeStop(const Context& c, State& s) {
-  if (FollowersStraighten(c, s)) return;  // they come to rest, too
+  if (FollowersStraighten(c, s)) return;  // they must come to rest, too
   const bool just_arrived = c.cycle.count == s.motion.arrived_cycle;
   TellStopped(c, just_arrived, s);
   if (just_arrived || IsHeldStopped(s)) return;
@@ -270,7 +270,7 @@ void TakeControl(const Context& c, const Request& request, const Plan& plan, con
                  State& s) noexcept {
   Grant(c, request, s, plan.held ? 0 : plan.profile.duration() - start.offset_s);
   StartMotion(plan, start, s);
-  // The sense of now, also when it is planned anew later.
+  // Keeps the present sense, also when it is planned anew later.
   if (request.kind == RequestKind::kMoveVelocity && request.direction == Direction::kCurrent) {
     s.active.direction = s.last_sense < 0 ? Direction::kNegative : Direction::kPositive;
   }
@@ -363,7 +363,7 @@ void StartNext(const Context& c, double late_s, State& s, bool committed) noexce
   while (s.buffered > 0) {
     if (s.superimposed && !Carries(s.buffer[0])) return;
     const Request next = TakeFirst(s);
-    if (next.kind == RequestKind::kPower && next.enable) {  // it is on already
+    if (next.kind == RequestKind::kPower && next.enable) {  // it is already on
       Report(c, next.ticket, FeedbackState::kActive);
       Report(c, next.ticket, FeedbackState::kDone);
       continue;
@@ -392,11 +392,11 @@ void StartNext(const Context& c, double late_s, State& s, bool committed) noexce
     Report(c, next.ticket, FeedbackState::kError, status.error);
     AbortBuffer(c, s);
   }
-  if (s.plc == PlcState::kHoming && AtRest(s)) {  // the step that waited was refused
+  if (s.plc == PlcState::kHoming && AtRest(s)) {  // the buffered step was rejected
     if (s.homing.stage != HomingStage::kWaiting) Enter(s, PlcState::kStandstill);
     return;
   }
-  // No command takes over: come to rest, if the axis still moves.
+  // No command takes over: the axis comes to rest if it still moves.
   const bool stands = s.plc == PlcState::kStandstill || (s.superimposed && AtRest(s));
   if (stands) return;
   if (seamless) s.setpoint = s.motion.profile.end();
@@ -431,7 +431,7 @@ void PlanAgain(const Context& c, State& s) noexcept {
   Status status;
   if (s.active.kind == RequestKind::kJog) {
     if (s.jog_sense == 0) return;
-    Request held = s.active;  // the first key, whatever the other one does
+    Request held = s.active;  // the first key wins, whatever the other key does
     held.forward = s.jog_sense > 0;
     status = PlanJog(c, held, s, plan);
   } else if (s.active.kind == RequestKind::kMoveVelocity || HasPassed(s)) {

@@ -18,14 +18,14 @@ Status Done(const Context& c, Ticket ticket, double value = 0) {
   return Status::Ok();
 }
 
-// Whether an axis could work within these limits from where it is now: it can stop inside, and what is planned of its
-// motion lies inside.
+// Returns true if the axis could keep these limits from its present state: it can stop inside them, and the rest of its
+// planned motion is inside them.
 bool Fits(const Context& c, const AxisLimits& limits, const State& s) {
   if (!s.loop_closed) return true;
   const trajectory::Profile::Range braking = RangeOfStop(c.params, s.setpoint);
   if (!Inside(limits, braking.min) || !Inside(limits, braking.max)) return false;
   if (s.motion.held && s.active.positions() && !Inside(limits, s.motion.target + AddedAtEnd(s))) return false;
-  // What goes on with a velocity is watched cycle by cycle, but not where one move passes it to the next.
+  // Motions that go on with a velocity are watched each cycle, except from one blended move to the next.
   const bool watched = s.plc == PlcState::kContinuousMotion || FollowsDemand(s.active.kind);
   if (s.motion.arrived || watched) return true;
   const trajectory::Profile::Range range = s.motion.profile.PositionRange(Elapsed(c, s) - c.cycle.period_s);
@@ -54,7 +54,7 @@ Status CheckLimits(const Context& c, const AxisLimits& limits, const State& s) {
   return Fits(c, limits, s) ? Status::Ok() : Status::Failed(ErrorId::kTargetBehindLimit);
 }
 
-// A value that supervision works with and that may sleep: switched off it is kept, switched on it comes back.
+// A supervised value that can be switched off and on again: while off it is kept in `asleep`.
 struct Watch {
   std::optional<double> value;
   std::optional<double> asleep;
@@ -77,8 +77,9 @@ Status SetLimits(const Context& c, Ticket ticket, const Watch& lower, const Watc
   return Done(c, ticket);
 }
 
-// A limit of the application (PLCopen's ...Appl): at most that of the machine file. Motions were planned with those
-// there are, so only while there is none; a follower keeps those that its master was held against.
+// Sets a limit of the application (PLCopen's ...Appl), at most that of the machine file. Motions are planned with the
+// limits in force, so only while there is no motion; a follower keeps the limits that were checked against its
+// master's.
 Status SetLimit(const Context& c, const WriteParameter& w, const State& s) {
   if (c.params.follows || !AtRest(s) || s.active.kind != RequestKind::kNone || s.superimposed) {
     return Status::Failed(ErrorId::kState);
@@ -92,7 +93,7 @@ Status SetLimit(const Context& c, const WriteParameter& w, const State& s) {
       return Status::Ok();
     case Parameter::kMaxAcceleration:
       if (!within(s.system.acceleration)) break;
-      limits.deceleration = limits.deceleration.value_or(limits.acceleration);  // it was that, and stays so
+      limits.deceleration = limits.deceleration.value_or(limits.acceleration);  // keeps its value
       limits.acceleration = w.value;
       return Status::Ok();
     case Parameter::kMaxDeceleration:
@@ -193,7 +194,7 @@ Status CarryOut(const Context& c, Ticket ticket, const SetConstants& k, State& s
   return Done(c, ticket);
 }
 
-// At any time: the drive adds it to the torque of its own loops, and a payload comes when it is gripped.
+// Allowed at any time: the drive adds it to the torque of its own loops, and a payload changes during operation.
 Status CarryOut(const Context& c, Ticket ticket, const SetLoad& load, State&) noexcept {
   std::optional<TorqueOffset>& offset = c.params.drive.torque_offset;
   if (!offset) return Status::Failed(ErrorId::kState);
@@ -310,12 +311,12 @@ Status CarryOut(const Context& c, Ticket ticket, const SetPosition& p, State& s)
   if (s.plc == PlcState::kHoming || s.plc == PlcState::kStopping || s.plc == PlcState::kErrorStop) {
     return Status::Failed(ErrorId::kState);
   }
-  // Where the axis is: its set point, and with the loop open what is measured.
+  // The present position is the set point; with the loop open that is the actual position.
   const double by = p.relative ? p.position : p.position - s.setpoint.position;
   State shifted = s;
   ShiftCoordinates(by, shifted);
   shifted.homing.renamed += by;
-  if (!BlendingQueue(shifted).empty()) ReplanActive(c, shifted);  // to the same place, which lies elsewhere now
+  if (!BlendingQueue(shifted).empty()) ReplanActive(c, shifted);  // to the same point, which has another number now
   if (!Fits(c, c.params.limits, shifted)) return Status::Failed(ErrorId::kTargetBehindLimit);
   s = shifted;
   return Done(c, ticket);

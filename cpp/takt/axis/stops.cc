@@ -36,7 +36,7 @@ const StopOrder* StopOrders::Holder() const noexcept {
 }
 
 bool StopOrders::Add(const StopOrder& order) noexcept {
-  if (StopOrder* const known = axis::Find(order.ticket, *this)) {  // another component has one, however often it stops
+  if (StopOrder* const known = axis::Find(order.ticket, *this)) {  // another component has one at most
     known->hold |= order.hold;
     known->reported &= order.reported;
     return true;
@@ -126,7 +126,7 @@ void EndStops(const Context& c, FeedbackState feedback, ErrorId error, State& s)
 
 void FollowStops(const Context& c, State& s) noexcept {
   const bool lost = s.stops.EndLeases(c.cycle);
-  // Without a release buffered motions must not begin; another stop may.
+  // Without a release buffered motions must not begin, except another stop.
   if (lost && s.buffered > 0 && s.buffer[0].kind != RequestKind::kStop) AbortBuffer(c, s);
   const StopOrder* const holder = s.stops.Holder();
   const bool free = s.plc == PlcState::kStandstill && s.active.kind == RequestKind::kNone && !s.superimposed;

@@ -12,10 +12,10 @@ namespace takt::axis {
 
 namespace {
 
-constexpr double kClockGain = 1e-3;     // of how much earlier or later than the delay a set point comes
-constexpr double kFastestClock = 5e-3;  // most that the sender's clock is followed faster or slower by
+constexpr double kClockGain = 1e-3;     // of the deviation of a set point's arrival from the delay
+constexpr double kFastestClock = 5e-3;  // largest relative deviation of the stream's clock from the cycle's
 
-// The slope of the curve at point i, from those around it.
+// Returns the slope of the curve at point i, from its neighbours unless it is fixed.
 double Slope(const StreamState& k, std::size_t i) {
   const StreamedPoint& here = k.points[i];
   if (here.fixed) return here.velocity;
@@ -44,7 +44,7 @@ KinematicState Between(const StreamedPoint& a, const StreamedPoint& b, double ti
           (2 * c2 + 6 * x * c3) / (h * h)};
 }
 
-// The turn of a rotary axis that is nearest to where the stream is.
+// Returns the turn of a rotary position that is nearest to `near`.
 double Unwrapped(const Context& c, double position, double near) {
   if (!c.params.rotary()) return position;
   return near + std::remainder(position - near, c.params.modulus);
@@ -70,7 +70,7 @@ StreamSlot SlotOf(const StreamState& k, double time) noexcept {
   while (place > 0 && k.points[place - 1].time >= time) --place;
   if (k.count == 0) return {ErrorId::kNone, place};
   const bool doubled = place < k.count && k.points[place].time == time;
-  // Those of the curve in use are taken.
+  // Positions within the curve in use are taken.
   const bool in_use = place < std::min<std::size_t>(k.count, 2) && k.clock > k.points[0].time;
   if (doubled || in_use || time <= k.clock) return {ErrorId::kStreamLate, place};
   return {k.count == kStreamed ? ErrorId::kBufferFull : ErrorId::kNone, place};
@@ -84,7 +84,7 @@ void Keep(const Cycle& cycle, const StreamedPoint& point, std::size_t place, dou
   k.points[place] = point;
   ++k.count;
   k.heard_cycle = cycle.count;
-  // The two clocks drift apart: the stream is played a little faster or slower, so that it keeps its delay.
+  // The two clocks drift apart: the stream is played slightly faster or slower, so that it keeps its delay.
   if (!begins && place + 1u == k.count) {
     const double early = point.time - k.clock - delay;
     const double most = kFastestClock * (point.time - k.points[place - 1].time);
@@ -130,7 +130,7 @@ bool FollowStream(const Context& c, State& s) noexcept {
     ComeToRest(c, ramps, FromCycleBefore(c), s);
     return false;
   }
-  // Until there is a set point, the axis comes to rest where it is.
+  // Without a set point yet, the axis comes to rest.
   KinematicState demand{s.setpoint.position + s.origin + s.setpoint.velocity * period, 0, 0};
   if (k.count > 0) demand = DemandAt(k);
   demand.position -= s.origin;

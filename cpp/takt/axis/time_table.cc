@@ -16,7 +16,7 @@ using trajectory::Profile;
 
 namespace {
 
-// A request's table over the time since its start, scaled.
+// The scaled table of a request over the time since its start.
 struct Curve {
   const cam::Table& table;
   const TableRequest& request;
@@ -44,7 +44,7 @@ Range RangeOf(const Curve& curve) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-// Gauss' formula of four points: exact for tables of the fifth degree, and for their second integral.
+// Gauss' formula with four points: exact for tables of the fifth degree, and for their second integral.
 struct Node {
   double at, weight;  // over 0 to 1
 };
@@ -52,7 +52,7 @@ constexpr std::array kNodes = {
     Node{0.06943184420297371239, 0.17392742256872692869}, Node{0.33000947820757186760, 0.32607257743127307131},
     Node{0.66999052179242813240, 0.32607257743127307131}, Node{0.93056815579702628761, 0.17392742256872692869}};
 
-// What velocity and position a table of velocities (accelerations) adds from `from` to `to`, both within it.
+// Velocity and position that a table of velocities (accelerations) adds from `from` to `to`, both within it.
 struct Added {
   double velocity, position;
 };
@@ -73,14 +73,14 @@ KinematicState PositionDemand(const Curve& curve, double t, const State& s) {
   return t < curve.duration() ? KinematicState{position, at.dy, at.ddy} : KinematicState{position, 0, 0};
 }
 
-// From the demand of the cycle before.
+// Returns the demand of a table of velocities or accelerations, integrated from that of the previous cycle.
 KinematicState SummedDemand(const Context& c, const Curve& curve, double t, const State& s) {
   const KinematicState& before = s.time_table.demand;
   const bool accelerations = s.active.kind == RequestKind::kAccelerationProfile;
   const double end = curve.duration();
   const double from = std::clamp(t - c.cycle.period_s, 0.0, end);
   const double to = std::min(t, end);
-  const double rest = std::min(t - to, c.cycle.period_s);  // behind the end
+  const double rest = std::min(t - to, c.cycle.period_s);  // beyond the end
   const Added added = Integral(curve, accelerations, from, to);
   KinematicState demand;
   const cam::Value at = curve.At(to);
@@ -149,7 +149,7 @@ void BeginTable(const Context& c, const Request& r, const MotionStart& start, St
 void UpdateTable(const Context& c, const Request& r, State& s) noexcept {
   const double stretch = r.table.time_scale / s.active.table.time_scale;
   const Curve curve = CurveOf(c, r);
-  // At the same place in the table as before; one that is over is at its end.
+  // Continues at the same point of the table; a table that is over continues at its end.
   const double elapsed = s.time_table.over ? curve.duration() : stretch * (Elapsed(c, s) - c.cycle.period_s);
   Grant(c, r, s, std::max(0.0, curve.duration() - elapsed));
   MotionStart start = FromCycleBefore(c);

@@ -11,17 +11,17 @@ namespace takt::axis {
 
 namespace {
 
-constexpr double kAtSpeedLimit = 0.99;  // of it
-constexpr double kAtTorque = 0.999;     // of it: the torque is what holds the axis
-constexpr double kMostLead = 4;         // cycles at the command's acceleration, of the ramp before what is measured
-constexpr double kMostSteps = 2;        // increments a cycle, beside that
-constexpr double kCorrection = 0.1;     // of the distance to what is measured, each cycle
+constexpr double kAtSpeedLimit = 0.99;  // of the velocity limit
+constexpr double kAtTorque = 0.999;     // of the set torque: the torque determines the motion
+constexpr double kMostLead = 4;      // cycles at the command's acceleration: lead of the ramp over the actual velocity
+constexpr double kMostSteps = 2;     // increments per cycle, in addition
+constexpr double kCorrection = 0.1;  // of the distance to the actual position, per cycle
 
 bool InControl(const State& s) {
   return s.loop_closed && s.active.kind == RequestKind::kTorqueControl;
 }
 
-// Where the axis may be in the cycle after this one. What is measured as velocity is that of half a cycle ago.
+// Predicts the state of the axis in the next cycle. The measured velocity is that of half a cycle ago.
 KinematicState Foreseen(const Context& c, const State& s) {
   const double period = c.cycle.period_s;
   const double measured = (s.actual.velocity - s.torque.velocity_before) / period;
@@ -47,14 +47,14 @@ void PlanRamp(const Context& c, const KinematicState& from, double sense, State&
   StartMotion(ramp, from.position, FromCycleBefore(c), s);
 }
 
-// The ramp of this cycle, and whether the axis is too far from it.
+// The ramp in this cycle; `left`: the axis has got too far from it.
 struct Bound {
   KinematicState at;
   double step = 0;  // [u] of this cycle
   bool left = false;
 };
 
-// The acceleration of the set point on its way to `wanted`, within the jerk.
+// Returns the acceleration of the set point on its way to `wanted`, limited by the jerk.
 double Slewed(const Context& c, double acceleration, double wanted) {
   const double jerk = c.params.limits.jerk;
   const double step = jerk > 0 ? jerk * c.cycle.period_s : HUGE_VAL;
@@ -72,7 +72,7 @@ Bound NextBound(const Context& c, double sense, State& s) {
       kMostLead * s.active.acceleration * period + kMostSteps / (c.params.encoder.increments_per_unit * period);
   KinematicState bound = s.motion.profile.At(Elapsed(c, s));
   const double lead = sense * (bound.velocity - s.actual.velocity);
-  const bool turns = sense * bound.velocity < 0;  // friction may be quicker than the ramp
+  const bool turns = sense * bound.velocity < 0;  // friction may be faster than the ramp
   if (lead <= most && !(turns && lead < -most))
     return {bound, bound.position - s.motion.profile.At(Elapsed(c, s) - period).position, false};
   bound.velocity = s.actual.velocity + std::copysign(most, sense * lead);

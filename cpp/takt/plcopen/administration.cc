@@ -18,7 +18,7 @@ void MC_Power::operator()() noexcept {
   anew_ = Enable && !axis.loop_closed && (anew_ || !level_);
   level_ = Enable;
   if (IsDue()) {
-    const bool on = Enable && axis.loop_closed;  // only other directions
+    const bool on = Enable && axis.loop_closed;  // only the directions change
     given_ = {.enable = Enable,
               .buffer_mode = on ? axis::BufferMode::kAborting : buffer_mode,
               .enable_positive = EnablePositive,
@@ -39,7 +39,7 @@ void MC_Power::operator()() noexcept {
   }
 }
 
-// What the command that has ended since the call before says: seen in this call.
+// Takes over the result of a command that has ended since the previous call, for this call.
 void MC_Power::TakeEnd() noexcept {
   if (!feedback_.given() || feedback_.busy()) return;
   out_.aborted = feedback_.aborted();
@@ -54,12 +54,12 @@ void MC_Power::TakeEnd() noexcept {
   feedback_.Forget();
 }
 
-// An emergency stop has switched the axis off, and nobody has asked for power since.
+// Returns true after an emergency stop until Enable has requested power again.
 bool MC_Power::IsHeldOff() const noexcept {
   return Enable && !anew_ && axis_.outputs().emergency_stopped;
 }
 
-// The directions that are enabled are those that the axis was told last.
+// Returns true if the enabled directions are those of the last accepted command.
 bool MC_Power::IsPermitted() const noexcept {
   return taken_.enable_positive == EnablePositive && taken_.enable_negative == EnableNegative;
 }
@@ -102,7 +102,7 @@ void MC_DigitalCamSwitch::operator()() noexcept {
 void MC_WriteBoolParameter::operator()() noexcept {
   axis::WriteParameter command = *this;
   command.value = on ? 1 : 0;
-  if (number < 4 || number > 6) command.number = 0;  // there is no such parameter
+  if (number < 4 || number > 6) command.number = 0;  // no such parameter
   if (Rises()) StartWith(command);
   Show();
 }

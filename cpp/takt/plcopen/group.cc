@@ -8,7 +8,7 @@ bool IsProduct(std::uint32_t pcs) noexcept {
   return pcs >= 1 && pcs <= group::kProductSystems;
 }
 
-// Seen from the machine coordinate system; empty: there is no such system, or it has no frame.
+// Returns the frame of a system in the machine coordinate system; empty if there is no such system, or it has no frame.
 std::optional<kinematics::Frame> FrameOf(group::CoordinateSystem system, std::uint32_t pcs, const group::Outputs& now,
                                          const group::GroupParams& params) noexcept {
   using group::CoordinateSystem;
@@ -50,7 +50,7 @@ void MC_ReadCoordinateTransform::operator()() noexcept {
   const auto reference = FrameOf(Reference, ReferencePcs, shown(), params);
   found_.reset();
   if (!GroupReadBlock::Valid() || !product || !reference) return;
-  // As it was given, not another pose of the same frame.
+  // The pose as it was given, not another pose of the same frame.
   found_ = Reference == group::CoordinateSystem::kMcs ? shown().*group::kPublishedSystems[Pcs - 1]
                                                       : kinematics::ToPose(reference->Inverse() * *product);
 }

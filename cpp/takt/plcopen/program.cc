@@ -56,7 +56,7 @@ std::vector<Program::Waiting>::iterator Program::Find(Ticket ticket) noexcept {
   return found != waiting_.end() && found->ticket == ticket ? found : waiting_.end();
 }
 
-// Tickets only grow, so the newest goes to the end; there is room for one of each feedback.
+// Tickets only grow, so the newest one is appended; there is room for one per feedback.
 void Program::Add(Ticket ticket, Feedback& feedback) noexcept {
   waiting_.push_back({ticket, &feedback});
 }
