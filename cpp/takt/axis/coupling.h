@@ -65,12 +65,14 @@ struct CouplingState {
   std::array<MasterFilter, 2> filters;  // of measured masters
 };
 
+// Returns true for commands that couple the axis to masters.
 inline bool Couples(RequestKind kind) noexcept {
   return kind == RequestKind::kGearIn || kind == RequestKind::kGearInPos || kind == RequestKind::kCombineAxes ||
          kind == RequestKind::kCamIn;
 }
-// Returns true if this position of a master is known. A set point requires a closed loop. An actual position does not,
-// but is unknown from a fault with an open loop until its reset: how far the master moves meanwhile is not known.
+// Returns true if this position of a master is known. A set point requires a closed loop. An actual position does not;
+// it is unknown with an encoder error, while the drive is not heard during a stop (`blind`), and with an open loop from
+// a fault until its reset: how far the master moves meanwhile is not known.
 bool IsKnown(const State& master, MasterSource source) noexcept;
 // Returns the number of an axis, or of an outside master; kNoAxis if there is none of that name.
 std::uint32_t FindMaster(const MachineView& machine, std::string_view name) noexcept;

@@ -37,6 +37,7 @@ struct FaultRamp {
 // which starts at the present set point. Rejected like a command: kErrorStop, kPowerOff, kAxisStopping, kNoConstants,
 // kState, kNotInStep.
 Status Guide(const Context& c, State& s) noexcept;
+// Returns true while a component gives the set points.
 bool IsGuided(const State& s) noexcept;
 // Ends the guidance: an axis that moves comes to rest, in ErrorStop on the ramp of its fault (StopLimits).
 void LetGoOfGuidance(const Context& c, State& s) noexcept;

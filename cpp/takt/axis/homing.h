@@ -110,11 +110,12 @@ struct HomingState {
   bool reference_before = false;
 };
 
+// Returns true for homing steps.
 bool Homes(RequestKind kind) noexcept;
 // Returns true if a request may take over between two steps: a further step, a stop or power.
 bool MayFollowStep(RequestKind kind) noexcept;
 // Begins a step from rest, in Standstill or between two steps. `aborts`: the command in control and buffered ones are
-// aborted first. Returns kState if the axis is in another state or the step does not suit it, kAwayFromLimitOnly if the
+// aborted first. Returns kState if the axis is in another state or cannot do the step, kAwayFromLimitOnly if the
 // limit switch ahead is on and the step cannot turn round, kDirection, kNoCodedMarks, or kTargetBehindLimit.
 Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) noexcept;
 // Handles the events of the step in control; each cycle, after the set point.

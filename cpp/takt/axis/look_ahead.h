@@ -23,7 +23,7 @@ struct LookAhead {
   double run_end = 0;
   double run_end_speed = 0;
 
-  std::optional<double> stops_at;  // [u] where the last command comes to rest; unset: one of them has no end
+  std::optional<double> stops_at;  // [u] where the commands come to rest; unset: an endless motion takes over
   trajectory::Limits next;         // of the first command behind
 };
 

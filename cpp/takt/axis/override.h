@@ -30,6 +30,7 @@ struct Override {
 inline constexpr double kSmallestFactor = 1e-6;
 inline constexpr double kLargestFactor = 100;
 
+// Returns true if the factors act on requests of this kind.
 bool Overridden(RequestKind kind) noexcept;
 // Returns true if the factors hold a request of this kind at rest.
 bool Held(const Override& factors, RequestKind kind) noexcept;

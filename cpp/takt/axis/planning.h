@@ -63,8 +63,8 @@ Status PlanStop(const AxisParams& params, trajectory::Planner& planner, const Ki
 // Returns the sense, +1 or -1, of a velocity request.
 int SenseOf(const Request& request, std::int8_t last_sense) noexcept;
 
-// Returns the position that equals `position` modulo a turn and is next in `direction` from `from` without reversing
-// (AX-14). Linear axes: `position`.
+// Returns the position equal to `position` modulo a turn that is next in `direction` (kShortest: nearest) and reached
+// from `from` without reversing (AX-14). Linear axes: `position`.
 double ResolveTarget(const AxisParams& params, const KinematicState& from, const trajectory::Limits& limits,
                      double position, Direction direction, std::int8_t last_sense) noexcept;
 

@@ -29,6 +29,7 @@ void Report(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId err
             bool reached = false, double value = 0) noexcept;
 // Reports the end of a command; a fault of another axis together with that axis.
 void ReportEnd(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId error, const State& s) noexcept;
+// Changes the state, and counts illegal transitions.
 void Enter(State& s, PlcState to) noexcept;
 // Returns the input for planning a motion that continues beneath a superimposed one.
 PlanningContext SurroundingsOf(const Context& c, const State& s) noexcept;
@@ -81,7 +82,7 @@ void StartNext(const Context& c, double late_s, State& s, bool committed = false
 // ScopedBaseMotion.
 void ReplanActive(const Context& c, State& s) noexcept;
 // Plans the motion in progress anew because its limits changed: a positioning command to its promised end, a velocity
-// or jog to its velocity. Other motions continue unchanged. Must not be called within a ScopedBaseMotion.
+// move or a jog to its velocity. Other motions continue unchanged. Must not be called within a ScopedBaseMotion.
 void PlanAgain(const Context& c, State& s) noexcept;
 // Handles a motion in progress that is over; each cycle until its command ends.
 void Conclude(const Context& c, double late_s, State& s) noexcept;

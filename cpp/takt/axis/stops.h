@@ -50,6 +50,7 @@ struct StopOrders {
 
 // Returns true if no command may move the axis until it is released.
 bool IsHeldStopped(const State& s) noexcept;
+// Returns true if the stop with this ticket is held.
 bool HoldsStop(Ticket ticket, const State& s) noexcept;
 
 // Adds a stop that takes control. If there is no room the axis brakes, but the stop is not held: error kBufferFull.

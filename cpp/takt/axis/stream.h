@@ -44,14 +44,14 @@ inline bool Streams(RequestKind kind) noexcept {
 }
 // Returns the demand of the stream now, over all turns. Requires: it has a set point.
 KinematicState DemandAt(StreamState& k) noexcept;
-// Index at which a set point is inserted by its time; kStreamLate: the time has passed or is taken; kBufferFull: no
-// room.
+// Index at which a set point is to be inserted by its time. kStreamLate: the time has passed or is taken; kBufferFull:
+// there is no room.
 struct StreamSlot {
   ErrorId error = ErrorId::kNone;
   std::size_t place = 0;
 };
 StreamSlot SlotOf(const StreamState& k, double time) noexcept;
-// Inserts a set point there, and follows the sender's clock, so that the stream stays `delay` behind it.
+// Inserts a set point at index `place`, and adjusts the clock to the sender's, so that the stream stays `delay` behind.
 void Keep(const Cycle& cycle, const StreamedPoint& point, std::size_t place, double delay, StreamState& k) noexcept;
 // A set point jumps if it requires more than this many times the velocity limit of the axis.
 inline constexpr double kStreamJumpFactor = 1.5;

@@ -21,6 +21,7 @@ struct TimeTableState {
   bool over = false;      // its end was reached; the motion in progress continues from there
 };
 
+// Returns true for commands that follow a table over time.
 inline bool FollowsTable(RequestKind kind) noexcept {
   return kind == RequestKind::kPositionProfile || kind == RequestKind::kVelocityProfile ||
          kind == RequestKind::kAccelerationProfile;
