@@ -88,8 +88,8 @@ KinematicState Sum(const Context& c, const CouplingState& k, const KinematicStat
   return sum;
 }
 
-// Returns, of the positions that repeat after `turn` from `position` on, the next one ahead of `from` in this sense;
-// `position` if turn is 0.
+// Returns, of the positions equal to `position` modulo `turn`, the next one ahead of `from` in this sense; `position`
+// if `turn` is 0.
 double NextAhead(double turn, double position, double from, double sense) {
   if (turn == 0) return position;
   const double turns = (from - position) / turn;
