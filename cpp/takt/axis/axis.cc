@@ -510,7 +510,7 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   if (direct) out.voltage_v = sign * InConverterSteps(s.direct_voltage_v);
   s.voltage_v = out.voltage_v;
   out.enable = s.enable || direct;
-  out.release_brake = (s.loop_closed && !s.brake_falls) || (direct && s.drive_ready);  // else the drive holds the load
+  out.release_brake = (s.loop_closed && !s.brake_falls) || (direct && s.drive_ready);  // a ready drive holds the load
   return sound;
 }
 

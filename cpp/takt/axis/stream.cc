@@ -70,7 +70,7 @@ StreamSlot SlotOf(const StreamState& k, double time) noexcept {
   while (place > 0 && k.points[place - 1].time >= time) --place;
   if (k.count == 0) return {ErrorId::kNone, place};
   const bool doubled = place < k.count && k.points[place].time == time;
-  // Positions within the curve in use are taken.
+  // No set point can be inserted within the curve in use.
   const bool in_use = place < std::min<std::size_t>(k.count, 2) && k.clock > k.points[0].time;
   if (doubled || in_use || time <= k.clock) return {ErrorId::kStreamLate, place};
   return {k.count == kStreamed ? ErrorId::kBufferFull : ErrorId::kNone, place};

@@ -108,7 +108,7 @@ class CommandBlock : public Base, public C {
 
  protected:
   void StartWith(const C& command) noexcept { StartAs(command); }
-  // Gives another command, which continues its own one.
+  // Gives another command, which continues the block's own.
   template <typename Given>
   void StartAs(const Given& command) noexcept {
     bool may_wait = true;

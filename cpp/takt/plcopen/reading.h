@@ -8,7 +8,7 @@
 
 namespace takt::plcopen {
 
-// They show the values published in the cycle before the call; default values while not Valid.
+// A block that shows the values published in the cycle before the call; default values while not Valid.
 template <typename Ref, typename Outputs>
 class ReadBlockOf {
  public:
