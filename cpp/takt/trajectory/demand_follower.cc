@@ -9,11 +9,11 @@ namespace takt::trajectory {
 
 namespace {
 
-constexpr double kTolerance = 1e-9;  // of a limit
-// Less room than this share of the axis' own limits is none: a chase would take forever.
+constexpr double kTolerance = 1e-9;  // share of a limit
+// Less margin than this share of the axis' own limits counts as none: a chase would take forever.
 constexpr double kLeastRoom = 0.02;
 
-// The extreme velocity that is still reached from here when the acceleration ends with this jerk.
+// Returns the extreme velocity that is still reached if the acceleration is reduced to 0 with this jerk from here on.
 double Peak(const KinematicState& x, double jerk) {
   return jerk > 0 ? x.velocity + x.acceleration * std::abs(x.acceleration) / (2 * jerk) : x.velocity;
 }
@@ -30,7 +30,7 @@ bool KeepsAcceleration(const KinematicState& before, const KinematicState& x, co
   return std::abs(x.acceleration) <= allowed * (1 + kTolerance);
 }
 
-// Braking that is stronger than the axis may speed up has to be eased before it passes standstill.
+// Braking harder than the axis may speed up has to be eased before standstill.
 bool KeepsReversal(const KinematicState& x, const Limits& own) {
   const double strongest = own.acceleration * (1 + kTolerance);
   const double excess = x.acceleration * x.acceleration - strongest * strongest;
@@ -38,9 +38,9 @@ bool KeepsReversal(const KinematicState& x, const Limits& own) {
   return x.velocity * x.acceleration < 0 && 2 * own.jerk * std::abs(x.velocity) >= (own.jerk > 0 ? excess : 0);
 }
 
-// Whether a motion within the axis' jerk leads from one to the other in `t` seconds. Of the motions between two samples
-// with given accelerations the velocity can differ by the area of a triangle of jerks, the position by less than
-// jerk t^3 / 16; from the mean velocity's way it never differs by more than jerk t^3 / 12.
+// Returns true if a motion within the axis' jerk leads from `before` to `x` in `t` seconds. Between two samples with
+// given accelerations the velocity can differ from the linear one by the area of a triangle of jerks, the position by
+// less than jerk t^3 / 16; from the mean velocity's distance it never differs by more than jerk t^3 / 12.
 bool Continues(const KinematicState& before, const KinematicState& x, const Limits& own, double t) {
   if (own.jerk == 0) {
     const double mean = (x.velocity - before.velocity) / t;
@@ -61,7 +61,7 @@ bool Continues(const KinematicState& before, const KinematicState& x, const Limi
   return std::abs(away) <= cube / 12 + rounding && std::abs(away - expected) <= cube / 16 + rounding;
 }
 
-// Towards a velocity with the axis' own ramps: keeps the invariant from any state that has it.
+// Ramps towards a velocity with the axis' own limits: keeps the invariant from any state that satisfies it.
 KinematicState TowardsVelocity(const DemandFollower& c, const KinematicState& before, double velocity) {
   const Limits& own = c.own;
   Profile profile{before};
@@ -69,7 +69,7 @@ KinematicState TowardsVelocity(const DemandFollower& c, const KinematicState& be
   return profile.At(c.period_s);
 }
 
-// Which sign of the acceleration has which limit while the speed keeps the sense of `velocity`; 0: it may turn round.
+// Returns the bounds by sign of the acceleration while the speed keeps the direction of `velocity`; 0: it may reverse.
 Bounds BoundsInSense(double velocity, const Limits& limits) {
   const double weaker = std::min(limits.acceleration, limits.deceleration);
   if (velocity == 0) return {weaker, weaker, limits.jerk};
@@ -77,14 +77,14 @@ Bounds BoundsInSense(double velocity, const Limits& limits) {
                       : Bounds{limits.deceleration, limits.acceleration, limits.jerk};
 }
 
-// The demand as it has to be a cycle earlier to get where it is with the acceleration it has.
+// Returns the state a cycle earlier from which the demand arrives at its present state with its present acceleration.
 KinematicState CycleBefore(const KinematicState& demand, double t) {
   return {demand.position - t * (demand.velocity - 0.5 * t * demand.acceleration),
           demand.velocity - t * demand.acceleration, demand.acceleration};
 }
 
-// One cycle of the chase in the frame of the demand, with the ramps of an axis that moves in this sense. False: the
-// limits leave no room there, or there is no such plan.
+// One cycle of the chase in the frame of the demand, with the ramps of an axis that moves in the direction `sense`.
+// Returns false if the limits leave no margin, or no plan is found.
 bool InFrame(const DemandFollower& c, DemandMode mode, const KinematicState& before, const KinematicState& demand,
              double sense, KinematicState& next, bool& arrives) {
   const Limits& own = c.own;
@@ -142,7 +142,7 @@ KinematicState FollowDemand(const DemandFollower& c, DemandMode mode, const Kine
   double sense = demand.velocity * before.velocity < 0 ? 0 : demand.velocity + before.velocity;
   if (demand.velocity == 0 && before.velocity == 0) sense = demand.position - before.position;
   if (!(sense != 0 && chases(sense)) && !chases(0)) return TowardsVelocity(c, before, demand.velocity);
-  if (arrives) {  // the demand itself, in velocity mode at another place
+  if (arrives) {  // in step; in velocity mode with an offset
     if (mode == DemandMode::kVelocity) state.offset = next.position - demand.position;
     state.in_step = true;
   }

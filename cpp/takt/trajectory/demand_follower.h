@@ -1,5 +1,5 @@
-// Following something that moves: the one way in which an axis, or a mover on a track, gets onto, and stays on, a
-// demand that comes anew in each cycle (a geared master, a cam, a table over time, a motion on top of another).
+// Following a demand: how an axis, or a mover on a track, synchronises with a demand that is new in each cycle (a
+// geared master, a cam, a table over time, a superimposed motion) and stays on it.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,15 @@
 
 namespace takt::trajectory {
 
-// What the axis shall agree with.
+// What the axis is to match.
 enum class DemandMode : std::uint8_t {
-  kVelocity,  // the demand's velocity: the distance lost on the way is not made up, and stays what it is once in step
-  kPosition,  // its position
+  kVelocity,  // the demand's velocity: distance lost while catching up is not recovered; constant offset once in step
+  kPosition,  // the demand's position
 };
 
 struct DemandFollowerState {
-  // u. Velocity mode: own position minus the demand's, fixed while in step. Position mode: the caller's own.
+  // [u] Velocity mode: own position minus the demand's, constant while in step. Position mode: not used here, free for
+  // the caller.
   double offset = 0;
   bool in_step = false;  // the last set point was the demand itself
 };
@@ -27,25 +28,27 @@ struct DemandFollowerState {
 struct DemandFollower {
   Limits own;  // of the axis
   Planner& planner;
-  Limits catching_up;  // of the command: how fast to get into step; within the axis' own
+  Limits catching_up;  // of the command, for getting in step; within the limits of the axis
   double period_s;
 };
 
-// The set point that follows `before`, one cycle later, for a demand of that same instant.
+// Returns the set point one cycle after `before`, for a demand of that same instant.
 //
-// Invariant S(x): the speed of x stays within the axis' velocity even while its acceleration ends with the axis' jerk:
-// |v + a|a| / 2j| <= vmax. With S(before), for every demand whatsoever:
+// Invariant S(x): the speed of x stays within the axis' velocity limit even while its acceleration is reduced to 0 with
+// the axis' jerk: |v + a|a| / 2j| <= vmax. Given S(before), for every demand whatsoever:
 //   - S(next) holds, and so |v| <= vmax;
-//   - |a| <= acceleration while the speed grows, deceleration while it falls, or no more than before had of it; what
-//     only falling speed may have is gone before the axis turns round;
+//   - |a| <= acceleration while the speed grows, <= deceleration while it falls, or no larger than that of `before`
+//     with the same sign; an excess that only a falling speed may have is gone before the axis reverses;
 //   - |a - a_before| <= jerk * period; position and velocity are those of a motion with that jerk.
-// A demand that keeps all this, and continues `before`, is taken bit for bit: in step. Any other is chased: planned
-// anew in each cycle in the frame of the demand as if it kept its acceleration; where limits leave no room for that,
-// towards its velocity as far as the axis' own goes. SW limits are the caller's affair.
+// A demand that satisfies all this and continues `before` is returned bit for bit: in step. Any other demand is chased:
+// a motion is planned in each cycle in the frame of the demand, as if the demand kept its acceleration; where the
+// limits leave no margin for that, the axis ramps towards the demand's velocity as far as its own limits allow.
+// Software limits are up to the caller.
 KinematicState FollowDemand(const DemandFollower& chaser, DemandMode mode, const KinematicState& before,
                             const KinematicState& demand, DemandFollowerState& state) noexcept;
 
-// What of a demand is more than the axis can; out of step: more than leaves it room to catch up.
+// Returns the limit of the axis that the demand exceeds (velocity is checked before acceleration). While out of step
+// the velocity limit is reduced by a margin for catching up.
 LimitedBy Beyond(const Limits& own, const KinematicState& demand, bool in_step) noexcept;
 
 void describe(Description<DemandFollowerState>&);

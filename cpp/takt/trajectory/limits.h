@@ -1,4 +1,4 @@
-// How fast a motion may change.
+// Limits of a motion.
 #pragma once
 
 #include "takt/core/describe_fwd.h"
@@ -12,7 +12,8 @@ struct Limits {
   double jerk = 0;          // u/s³, >= 0; 0: unlimited (trapezoid)
 };
 
-// Returns the distance [u] in which a speed becomes another one, with no acceleration at both ends.
+// Returns the distance [u] over which the speed changes from `from` to `to`, with no acceleration at both ends.
+// Requires: jerk > 0.
 double RampLength(double from, double to, double acceleration, double jerk) noexcept;
 
 inline Limits ShareOf(double share, const Limits& l) noexcept {

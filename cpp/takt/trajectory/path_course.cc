@@ -12,22 +12,23 @@ namespace {
 constexpr std::size_t kMostSlow = 128;
 constexpr std::size_t kMostNodes = 1024;
 constexpr double kFast = 0.7;        // share of the largest speed around it above which a node is not slow
-constexpr double kOfBuildUp = 0.25;  // length of an interval over the time in which accelerations build up
+constexpr double kOfBuildUp = 0.25;  // length of an interval, as a share of the time in which accelerations build up
 constexpr double kShortest_s = 5e-4, kLongest_s = 0.025;  // of an interval
-constexpr double kBesideJoint_s = 0.002;                  // of an interval that ends at a joint, at the least ...
-constexpr double kBesideJointCycles = 4;                  // ... and
-constexpr double kTurn = 0.15;                            // share of the jerk limit that steps at a node: it is a knot
-constexpr double kLeastParts = 16;                        // intervals between two slow nodes, about
+constexpr double kBesideJoint_s = 0.002;                  // of an interval that ends at a joint, at least ...
+constexpr double kBesideJointCycles = 4;                  // ... and in cycles
+constexpr double kTurn = 0.15;      // jerk step at a node above this share of the jerk limit: it is a knot
+constexpr double kLeastParts = 16;  // about the least number of intervals between two slow nodes
 constexpr int kAttempts = 6, kEasings = 4;
-constexpr double kEased = 0.97;   // share of a limit that the reference is to use at most at slow nodes
-constexpr double kHelps = 0.995;  // of the use before, at most, once a slow node is slower: else it stays as it was
+constexpr double kEased = 0.97;  // largest share of a limit that the reference is to use at slow nodes
+// Share of the previous use, reached at most once a slow node is slower; else its speed is restored
+constexpr double kHelps = 0.995;
 constexpr double kHarder[] = {1,   1.01, 1.02, 1.04,
                               1.1, 1.25, 1.5,  2};  // shares of its limits, tried for the reference from a motion
-constexpr double kNoSlower = 0.9;                   // of the slower end: the least speed on the way of such a reference
+constexpr double kNoSlower = 0.9;                   // of the slower end: least speed in between of such a reference
 constexpr double kNoSpeed = 1e-9;                   // share of the velocity that is rounding
-constexpr double kMostGrowth = 2.5;                 // from an interval to the next
-constexpr double kReferenceShare = 0.97;            // of the limits, used by the reference: a plan can start from it
-// Of the limits of coordinates: the second slopes are taken for parabolas between nodes.
+constexpr double kMostGrowth = 2.5;                 // ratio of the lengths of neighbouring intervals
+constexpr double kReferenceShare = 0.97;  // of the limits, used by the reference, so that a plan can start from it
+// Share of the coordinates' limits: between nodes the second slopes are taken as parabolas.
 constexpr double kCoordinateShare = 0.98;
 constexpr double kNoLimitFrom = 1e11;
 constexpr double kStillBrakes = 1 + 1e-6;  // of the speed an interval later
@@ -39,7 +40,7 @@ double InfiniteIfNone(double limit) {
   return limit < kNoLimitFrom ? limit : std::numeric_limits<double>::infinity();
 }
 
-// Slopes at a place behind a node.
+// Slopes at an arc length behind a node.
 struct Slopes {
   double first = 0, second = 0, third = 0;
 };
@@ -49,7 +50,7 @@ Slopes SlopesAt(const PathNode& before, const PathNode& after, double place, std
   if (!(length > 0)) return {a.first[k], a.second[k], 0};
   const double x = std::clamp(place - before.at.s, 0.0, length);
   const double part = x / length;
-  // The second slope is a parabola between the nodes; what is left between their first ones is rounding.
+  // The second slope is a parabola between the nodes; the remaining gap between their first slopes is rounding.
   const double bend = b.second[k] - a.second[k];
   const double sag = after.at.has_middle ? 4 * (after.at.middle[k] - 0.5 * (a.second[k] + b.second[k])) : 0;
   const double gap = b.first[k] - a.first[k] - length * (a.second[k] + 0.5 * bend + sag / 6);
@@ -57,7 +58,7 @@ Slopes SlopesAt(const PathNode& before, const PathNode& after, double place, std
           a.second[k] + part * (bend + sag * (1 - part)), (bend + sag * (1 - 2 * part)) / length};
 }
 
-// The jerk of a coordinate.
+// Returns the jerk of a coordinate.
 double JerkAt(const Slopes& q, const KinematicState& along, double jerk) {
   const double v = along.velocity;
   return q.first * jerk + 3 * q.second * v * along.acceleration + q.third * v * v * v;
@@ -136,7 +137,7 @@ PathCourse::PathCourse(std::size_t intervals, double period_s) : period_s_(perio
   knots_.reserve(kMostNodes + Profile::kCapacity);
 }
 
-// The mean of what holds between two places.
+// Returns the mean limits between two slow nodes.
 Limits PathCourse::Between(const Slow& from, const Slow& to) const noexcept {
   double length = 0, velocity = 0, acceleration = 0, jerk = 0;
   for (std::size_t i = from.node; i <= to.node; ++i) {
@@ -149,14 +150,14 @@ Limits PathCourse::Between(const Slow& from, const Slow& to) const noexcept {
     acceleration += way * std::min(along.acceleration, along.deceleration);
     jerk += way * along.jerk;
   }
-  // A start faster than the speed limit (the factor has become less) is braked to it.
+  // A start faster than the speed limit (the factor has been lowered) is braked to it.
   const bool brakes = &from == &slow_.front() && begin_.velocity > factor_ * nodes_.front().at.limits.velocity;
   velocity = std::max({velocity / length, brakes ? 0 : from.speed, to.speed});
   acceleration *= kReferenceShare * share_ / length;
   return {velocity, acceleration, acceleration, kReferenceShare * share_ * jerk / length};
 }
 
-// The largest speed at each node, the steps of jerk there, and the slow nodes from `begin` to rest at `end`.
+// Computes the largest speed and the jerk step at each node, and the slow nodes from `begin` to rest at `end`.
 void PathCourse::FindSlow(const KinematicState& begin, std::size_t end) noexcept {
   square_.clear();
   joints_.clear();
@@ -188,7 +189,7 @@ void PathCourse::FindSlow(const KinematicState& begin, std::size_t end) noexcept
   }
   slow_.clear();
   slow_.push_back({0, begin.position, begin.velocity});
-  const auto peak = [&](std::size_t from, std::size_t to) {  // the largest speed between two nodes
+  const auto peak = [&](std::size_t from, std::size_t to) {  // largest speed between two nodes
     const auto first = square_.begin() + static_cast<std::ptrdiff_t>(from);
     const auto last = square_.begin() + static_cast<std::ptrdiff_t>(to) + 1;
     return std::sqrt(*std::max_element(first, last));
@@ -207,7 +208,7 @@ void PathCourse::FindSlow(const KinematicState& begin, std::size_t end) noexcept
   slow_.push_back({end, at(end), 0});
 }
 
-// No speed from which, or to which, the way to the next slow place is too short.
+// Lowers speeds from which, or to which, the distance to the next slow node is too short.
 void PathCourse::MakeReachable(const KinematicState& begin) noexcept {
   const auto lower = [&](const Slow& from, Slow& to) {
     const Limits limits = &from < &to ? Between(from, to) : Between(to, from);
@@ -225,7 +226,8 @@ void PathCourse::MakeReachable(const KinematicState& begin) noexcept {
   for (std::size_t i = 1; i + 1 < slow_.size(); ++i) lower(slow_[i - 1], slow_[i]);
 }
 
-// An interval of the reference, whatever its pieces are in between: place, speed and acceleration at both ends are its.
+// Appends an interval of the reference; whatever its pieces in between, position, speed and acceleration match at both
+// ends.
 void PathCourse::Add(const KinematicState& from, const KinematicState& to, double length_s) noexcept {
   Step step;
   static_cast<Quintic&>(step) = Connect(length_s, from, to);
@@ -234,8 +236,8 @@ void PathCourse::Add(const KinematicState& from, const KinematicState& to, doubl
   steps_.push_back(step);
 }
 
-// Intervals of one motion of the reference: with knots where its jerk steps, and where the way coordinates bend does.
-// False: there is no room for them.
+// Appends the intervals of one motion of the reference: with knots where its jerk steps, and where the third derivative
+// of a coordinate by the arc length does. Returns false if there is no room for them.
 bool PathCourse::Cut(const Slow& from, const Slow& to, const Profile& profile, double longest_s) noexcept {
   knots_.clear();
   for (int i = 0; i < profile.size(); ++i) knots_.push_back({profile.piece_ends_s[static_cast<std::size_t>(i)], kTurn});
@@ -246,7 +248,7 @@ bool PathCourse::Cut(const Slow& from, const Slow& to, const Profile& profile, d
     if (std::isnan(at_s)) break;
     knots_.push_back({at_s, turns_[i]});
   }
-  // Intervals that end at a joint are no faster anywhere than that allows.
+  // Intervals that end at a joint are nowhere faster than the joint allows.
   const double end_s = profile.duration();
   const double beside_s = std::max(kBesideJoint_s, kBesideJointCycles * period_s_);
   if (joints_[from.node] <= square_[from.node]) knots_.push_back({beside_s, kTurn});
@@ -255,7 +257,7 @@ bool PathCourse::Cut(const Slow& from, const Slow& to, const Profile& profile, d
   double begin_s = 0;
   KinematicState begin = profile.start();
   for (std::size_t i = 0; i < knots_.size(); ++i) {
-    // Of knots that are too near to one another the sharpest stays.
+    // Of knots that are too close to one another the sharpest one stays.
     while (i + 1 < knots_.size() && knots_[i + 1].at_s - knots_[i].at_s < kShortest_s) {
       if (knots_[i].turn > knots_[i + 1].turn) std::swap(knots_[i], knots_[i + 1]);
       ++i;
@@ -296,7 +298,7 @@ void PathCourse::Follow(const PathCourse& other, const PathPlan& plan, double fr
   other_from_s_ = from_s;
 }
 
-// The knots of the plan of Follow, up to where it brakes to its end.
+// Computes the knots of the plan copied by Follow, up to where it brakes to its end.
 void PathCourse::Sample() noexcept {
   followed_.clear();
   if (other_steps_.empty()) return;
@@ -317,8 +319,9 @@ void PathCourse::Sample() noexcept {
   }
 }
 
-// So many knots of that plan are followed: until it brakes to its end, or the first time to where it ends to cruise.
-// From there the reference is as fast, and the plan may not be: before it brakes its speed may vary by a percent.
+// Returns the number of knots of that plan that are followed: until it brakes to its end, or until it first stops
+// cruising. From there on the reference is as fast, while the plan need not be: before it brakes its speed may vary by
+// a percent.
 std::size_t PathCourse::FindJoint() const noexcept {
   std::size_t node = 0;
   bool cruised = false;
@@ -373,7 +376,7 @@ bool PathCourse::Make(Planner& planner, double share, bool follow) noexcept {
       of_build_up *= 0.25;
       continue;
     }
-    // Not so far: to a node at four fifths of what there is room for.
+    // Too far: end at a node at four fifths of what there is room for.
     end = std::min(NodeAt(0, steps_[steps_.capacity() * 4 / 5].At(0).position), end - 1);
   }
   return false;
@@ -413,7 +416,7 @@ std::size_t PathCourse::NodeAt(std::size_t from, double place) const noexcept {
   return from;
 }
 
-// The reference from slow place to slow place.
+// Lays the reference from slow node to slow node.
 PathCourse::Laid PathCourse::Lay(double of_build_up, Planner& planner) noexcept {
   steps_.clear();
   KinematicState from = begin_;
@@ -429,8 +432,8 @@ PathCourse::Laid PathCourse::Lay(double of_build_up, Planner& planner) noexcept 
     Profile profile{}, tried{};
     double least = -std::numeric_limits<double>::infinity();  // speed of the profile
     bool slows = false;
-    // A motion in progress may brake harder than the reference does: it passes no slow place for that, and is not
-    // slower on the way than there.
+    // A motion in progress may brake harder than the reference does: it passes no slow node because of that, and is not
+    // slower in between than there.
     for (const double share : kHarder) {
       Limits harder = usual_limits;
       harder.acceleration *= share;
@@ -446,18 +449,18 @@ PathCourse::Laid PathCourse::Lay(double of_build_up, Planner& planner) noexcept 
         limits = harder;
         profile = tried;
       }
-      // What a motion that brakes loses until it does not is lost in any case.
+      // The speed that a braking motion loses until it stops braking is lost in any case.
       const double brakes = std::min(from.acceleration, 0.0);
       const double unavoidable = from.velocity - brakes * brakes / (2 * harder.jerk);
       slows = speeds.min < kNoSlower * std::min(unavoidable, to.speed) - kNoSpeed * harder.velocity;
       if (i > 1 || (reaches && !slows)) break;
     }
     const bool reaches = std::isfinite(least);
-    // Rather by following a plan than by one that comes nearly to rest.
+    // Following a plan is preferred to a motion that comes nearly to rest.
     if (i == 1 && slows && share_ == 1 && joint_ == 0 && follows()) return Laid::kTooNear;
     if (!reaches) {
       if (i + 1 == slow_.size()) return Laid::kTooNear;
-      slow_.erase(slow_.begin() + static_cast<std::ptrdiff_t>(i));  // on to the next one
+      slow_.erase(slow_.begin() + static_cast<std::ptrdiff_t>(i));  // continue with the next one
       continue;
     }
     const double usual = std::min(of_build_up * limits.acceleration / limits.jerk, profile.duration() / kLeastParts);
@@ -469,8 +472,8 @@ PathCourse::Laid PathCourse::Lay(double of_build_up, Planner& planner) noexcept 
   return Laid::kWhole;
 }
 
-// Halves intervals that are much longer than one beside them: where the speed changes by orders of magnitude the plan
-// has to, too. As far as there is room.
+// Halves intervals that are much longer than a neighbour, as far as there is room: where the speed changes by orders of
+// magnitude the plan has to, too.
 void PathCourse::Grade() noexcept {
   for (std::size_t k = 0; k < steps_.size();) {
     double beside = std::numeric_limits<double>::infinity();
@@ -493,8 +496,8 @@ void PathCourse::Grade() noexcept {
   }
 }
 
-// Makes places slower at which the reference uses more than all of a limit: a plan is found the sooner. True: there
-// were some.
+// Lowers the speed of slow nodes at which the reference uses more than kEased of a limit: a plan is found sooner.
+// Returns true if any speed has changed.
 bool PathCourse::Ease() noexcept {
   bool eased = false;
   std::size_t k = joint_;
@@ -513,7 +516,7 @@ bool PathCourse::Ease() noexcept {
     Slow& slow = slow_[i];
     if (most <= kEased || slow.stays) continue;
     if (slow.use > 0 && most > kHelps * slow.use) {
-      slow.speed = slow.uneased;  // the use is elsewhere
+      slow.speed = slow.uneased;  // the cause is elsewhere
       slow.stays = true;
     } else {
       if (slow.use == 0) slow.uneased = slow.speed;
@@ -525,7 +528,7 @@ bool PathCourse::Ease() noexcept {
   return eased;
 }
 
-// The coordinates that move and their limits, and those of the path in each interval.
+// Collects the coordinates that move with their limits, and the limits of the path in each interval.
 void PathCourse::SetLimits(std::size_t end) noexcept {
   limits_.assign(1, {});
   of_.clear();
@@ -541,14 +544,14 @@ void PathCourse::SetLimits(std::size_t end) noexcept {
   rates_.resize(limits_.size());
   lengths_.clear();
   first_limits_.clear();
-  // A start faster than the speed limit (the factor has become less) is braked as the reference is.
+  // A start faster than the speed limit (the factor has been lowered) is braked as the reference is.
   const bool brakes = begin_.velocity > factor_ * nodes_.front().at.limits.velocity;
   for (const Step& step : steps_) {
     lengths_.push_back(step.length);
     const KinematicState before = step.At(0), after = step.At(step.length);
     AlongPath along = nodes_[step.node].at.limits;
-    double joints = std::numeric_limits<double>::infinity();  // squares: what joints allow ...
-    double own = joints;                                      // ... and a path without a speed limit
+    double joints = std::numeric_limits<double>::infinity();  // squared speeds: those that joints allow ...
+    double own = joints;                                      // ... and those of a path without a speed limit
     for (std::size_t i = step.node;; ++i) {
       along = Least(along, nodes_[i].at.limits);
       const bool within = nodes_[i].at.s >= before.position - kHere && nodes_[i].at.s <= after.position + kHere;
@@ -578,7 +581,7 @@ void PathCourse::Rates(std::size_t interval, double share, std::span<ReferenceRa
   const auto& c = step.c;
   const double j = (6 * c[3] + share * (24 * c[4] + share * 60 * c[5])) / (step.length * step.length * step.length);
   out[0] = {v, a, j};
-  // At its beginning the slopes behind a node count, at its end those before it.
+  // At the beginning of the interval the slopes behind a node count, at its end those before it.
   const double place = at.position + (share < 0.5 ? kHere : -kHere);
   std::size_t i = step.node;
   while (i + 2 < nodes_.size() && nodes_[i + 1].at.s <= place) ++i;

@@ -8,11 +8,11 @@ namespace takt::trajectory {
 
 namespace {
 
-// First slopes that differ by more, in relation to both and at all, are a corner.
+// First slopes that differ by more (relative and absolute) form a corner.
 constexpr double kSameSlope = 1e-6;
 constexpr double kNoSlope = 1e-8;
-// Of the jerk of coordinates. More than there is: its parts hardly ever come together, and rehearsal takes back what is
-// too much. With the parts taken together it is another matter.
+// Share of the coordinates' jerk. More than 1: its terms hardly ever add up, and rehearsal reduces what is too much.
+// With all terms added up the gentle share applies.
 constexpr double kJerkShare = 1.05;
 constexpr double kGentleJerkShare = 0.98;
 
@@ -53,7 +53,7 @@ AccelerationBounds BoundsAt(const PathPoint& point, const CoordinateLimits& limi
   const double largest = std::max(bounds.acceleration, bounds.deceleration);
   for (std::size_t k = 0; k < limits.count; ++k) {
     const double own = share * point.left[k].acceleration * limits.of[k].acceleration;
-    // Where a coordinate hardly moves with the way, only the square of the speed counts (SquareAt).
+    // Where a coordinate hardly moves along the path, only the squared speed is limited (SquareAt).
     if (own == CoordinateLimits::kNone || std::abs(slopes.first[k]) * largest <= 1e-6 * own) continue;
     const double inverse = 1 / slopes.first[k];
     bounds.tilt[bounds.count] = -slopes.second[k] * inverse;
@@ -82,7 +82,7 @@ AccelerationCap AccelerationCapAt(const PathPoint& point, const std::array<doubl
   const auto most_at = [&](double v, bool together) {
     double most = CoordinateLimits::kNone;
     for (std::size_t k = 0; k < limits.count; ++k) {
-      // The bends' own part is hardly ever largest where the others are: as if at right angles.
+      // The term of the bends is hardly ever largest where the others are: added as if at right angles.
       const double own = (together ? kGentleJerkShare : kJerkShare) * point.left[k].jerk * limits.of[k].jerk;
       const double bends = std::min(third[k] * v * v * v, (together ? 0.8 : 0.99) * own);
       const double left = together ? own - bends : std::sqrt(own * own - bends * bends);
@@ -91,7 +91,7 @@ AccelerationCap AccelerationCapAt(const PathPoint& point, const std::array<doubl
     }
     return most;
   };
-  // Without bends there is nothing to hope for.
+  // Without bends no term is left that could compensate.
   double straight = CoordinateLimits::kNone;
   for (std::size_t k = 0; k < limits.count; ++k) {
     const double own = kGentleJerkShare * point.left[k].jerk * limits.of[k].jerk * build_up_s;
@@ -99,7 +99,7 @@ AccelerationCap AccelerationCapAt(const PathPoint& point, const std::array<doubl
     if (slope * straight > own) straight = own / slope;
   }
   const auto at = [&](double w) { return std::min(straight, most_at(std::sqrt(w), false)); };
-  // The tangent at half the square, or what is beneath it at the whole one.
+  // The tangent at half the squared speed, or what is below the curve at the whole one.
   const double last = at(square);
   const double half = at(0.5 * square);
   if (last == CoordinateLimits::kNone) return {};
@@ -112,8 +112,8 @@ AccelerationCap AccelerationCapAt(const PathPoint& point, const std::array<doubl
 }
 
 double SquareBefore(const AccelerationBounds& bounds, double length, double later, double highest) noexcept {
-  // The least square to which a square leads is convex over it, made of lines: from above, steps along them come to the
-  // largest that is good.
+  // The least squared speed reached is a convex, piecewise linear function of the present one: from above, Newton steps
+  // along its lines lead to the largest admissible value.
   double square = highest;
   for (int i = 0; i < 2 * static_cast<int>(kPathCoordinates); ++i) {
     double least = -bounds.deceleration;

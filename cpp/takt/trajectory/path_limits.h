@@ -1,7 +1,7 @@
-// What limits of coordinates and of the way itself say about the motion along a path, at one place of it.
+// Constraints on the motion along a path at one point of it, from the limits of coordinates and of the path itself.
 //
-// A coordinate q that depends on the way s has the velocity q' v and the acceleration q' a + q'' v². So with w = v²,
-// the limits of acceleration at one place are straight lines over w, one to either side of each coordinate.
+// A coordinate q that depends on the arc length s has the velocity q' v and the acceleration q' a + q'' v². So with
+// w = v², the acceleration limits at one point are straight lines over w, two for each coordinate (upper and lower).
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace takt::trajectory {
 
 inline constexpr std::size_t kPathCoordinates = 14;
 
-// Largest velocity, acceleration and jerk of each coordinate; infinite: without a limit.
+// Largest velocity, acceleration and jerk of each coordinate; infinite: no limit.
 struct CoordinateLimits {
   static constexpr double kNone = std::numeric_limits<double>::infinity();
   struct One {
@@ -25,10 +25,10 @@ struct CoordinateLimits {
     double jerk = kNone;
   };
   std::array<One, kPathCoordinates> of{};
-  std::size_t count = 0;  // of coordinates in use
+  std::size_t count = 0;  // coordinates in use
 };
 
-// Along the way; all above 0 and finite.
+// Limits along the path; all above 0 and finite.
 struct AlongPath {
   double velocity = 0;
   double acceleration = 0;
@@ -37,9 +37,10 @@ struct AlongPath {
 
   bool operator==(const AlongPath&) const = default;
 };
+// Returns the smaller one of each limit.
 AlongPath Least(const AlongPath& a, const AlongPath& b) noexcept;
 
-// How each coordinate changes with the way; 0 where it does not.
+// Derivatives of each coordinate by the arc length; 0 where it does not depend on it.
 struct PathSlopes {
   std::array<double, kPathCoordinates> first{};
   std::array<double, kPathCoordinates> second{};
@@ -53,71 +54,75 @@ struct Left {
 };
 
 struct PathPoint {
-  double s = 0;  // along the way
+  double s = 0;  // [mm] arc length
   PathSlopes slopes;
   AlongPath limits;
   std::array<Left, kPathCoordinates> left{};
-  // The second slopes halfway from the point before; without them they are taken for even.
+  // Second slopes halfway from the previous point; without them the second slopes are taken as linear in between.
   std::array<double, kPathCoordinates> middle{};
   bool has_middle = false;
-  // Limits reserved at earlier points end here and are not spread any further (PathWindow): they were reserved for a
+  // Limits reserved at earlier points end here and are not propagated further (PathWindow): they were reserved for a
   // time that is over when the raw motion arrives.
   bool renewed = false;
 };
 
-// An acceleration that falls with the square of the speed.
+// A cap on the magnitude of the acceleration that falls linearly with the squared speed.
 struct AccelerationCap {
   double at_rest = CoordinateLimits::kNone;
-  double fading = 0;  // per square of the speed
-  double least = 0;   // it falls no further
-  double gentle = 1;  // share of it that is good at any speed, not only at those of a motion as fast as may be
+  double fading = 0;  // decrease per squared speed
+  double least = 0;   // lower bound of the cap
+  double gentle = 1;  // share of the cap that is safe at any speed, not only at those of the fastest possible motion
 
   double At(double square) const noexcept { return std::max(least, at_rest - fading * square); }
   double Gentle(double square) const noexcept { return gentle * At(square); }
   bool operator==(const AccelerationCap&) const = default;
 };
-// Beneath both up to a square of the speed.
+// Returns a cap that is below both for squared speeds from 0 to `square`.
 AccelerationCap Least(const AccelerationCap& a, const AccelerationCap& b, double square) noexcept;
 
-// The limits of acceleration of one place, those of coordinates as lines over the square of the speed.
+// Acceleration limits at one point of the path; those of coordinates are lines over the squared speed.
 struct AccelerationBounds {
   std::size_t count = 0;
-  std::array<double, kPathCoordinates> tilt{};   // of the acceleration along the way, per square of the speed
-  std::array<double, kPathCoordinates> reach{};  // at standstill, to both sides
-  double acceleration = 0;                       // along the way
+  std::array<double, kPathCoordinates> tilt{};   // slope of the acceleration along the path over the squared speed
+  std::array<double, kPathCoordinates> reach{};  // acceleration at standstill, in both directions
+  double acceleration = 0;                       // limit along the path
   double deceleration = 0;
-  AccelerationCap strength;  // either way
+  AccelerationCap strength;  // for acceleration and deceleration
 
-  // `full`: the deceleration along the way does not count.
+  // Returns the least admissible acceleration (braking: negative). `full`: the deceleration limit along the path is
+  // ignored.
   double Least(double square, bool full = false) const noexcept;
+  // Returns the largest admissible acceleration.
   double Most(double square) const noexcept;
-  // A deceleration that is good whatever the motion did before.
+  // Returns a deceleration (positive) that is admissible whatever the motion did before.
   double Gentle(double square, bool full = false) const noexcept {
     return std::min(-Least(square, full), strength.Gentle(square));
   }
 };
 
-// With `share` of each coordinate's acceleration; along the way no more than its jerk builds up within `build_up_s`.
+// Returns the bounds with `share` of each coordinate's acceleration limit; those along the path are at most what their
+// jerk builds up within `build_up_s`.
 AccelerationBounds BoundsAt(const PathPoint& point, const CoordinateLimits& limits, double build_up_s,
                             double share) noexcept;
 
-// The largest square of the speed at this place: for velocities, and so that there is an acceleration within the
-// bounds, with `share` of the coordinates' own.
+// Returns the largest squared speed at this point that keeps the velocity limits and at which an admissible
+// acceleration exists, with `share` of the coordinates' acceleration limits.
 double SquareAt(const PathPoint& point, const CoordinateLimits& limits, double share) noexcept;
 
-// The largest acceleration along the way, either way, that may be at speeds up to a square if it is built up and taken
-// back within `build_up_s`: for the jerk of the coordinates, q''' v³ + 3 q'' v a + q' j. A line beneath it.
-// `third`: how large the third derivative of each is. With its share
-// `gentle` the three parts may come together, and the speed may grow while it builds up.
+// Returns a cap on the acceleration along the path (both signs) for squared speeds up to `square`, if it is built up
+// and removed within `build_up_s`, from the jerk of the coordinates, q''' v³ + 3 q'' v a + q' j: a line below the exact
+// curve. `third`: magnitude of each coordinate's third derivative. Scaled with its share `gentle` it also holds if the
+// three terms add up and the speed grows during the build-up.
 AccelerationCap AccelerationCapAt(const PathPoint& point, const std::array<double, kPathCoordinates>& third,
                                   const CoordinateLimits& limits, double square, double build_up_s) noexcept;
 
-// The largest square of the speed up to `highest` from which an acceleration within the bounds leads to `later` at
-// most, `length` further on.
+// Returns the largest squared speed, at most `highest`, from which an admissible acceleration leads to a squared speed
+// of at most `later` at the distance `length` [mm] ahead; 0 if there is none.
 double SquareBefore(const AccelerationBounds& bounds, double length, double later, double highest) noexcept;
 
-// Whether two points at the same place can be passed without a stop, and how fast: the square of the speed at which the
-// accelerations of the coordinates change by no more than their jerk makes them within `time`; 0: a stop is needed.
+// Returns the largest squared speed with which a joint (two points at the same arc length) can be passed: the
+// accelerations of the coordinates step by no more than their jerk changes them within `time` [s], and by no more than
+// half of their limits. 0: the first slopes differ, a stop is needed.
 double JointSquare(const PathSlopes& before, const PathSlopes& after, const CoordinateLimits& limits,
                    double time) noexcept;
 

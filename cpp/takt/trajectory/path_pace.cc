@@ -10,15 +10,15 @@ namespace takt::trajectory {
 namespace {
 
 constexpr double kOnNode = 1e-9;   // mm
-constexpr double kLanding = 0.99;  // of the deceleration: the rest is for landing exactly
+constexpr double kLanding = 0.99;  // share of the deceleration; the rest is for stopping exactly
 
 struct RawLimits {
   double low = 0;
   double high = 0;
 };
 
-// The largest acceleration with which, a cycle later, the square of the speed can still be brought down to `square` in
-// what is left, with `deceleration`, after the speed was held for `hold_s`.
+// Returns the largest acceleration for one cycle after which the squared speed can still be brought down to `square`
+// within the distance left, with `deceleration`, once the speed has been held for `hold_s`.
 double BeforeSlower(double v, double left, double square, double deceleration, double hold_s, double period_s) {
   // With u = v + a h: (v + u) h / 2 + u hold + (u² - square) / (2 d) = left.
   const double linear = deceleration * (0.5 * period_s + hold_s);
@@ -27,21 +27,21 @@ double BeforeSlower(double v, double left, double square, double deceleration, d
   return (later - v) / period_s;
 }
 
-// What the acceleration may be on the way to the next node. Whoever is beneath the ceiling of a node and takes an
-// acceleration from these comes beneath that of the next one.
+// Returns the bounds of the acceleration up to the next node. From below the ceiling of a node any acceleration within
+// them leads below the ceiling of the next node.
 RawLimits RawLimitsOf(const PathWindow& window, const PathPace& pace, double period_s, bool full = false) {
   const PathNode& node = window[pace.node];
   const PathNode& next = window[pace.node + 1];
   const double v = pace.raw.velocity;
   const double left = std::max(next.at.s - pace.raw.position, kOnNode);
-  // The speed may have become another one since.
+  // The speed may have changed since the node was reached.
   RawLimits limits{std::max(node.bounds.Least(pace.entered, full), node.bounds.Least(v * v, full)),
                    std::min(node.bounds.Most(pace.entered), node.bounds.Most(v * v))};
   const auto to_reach = [&](double square) { return (square - v * v) / (2 * left); };
   double ahead = to_reach(next.ceiling);
   double coasting = to_reach(next.coast);
   const double landing = next.ceiling == 0 ? kLanding : 1;
-  if (ahead > landing * limits.low && limits.low < 0) {  // there is time before it has to brake
+  if (ahead > landing * limits.low && limits.low < 0) {  // not braking yet
     const double later = BeforeSlower(v, left, next.ceiling, -landing * limits.low, 0, period_s);
     if (v + 0.5 * later * period_s <= left / period_s) ahead = later;
     if (next.ceiling == 0) coasting = BeforeSlower(v, left, 0, -landing * limits.low, node.build_up_s, period_s);
@@ -53,7 +53,7 @@ RawLimits RawLimitsOf(const PathWindow& window, const PathPace& pace, double per
 
 double NextAcceleration(const PathWindow& window, double wish, double period_s, bool full, PathPace& pace) {
   const RawLimits limits = RawLimitsOf(window, pace, period_s, full);
-  // Against the acceleration that leaves the mean in this cycle.
+  // Relative to the acceleration that leaves the mean in this cycle.
   const PathNode& node = window[pace.node];
   const double square = std::max(pace.entered, pace.raw.velocity * pace.raw.velocity);
   double strength = node.bounds.strength.At(square);
@@ -62,10 +62,10 @@ double NextAcceleration(const PathWindow& window, double wish, double period_s, 
   const double build_up = node.at.limits.jerk * node.build_up_s;
   const double change = std::min(build_up, strength);
   const double before = pace.last[pace.oldest].acceleration;
-  // Braking may be taken back at once: where it cannot be strong it would go on to a stop.
+  // Braking may be released at once: where it cannot be strong it would continue to a stop.
   const double released = std::min(0.0, before + build_up);
   const double most = std::min(std::max(before + change, released), strength);
-  // Ceilings come first, whatever it takes.
+  // Ceilings have priority over every other bound.
   const double high = std::min(limits.high, std::max(most, limits.low));
   const double least = std::max({limits.low, before - (full ? strength : change), -strength});
   const double a = std::clamp(std::min(high, wanted), std::min(least, high), high);
@@ -77,25 +77,25 @@ double NextAcceleration(const PathWindow& window, double wish, double period_s, 
   return a;
 }
 
-// One cycle of the raw motion: an acceleration holds to the next node at most.
+// One cycle of the raw motion: an acceleration holds up to the next node at most.
 PathCycle StepRaw(const PathWindow& window, double wish, double period_s, bool full, PathPace& pace) {
   const auto at_end = [&] { return pace.node + 1 >= window.known() || window[pace.node].stop; };
   PathCycle cycle{pace.raw.position, pace.raw.velocity, 0, 0};
   double left_s = period_s;
-  double sum = 0;  // of the position ahead of that at the beginning, over time
+  double sum = 0;  // of the position relative to the start of the cycle, over time
   while (left_s > 0 && !at_end()) {
     const double s = pace.raw.position;
     const double v = pace.raw.velocity;
     const double a = NextAcceleration(window, wish, period_s, full, pace);
     const double way = window[pace.node + 1].at.s - s;
-    // When it is at the next node, or at rest.
+    // Time until the motion is at the next node, or at rest.
     double time = left_s;
     bool arrives = false;
     bool rests = false;
     const double square = v * v + 2 * a * way;
     if (square >= 0) {
       const double speed_sum = v + std::sqrt(square);
-      // Two nodes may lie at the same place.
+      // Two nodes may lie at the same arc length.
       const double arrival = way <= kOnNode ? 0 : speed_sum > 0 ? 2 * way / speed_sum : left_s * 2;
       arrives = arrival <= left_s;
       if (arrives) time = arrival;
@@ -114,7 +114,7 @@ PathCycle StepRaw(const PathWindow& window, double wish, double period_s, bool f
       } while (!at_end() && window[pace.node + 1].at.s <= pace.raw.position);
       pace.entered = pace.raw.velocity * pace.raw.velocity;
     } else if (pace.raw.velocity == 0) {
-      // At rest on the way, or on the stop but for rounding.
+      // At rest between nodes, or on the stop except for rounding.
       if (window[pace.node + 1].ceiling == 0 && way - time * 0.5 * v < kOnNode) ++pace.node;
       break;
     }
@@ -127,7 +127,7 @@ PathCycle StepRaw(const PathWindow& window, double wish, double period_s, bool f
   return cycle;
 }
 
-// The mean of the raw motion.
+// Returns the mean of the raw motion.
 KinematicState Mean(const PathPace& pace, double period_s) {
   double sum = 0;
   for (std::uint32_t i = 0; i < pace.cycles; ++i) {

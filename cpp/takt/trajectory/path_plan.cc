@@ -9,11 +9,11 @@ namespace takt::trajectory {
 
 namespace {
 
-double Series(double x) {  // (cosh √x - 1) / x and its like for x < 0, for small x
+double Series(double x) {  // (cosh √x - 1) / x and its counterpart for x < 0, for small x
   return 0.5 + x * (1.0 / 24 + x * (1.0 / 720));
 }
 
-// Position and rate after `t` of a motion with acceleration slope + bend * (position - begin).
+// Returns position and rate after `t` of a motion with the acceleration slope + bend * (position - begin).
 ReferenceState Move(double root, double slope, double bend, double t) {
   const double x = bend * t * t;
   double c = 0, s = 0, integral = 0;  // cosh, sinh / w, (cosh - 1) / w²
@@ -54,7 +54,7 @@ ReferenceState PathPlan::At(double time_s) const noexcept {
   return state;
 }
 
-// With x = length / (sum of both rates) it is 2/w atanh(w x), w² the bend.
+// With x = length / (sum of both rates) the duration is 2/w atanh(w x), w² the bend.
 double IntervalDuration(double length, double before, double after, double bend) noexcept {
   const double x = length / (std::sqrt(before) + std::sqrt(after));
   const double y = bend * x * x;

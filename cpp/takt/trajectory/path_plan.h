@@ -6,13 +6,13 @@
 
 namespace takt::trajectory {
 
-// How fast the reference time passes at an end of a plan.
+// The rate of the reference time at an end of a plan.
 struct ReferencePace {
   double square = 1;  // R > 0
   double slope = 0;   // R' / 2 [1/s]
 };
 
-// A place on a plan: the reference time and its derivatives by time.
+// A point of a plan: the reference time and its derivatives by time.
 struct ReferenceState {
   double time = 0;          // reference time [s]
   double rate = 0;          // 1
@@ -27,12 +27,12 @@ class PathPlan {
 
   double duration() const noexcept { return count_ > 0 ? knots_[count_ - 1].at_s : 0; }  // s
   std::size_t intervals() const noexcept { return count_ > 0 ? count_ - 1 : 0; }
-  // The pace at a knot, to go on from there with another plan.
+  // Returns the pace at a knot, from which another plan can continue.
   ReferencePace pace(std::size_t knot) const noexcept { return {knots_[knot].square, knots_[knot].slope}; }
   double knot_time(std::size_t knot) const noexcept { return knots_[knot].at_s; }  // s from the beginning
-  // At `time_s` from the beginning; before it and behind the end what is there, at the ends exactly.
+  // Returns the state at `time_s` from the beginning; outside of the plan, the state at the nearer end, exactly.
   ReferenceState At(double time_s) const noexcept;
-  // Of an interval at `share` (0 to 1) of its length.
+  // Returns the state within an interval, at `share` (0 to 1) of its length in reference time.
   ReferenceState Within(std::size_t interval, double share) const noexcept;
 
  private:
@@ -42,14 +42,14 @@ class PathPlan {
     double at_s = 0;
     double square = 0;
     double slope = 0;
-    double bend = 0;  // of the slope, up to the next knot
+    double bend = 0;  // derivative of the slope by the reference time, constant up to the next knot
   };
   std::vector<Knot> knots_;
   std::size_t count_ = 0;
 };
 
-// Returns the time over an interval of the reference time [s] with these squared rates at its ends and this bend of the
-// slope between them.
+// Returns the duration [s] of an interval of `length` [s] in reference time, with these squared rates at its ends and
+// this derivative of the slope (bend) in between.
 double IntervalDuration(double length, double before, double after, double bend) noexcept;
 
 }  // namespace takt::trajectory

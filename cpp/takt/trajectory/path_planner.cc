@@ -9,37 +9,38 @@ namespace takt::trajectory {
 
 namespace {
 
-constexpr double kPlanShare = 0.99;            // of each limit, used by the rows: the rest is for values between knots
-constexpr std::size_t kFadeIntervals = 8;      // after a given pace, which may use all of a limit, down to that share
-constexpr int kVerifyRounds = 8;               // of verifying and tightening
-constexpr int kRoundsFromMotion = 6;           // with a given pace; after more the law in force is usually faster
-constexpr double kTighter = 1.002;             // factor of the use that was found
-constexpr int kStubborn = 2;                   // rounds after which tightening is squared
-constexpr double kNearly = 1.5;                // use of a limit below which a plan is feasible at a lower rate
-constexpr double kLowerRounding = 1e-9;        // share of R
-constexpr double kBeginRounding = 1e-6;        // share of a limit, in the first interval after a given pace
-constexpr double kPrecision = 3e-4;            // of gap and residual, from rest
-constexpr double kPrecisionFromMotion = 1e-3;  // a plan from a motion is to be there in time
-constexpr double kToBoundary = 0.99;           // of the step to where a slack or a multiplier is 0
-constexpr double kLeastLeft = 0.2;             // of an ordinate, after a step
-constexpr double kFarSlack = 0.1;              // initial slack of rows, share of their terms: from a uniform rate
+constexpr double kPlanShare = 0.99;  // share of each limit used by the rows; the rest is for values between knots
+// Intervals after a given pace, which may use all of a limit, until that share holds
+constexpr std::size_t kFadeIntervals = 8;
+constexpr int kVerifyRounds = 8;         // rounds of verifying and tightening
+constexpr int kRoundsFromMotion = 6;     // with a given pace; after more rounds the law in force is usually faster
+constexpr double kTighter = 1.002;       // factor on the measured use
+constexpr int kStubborn = 2;             // rounds after which tightening is squared
+constexpr double kNearly = 1.5;          // use of a limit below which a plan becomes feasible at a lower rate
+constexpr double kLowerRounding = 1e-9;  // share of R
+constexpr double kBeginRounding = 1e-6;  // share of a limit, in the first interval after a given pace
+constexpr double kPrecision = 3e-4;      // gap and residual, from rest
+constexpr double kPrecisionFromMotion = 1e-3;  // the same from a motion in progress: the plan has to be ready in time
+constexpr double kToBoundary = 0.99;           // share of the step to where a slack or a multiplier is 0
+constexpr double kLeastLeft = 0.2;             // share of an ordinate that is left after a step
+constexpr double kFarSlack = 0.1;              // initial slack of rows, as a share of their terms: from a uniform rate
 constexpr double kTightenedSlack = 0.02;       // from a plan whose rows were tightened
 constexpr double kNearSlack = 1e-5;            // from a feasible plan
 constexpr int kStepsPerRound = 80;             // Newton steps
 constexpr int kHoldingSteps = 30;              // Newton steps
-constexpr int kHoldingRounds = 4;              // of verifying and tightening
+constexpr int kHoldingRounds = 4;              // rounds of verifying and tightening
 constexpr std::size_t kRampSpace[] = {3, 6, 12};  // intervals left free on both sides of a held run, tried in turn
-constexpr double kNearlyAtSpeed = 0.97;           // of the squared velocity limit: such intervals are held at it
-constexpr double kAtSpeed = 1 - 1e-9;             // of R where the reference cruises
-constexpr double kCruises = 1e-9;                 // share of a limit that is rounding
-constexpr double kNearlyCruises = 1e-7;           // ... that plans which follow one another lose
-constexpr double kSamePace = 1e-6;                // of R and its slope
-constexpr double kLost = 1e6;                     // of the duration: gap or residual of a diverged solution
-constexpr double kBetween = 0.2;                  // of a second difference: more than a parabola rises (1/8)
-constexpr double kSmall = 1e-3;  // share of a limit that needs no rows; Verify looks at it all the same
+constexpr double kNearlyAtSpeed = 0.97;  // of the squared velocity limit: intervals above it are held at the limit
+constexpr double kAtSpeed = 1 - 1e-9;    // of R where the reference cruises
+constexpr double kCruises = 1e-9;        // share of a limit that is rounding
+constexpr double kNearlyCruises = 1e-7;  // ... that is lost from one plan to the next
+constexpr double kSamePace = 1e-6;       // of R and its slope
+constexpr double kLost = 1e6;            // times the duration: gap or residual of a diverged solution
+constexpr double kBetween = 0.2;         // of a second difference; more than the height of a parabola (1/8)
+constexpr double kSmall = 1e-3;  // share of a limit below which no rows are needed; Verify checks it nevertheless
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
-constexpr double kNear = 0.4;       // use of a limit from which it has rows, once a use is known
-constexpr double kOfUniform = 0.7;  // of the fastest uniform R: where the steps begin
+constexpr double kNear = 0.4;       // use of a limit from which a coordinate has rows, once a use is known
+constexpr double kOfUniform = 0.7;  // of the fastest uniform R: start of the Newton steps
 
 bool Above0(double number) {
   return number > 0 && std::isfinite(number);
@@ -70,7 +71,7 @@ PathPlanner::PathPlanner(std::size_t intervals, std::size_t coordinates)
       right_(intervals),
       step_(intervals) {}
 
-// False: the request is none.
+// Reads the rates and masks. Returns false if the request is invalid.
 bool PathPlanner::Read() noexcept {
   for (const double length : request_->lengths) {
     if (!Above0(length)) return false;
@@ -107,8 +108,8 @@ bool PathPlanner::Read() noexcept {
   return true;
 }
 
-// What one limit says at an end of an interval need not be said by another one: on a straight line all coordinates go
-// as the first one does, and of each kind only the smallest limit counts.
+// Merges limits at an end of an interval: on a straight line all coordinates are proportional to the first one, and of
+// each kind only the smallest limit counts.
 void PathPlanner::Merge(std::size_t k, std::size_t e) noexcept {
   const ReferenceRate* rates = &ends_[(2 * k + e) * count_];
   const ReferenceRate& first = rates[0];
@@ -119,7 +120,7 @@ void PathPlanner::Merge(std::size_t k, std::size_t e) noexcept {
   for (std::size_t q = 1; q < count_; ++q) {
     const ReferenceRate& own = rates[q];
     const RateLimits& l = LimitsOf(k, q);
-    // What has no limit of its own may still be large where the other limits are.
+    // Without a limit of its own a rate may still be large compared to the other limits.
     const auto within = [](double rate, double limit) {
       return std::isfinite(limit) ? std::abs(rate) <= kSmall * limit : rate == 0;
     };
@@ -141,7 +142,7 @@ void PathPlanner::Merge(std::size_t k, std::size_t e) noexcept {
   }
 }
 
-// The largest R that is within all limits where it is the same everywhere; 0: the rates are not finite.
+// Returns the largest constant R within all limits; 0 if the rates are not finite.
 double PathPlanner::UniformSquare() noexcept {
   double velocity = 0, acceleration = 0, jerk = 0;
   for (std::size_t k = 0; k < n_; ++k) {
@@ -163,7 +164,7 @@ double PathPlanner::UniformSquare() noexcept {
 PathPlanner::Shape PathPlanner::ShapeOf(std::size_t k) const noexcept {
   const std::span<const double> lengths = request_->lengths;
   Shape shape;
-  // At the knot between the intervals i - 1 and i, whose ordinates are `at` and the next of the three.
+  // At the knot between the intervals i - 1 and i; their ordinates are `at` and `at + 1` of the three.
   const auto knot = [&](std::size_t i, std::size_t at, Linear& square, Linear& slope) {
     const double sum = 1 / (lengths[i - 1] + lengths[i]);
     const double before = lengths[i] * sum, after = lengths[i - 1] * sum;
@@ -174,7 +175,7 @@ PathPlanner::Shape PathPlanner::ShapeOf(std::size_t k) const noexcept {
     slope.of[at] = -sum;
     slope.of[at + 1] = sum;
   };
-  // At an end of all: as given, or R is constant in the interval.
+  // At an end of the plan: as given, or R is constant in the interval.
   const auto end = [&](const std::optional<ReferencePace>& pace, Linear& square, Linear& slope) {
     if (pace) {
       square.value = pace->square;
@@ -229,7 +230,7 @@ void PathPlanner::MakeRows() noexcept {
       std::uint64_t near = near_[k];
       if (e == 1 && k + 1 < n_) near |= near_[k + 1];
       if (e == 0 && k > 0) near |= near_[k - 1];
-      // What holds at a knot is asked for once; a given pace is as it is.
+      // Constraints at a knot are added once; a given pace is not constrained.
       const bool free_knot = e == 1 ? k + 1 < n_ || !request_->end : k == 0 && !request_->begin;
       double cap = std::numeric_limits<double>::infinity();
       for (std::size_t q = 0; q < count_; ++q) {
@@ -270,7 +271,7 @@ void PathPlanner::MakeRows() noexcept {
   }
 }
 
-// LDLᵀ of the five-diagonal matrix between both ends; false: it is not positive definite.
+// Solves the pentadiagonal system between both ends by LDLᵀ. Returns false if the matrix is not positive definite.
 bool PathPlanner::SolveLinear() noexcept {
   const std::size_t first = 1, last = n_ - 2;
   for (std::size_t i = first; i <= last; ++i) {
@@ -298,20 +299,20 @@ bool PathPlanner::SolveLinear() noexcept {
   return true;
 }
 
-// One primal-dual step. False, with the ordinates as they were: rounding has spoilt it.
+// One primal-dual step. Returns false, with the ordinates unchanged, if rounding has spoilt it.
 bool PathPlanner::Step(double centring, double start_slack, bool first) noexcept {
   MakeRows();
   const auto rows = std::span(rows_).first(row_count_);
   for (auto* vector : {&diagonal_, &next_, &second_next_, &right_}) {
     std::fill_n(vector->begin(), static_cast<std::ptrdiff_t>(n_), 0.0);
   }
-  const auto of_row = [&](const Row& row, auto&& use) {  // its ordinates that there are
+  const auto of_row = [&](const Row& row, auto&& use) {  // those of its ordinates that exist
     for (std::size_t i = 0; i < 3; ++i) {
       const std::ptrdiff_t at = row.first + static_cast<std::ptrdiff_t>(i);
       if (at >= 0 && at < static_cast<std::ptrdiff_t>(n_)) use(static_cast<std::size_t>(at), i);
     }
   };
-  // The time: h / √R at each knot, h half of both neighbours.
+  // The duration: the sum of h / √R over the knots, h half the length of both neighbours.
   const std::span<const double> lengths = request_->lengths;
   double time = 0;
   for (std::size_t i = 1; i < n_; ++i) {
@@ -411,7 +412,7 @@ bool PathPlanner::Step(double centring, double start_slack, bool first) noexcept
   return true;
 }
 
-// Towards the least time from where the ordinates are, as far as steps lead. False: they diverge.
+// Reduces the duration from the present ordinates by at most `most` steps. Returns false if they diverge.
 bool PathPlanner::Solve(double start_slack, int most) noexcept {
   const double precision = request_->begin ? kPrecisionFromMotion : kPrecision;
   double centring = 0.2;
@@ -426,8 +427,8 @@ bool PathPlanner::Solve(double start_slack, int most) noexcept {
   return true;
 }
 
-// Returns the largest shares of the limits that an interval uses, and marks the coordinates that are near one; infinite
-// where R is not above 0 or something is not finite.
+// Returns the largest shares of the limits that an interval uses, and marks the coordinates that are near a limit;
+// infinite if R is not above 0 or a value is not finite.
 PathPlanner::Shares PathPlanner::UseOf(std::size_t k) noexcept {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   const Shape shape = ShapeOf(k);
@@ -469,8 +470,8 @@ PathPlanner::Shares PathPlanner::UseOf(std::size_t k) noexcept {
         double bent = kBetween * std::abs(value(i) - 2 * value(i - 1) + value(i - 2));
         double high = std::max({value(i), value(i - 1), value(i - 2)});
         double low = std::min({value(i), value(i - 1), value(i - 2)});
-        // What lies between samples counts where there may be an extreme: not where they rise or fall steadily. At an
-        // end they do so if the derivative there, which is the next order, has the same sign.
+        // Values between samples count where there may be an extreme, not where they rise or fall steadily. At an end
+        // they do so if the derivative there, which is the next order, has the same sign.
         const bool steady = (value(i) - value(i - 1)) * (value(i - 1) - value(i - 2)) > 0;
         if (steady && (i == 2 || i == kSamples)) {
           const int end = i == 2 ? 0 : i;
@@ -494,10 +495,11 @@ PathPlanner::Shares PathPlanner::UseOf(std::size_t k) noexcept {
       }
     }
   }
-  // Where it cruises the velocity is proportional to sqrt(R), and R a parabola with its ordinate as control point.
+  // Where the reference cruises the velocity is proportional to sqrt(R), and R a parabola with its ordinate as control
+  // point.
   if (cruises_[k] != 0) {
     const double after = shape.square[1].value, control = b + a * request_->lengths[k];
-    const double bent = 2 * control - b - after;  // may be all rounding
+    const double bent = 2 * control - b - after;  // may be pure rounding
     double square = std::max(b, after);
     if (control > square) {
       square = bent > 0 ? std::clamp((control * control - b * after) / bent, square, control) : control;
@@ -507,23 +509,25 @@ PathPlanner::Shares PathPlanner::UseOf(std::size_t k) noexcept {
   return use;
 }
 
-// From the last UseOf, of this interval: what is near a limit has rows. No row is lost but those of what was unknown.
+// Updates the mask of this interval after UseOf: coordinates near a limit have rows. Rows are only removed once, when
+// the first use is known.
 void PathPlanner::Mark(std::size_t k) noexcept {
   near_[k] = known_ ? near_[k] | seen_ : seen_;
 }
 
-// True: all are within. Else the intervals where they are not are tightened, and their neighbours.
+// Returns true if all values are within the limits. Else tightens the intervals where they are not, and their
+// neighbours.
 bool PathPlanner::Verify(int round) noexcept {
   most_use_ = 0;
   tightened_ = false;
   for (std::size_t k = 0; k < n_; ++k) {
     use_[k] = UseOf(k);
     const std::uint64_t had_no_rows = (apart_[2 * k] | apart_[2 * k + 1]) & ~near_[k] & ~std::uint64_t{1};
-    // A given pace may already use all of a limit.
+    // A given pace may use all of a limit.
     const double rounding = k == 0 && request_->begin ? kBeginRounding : 0;
     for (const double use : use_[k]) most_use_ = std::max(most_use_, use - rounding);
     Mark(k);
-    // What had no rows gets them, before any is tightened.
+    // Coordinates without rows get rows before any interval is tightened.
     if ((over_ & had_no_rows) != 0) use_[k].fill(1);
   }
   known_ = true;
@@ -538,7 +542,7 @@ bool PathPlanner::Verify(int round) noexcept {
       for (const std::size_t near : {k > 0 ? k - 1 : k, k, k + 1 < n_ ? k + 1 : k}) {
         use = std::max(use, apart ? use_[near][order] : std::ranges::max(use_[near]));
       }
-      // Found again, it lies between the knots, where rows constrain it less.
+      // Repeated excess lies between the knots, where rows constrain it less.
       if (round >= kStubborn) use *= use;
       if (round >= 2 * kStubborn) use *= use;
       if (!(use > 1)) continue;
@@ -549,7 +553,7 @@ bool PathPlanner::Verify(int round) noexcept {
   return false;
 }
 
-// Returns the duration of the plan that the ordinates are [s].
+// Returns the duration [s] of the plan given by the ordinates.
 double PathPlanner::TimeOf() const noexcept {
   double time = 0;
   for (std::size_t k = 0; k < n_; ++k) {
@@ -572,7 +576,7 @@ void PathPlanner::Publish(PathPlan& out) const noexcept {
 }
 
 // Fixes the ordinates of runs of cruising intervals at the velocity limit, with `space` intervals free at both ends of
-// a run for the ramps. Returns whether there is any such run.
+// a run for the ramps. Returns true if there is any such run.
 bool PathPlanner::Hold(std::size_t space) noexcept {
   const auto goes_on = [](const std::optional<ReferencePace>& pace) {
     return pace && std::abs(pace->square - 1) <= kSamePace && std::abs(pace->slope) <= kSamePace;
@@ -606,8 +610,8 @@ bool PathPlanner::Hold(std::size_t space) noexcept {
   return any;
 }
 
-// Rows use kPlanShare of the velocity limit, too. In a feasible plan this fixes what cruises near the limit at the
-// limit and plans the rest again; `out` changes if that is faster.
+// Rows use kPlanShare of the velocity limit, too. In a feasible plan this fixes intervals that cruise near the limit at
+// the limit and plans the rest again; `out` changes if that is faster.
 void PathPlanner::HoldSpeed(PathPlan& out) noexcept {
   for (std::size_t k = 0; k < n_; ++k) {
     const Shape shape = ShapeOf(k);
@@ -674,7 +678,7 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
   if (n_ > most_intervals_ || count_ > most_coordinates_ || out.knots_.size() < n_ + 1)
     return PathPlanStatus::kTooLarge;
   if (n_ < 4 || count_ == 0 || request.motion.rates == nullptr) return PathPlanStatus::kInvalid;
-  at_.resize(count_);  // no larger than it was made
+  at_.resize(count_);  // never larger than in the constructor
   if (!Read()) return PathPlanStatus::kInvalid;
   const double uniform = UniformSquare();
   if (!(uniform > 0)) return PathPlanStatus::kInvalid;
@@ -699,8 +703,8 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
     }
   }
   if (request.begin || request.end) return PathPlanStatus::kNoPlan;
-  // A lower rate brings everything within that is only a little outside: shares of limits fall with it, or its square
-  // or cube.
+  // A lower rate brings a plan within the limits that exceeds them only slightly: shares of limits fall with the rate,
+  // its square or its cube.
   if (most_use_ < kNearly) {
     const double lower = (1 - kLowerRounding) / (most_use_ * most_use_);
     for (std::size_t k = 0; k < n_; ++k) ordinates_[k] *= lower;
@@ -709,7 +713,7 @@ PathPlanStatus PathPlanner::Plan(const PathPlanRequest& request, PathPlan& out) 
       return PathPlanStatus::kPlanned;
     }
   }
-  // A rate low enough, the same everywhere.
+  // A constant rate that is low enough.
   double square = uniform;
   for (int i = 0; i < kVerifyRounds; ++i) {
     std::fill_n(ordinates_.begin(), n_, square);

@@ -10,16 +10,16 @@ namespace takt::trajectory {
 namespace {
 
 constexpr int kRounds = 4;
-// What is too much is gone again at once so often.
+// How often a stretch that was weakened is run again at once.
 constexpr int kTries = 6;
-// Of T, from one place to go back to to the next.
+// Distance between saved states, as a multiple of T.
 constexpr int kApart = 1;
-// Taken back a little more than it seems, so that the next round need not do it again.
+// Reduced a little more than necessary, so that the next round need not do it again.
 constexpr double kMore = 0.002;
-constexpr double kLeastShare = 0.5;  // of one round
-// So much of a jerk may be due to bends alone before the speed has to fall.
+constexpr double kLeastShare = 0.5;  // least share applied by one round
+// Share of a jerk limit that bends alone may use before the speed has to fall.
 constexpr double kBendShare = 0.9;
-// Of T, to be gone before a longer path makes a difference.
+// Multiple of T for which the motion runs ahead before a longer path makes a difference.
 constexpr double kBefore = 2;
 
 }  // namespace
@@ -81,7 +81,7 @@ bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, std
         EndTrouble(window, now, period_s);
       } else if (window[here_.pace.node].stop && here_.pace.node + 2 < window.known()) {
         BeginAt(window, here_.pace.node + 1, period_s, here_.pace);  // behind a stop the next motion begins
-        // Accelerations in the cycle before: 0, or those of the carriers.
+        // Accelerations in the previous cycle: 0, or those of the carriers.
         const double before_s = std::max(0.0, AheadOf(cycle, period_s) - period_s);
         PathCoordinateValues velocities;
         const bool probed = probe.look && probe.look(probe.owner, here_.pace.now, before_s, here_.positions, velocities,
@@ -118,7 +118,7 @@ bool PathRehearsal::Run(PathWindow& window, const PathPace& now, int cycles, std
   return through_;
 }
 
-// What this cycle asks of the coordinates.
+// Checks what this cycle demands of the coordinates.
 void PathRehearsal::Look(const PathWindow& window, const KinematicState& before, double ahead_s, double period_s,
                          const PathProbe& probe) noexcept {
   const CoordinateLimits& limits = window.limits();
@@ -132,7 +132,8 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
   PathShares shares;
   PathCoordinateValues velocities, accelerations;
   KinematicState place = mean;
-  if (here_.pace.raw_stands && Stands(here_.pace)) {  // at a stop: on what leads there, not on what begins there
+  // At a stop: on the path that leads there, not on the one that begins there
+  if (here_.pace.raw_stands && Stands(here_.pace)) {
     place.position = std::min(place.position, std::nextafter(window[here_.pace.node].at.s, -kFullSpeed));
   }
   const bool probed = probe.look && probe.look(probe.owner, place, ahead_s, here_.positions, velocities, accelerations);
@@ -140,7 +141,7 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
     const PathSlopes &a = node.at.slopes, &b = next.at.slopes;
     const double bend = b.second[k] - a.second[k];
     const double second = a.second[k] + part * bend;
-    // The second slope is a line between the nodes; what is left between their first ones is rounding.
+    // The second slope is linear between the nodes; the remaining gap between their first slopes is rounding.
     const double gap = b.first[k] - a.first[k] - length * (a.second[k] + 0.5 * bend);
     const double first = a.first[k] + x * (a.second[k] + 0.5 * part * bend) + part * gap;
     const double by_way = first * mean.acceleration + second * mean.velocity * mean.velocity;
@@ -160,7 +161,7 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
       shares.acceleration = std::min(shares.acceleration, 1 / over);
     }
     if (!(total > most)) continue;
-    // What accelerations along the way do to it, and what remains if there were none.
+    // The share due to accelerations along the path, and the rest, which remains without them.
     const double turning = std::abs(first * jerk + 3 * second * mean.velocity * mean.acceleration);
     const double bends = std::max(0.0, total - turning);
     const double room = std::max(most - bends, (1 - kBendShare) * most);
@@ -185,7 +186,7 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
   take(shares_.strength, shares.strength);
 }
 
-// To the last place from which what is changed now makes no difference.
+// Returns to the last saved state that the present change does not affect.
 void PathRehearsal::GoBack(const PathWindow& window) noexcept {
   again_ = false;
   for (std::size_t i = 0; i < saved_.size(); ++i) {
@@ -200,7 +201,7 @@ void PathRehearsal::GoBack(const PathWindow& window) noexcept {
 void PathRehearsal::EndTrouble(PathWindow& window, const PathPace& now, double period_s) noexcept {
   trouble_ = false;
   window.Weaken(from_, to_, now.node + 1, shares_);
-  if (!GoesOn(window, now, period_s)) return window.TakeBack();  // it is too near
+  if (!GoesOn(window, now, period_s)) return window.TakeBack();  // too near: the motion could no longer keep it
   weakened_ = true;
   if (from_ > tried_to_) tries_ = 0;
   tried_to_ = std::max(tried_to_, to_);

@@ -1,8 +1,8 @@
-// Going along a window ahead of the motion, as fast as may be, to see what that asks of the coordinates: where it is
-// more than their limits the window is weakened, and the way gone again.
+// Rehearsal: runs along a window ahead of the motion, at full speed, and checks what that demands of the coordinates.
+// Where it exceeds their limits the window is weakened and that stretch is run again.
 //
-// A few of these rounds bring nearly everything within the limits. A motion that may not go as fast (override, a stop
-// on the path) is not looked at, and is more careful in bends by itself (AccelerationCap::gentle).
+// A few of these rounds bring nearly everything within the limits. Motions that may not go as fast (override, a stop on
+// the path) are not rehearsed; they are more careful in bends by themselves (AccelerationCap::gentle).
 #pragma once
 
 #include <array>
@@ -13,10 +13,11 @@ namespace takt::trajectory {
 
 using PathCoordinateValues = std::array<double, kPathCoordinates>;
 
-// What a motion asks of coordinates that depend on more than the way: on what moves by itself.
+// Demands on coordinates that depend on more than the arc length: on bodies that move by themselves.
 struct PathProbe {
-  // At a place, `ahead_s` from now; `positions` are those of the place looked at before (NaN: none). False: there the
-  // slopes of the nodes say all.
+  // Evaluates the point `along` of the path `ahead_s` [s] from now. `positions`: in, those of the previous point
+  // evaluated (NaN: none); out, those of this one. Returns false if the slopes of the nodes describe the motion
+  // completely there.
   bool (*look)(const void* owner, const KinematicState& along, double ahead_s, PathCoordinateValues& positions,
                PathCoordinateValues& velocities, PathCoordinateValues& accelerations) noexcept = nullptr;
   const void* owner = nullptr;
@@ -24,23 +25,23 @@ struct PathProbe {
 
 class PathRehearsal {
  public:
-  // The motion has begun, or what lies before it is another path.
+  // Restarts: the motion has begun, or the path ahead of it has changed.
   void Clear() noexcept;
-  // The window has become longer, and is swept.
+  // Continues after the window has become longer. Requires: the window is swept.
   void GoOn(const PathWindow& window) noexcept;
-  // So many cycles at most, for a motion that has come to `now` in this cycle of the engine. True: there is nothing
-  // left to be done.
+  // Rehearses at most `cycles` cycles for a motion whose state in this cycle of the engine is `now`. Returns true if
+  // nothing is left to be done.
   bool Run(PathWindow& window, const PathPace& now, int cycles, std::uint64_t cycle, double period_s,
            const PathProbe& probe = {}) noexcept;
-  // The cycle at the end of which the motion stands at the end of what is known, if nothing slows it down; 0: not known
-  // yet.
+  // Returns the engine cycle at the end of which the motion is at rest at the end of the known path, if nothing slows
+  // it down; 0: not known yet.
   std::uint64_t end_cycle() const noexcept { return end_cycle_; }
 
  private:
-  // The motion as it is rehearsed, and what it asked of the coordinates last.
+  // State of the rehearsed motion and its last demands on the coordinates.
   struct Place {
     PathPace pace;
-    std::uint64_t cycle = 0;  // of the engine, in which it will be there
+    std::uint64_t cycle = 0;  // of the engine, in which the motion will be there
     PathCoordinateValues positions{};
     PathCoordinateValues accelerations{};
   };
@@ -54,22 +55,22 @@ class PathRehearsal {
   void EndTrouble(PathWindow& window, const PathPace& now, double period_s) noexcept;
 
   Place here_;
-  Place mark_;                  // where a longer path would begin to make a difference
-  std::array<Place, 8> saved_;  // to go again from there: a ring
-  std::size_t save_to_ = 0;     // the oldest of them
-  int until_save_ = 0;          // cycles
-  bool again_ = false;          // what was weakened just now
+  Place mark_;                  // the last state that a longer path does not change
+  std::array<Place, 8> saved_;  // states to return to: a ring buffer
+  std::size_t save_to_ = 0;     // index of the oldest of them
+  int until_save_ = 0;          // cycles until the next one is saved
+  bool again_ = false;          // the stretch that was just weakened is to be run again
   bool started_ = false, marked_ = false, through_ = true;
   bool weakened_ = false;  // in this round
   int rounds_ = 0;
-  bool measuring_ = false;  // nothing is weakened any more: when it ends
+  bool measuring_ = false;  // nothing is weakened any more: the end time is measured
   std::uint64_t end_cycle_ = 0;
-  double free_until_ = 0;  // mm along the path
-  // What was too much, from where to where.
+  double free_until_ = 0;  // [mm] along the path: up to there a longer path changes nothing
+  // A stretch in which limits were exceeded: from_ to to_ [mm].
   bool trouble_ = false;
   double from_ = 0, to_ = 0;
-  double tried_to_ = 0;  // up to here it was gone again ...
-  int tries_ = 0;        // ... so often
+  double tried_to_ = 0;  // largest to_ that was run again ...
+  int tries_ = 0;        // ... and how often
   PathShares shares_;
 };
 

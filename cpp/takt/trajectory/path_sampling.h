@@ -1,5 +1,5 @@
-// How long accelerations along a path take to build up, and where it gets its nodes: so near to one another that
-// everything between two of them may be taken for linear, and no nearer than a motion within the limits can tell.
+// The time in which accelerations along a path build up, and the spacing of its nodes: so close that everything between
+// two of them can be taken as linear, and no closer than a motion within the limits can resolve.
 #pragma once
 
 #include <algorithm>
@@ -12,26 +12,27 @@
 namespace takt::trajectory {
 
 namespace sampling {
-// Of the time in which accelerations build up, to be passed between two nodes.
+// Travel time between two nodes, as a share of the time in which accelerations build up.
 inline constexpr double kTimeShare = 0.35;
-// Cycles between two nodes at least, so far as the path allows.
+// Least travel time between two nodes in cycles, as far as the path allows.
 inline constexpr double kCycles = 2;
-// Nodes from one slow place to the next, no more than about so many for that alone.
+// About the largest number of nodes between two slow points that StepBetweenSlowPlaces alone asks for.
 inline constexpr double kMostSteps = 32;
-// How far an acceleration between two nodes may be from the line, as a share of its limit.
+// Largest deviation of an acceleration between two nodes from the line, as a share of its limit.
 inline constexpr double kBend = 0.02;
-// How far the mean of the acceleration between two nodes may be from that of the parabola through both and their
-// middle.
+// Largest deviation of the mean acceleration between two nodes from that of the parabola through both and their
+// midpoint, as a share of its limit.
 inline constexpr double kHidden = 0.002;
-// The same for the rate of this change, as a share of the limit of jerk.
+// The same for the rate of this change, as a share of the jerk limit.
 inline constexpr double kHiddenRate = 0.02;
 // A step is not halved below this: differences of slopes over less are rounding.
-inline constexpr double kShortest = 1e-8;  // mm
+inline constexpr double kShortest = 1e-8;  // [mm]
 inline constexpr int kHalvings = 12;
 inline constexpr int kHalvingsForHidden = 5;
 }  // namespace sampling
 
-// What the coordinates leave at a place, but for bends, of an acceleration along the way.
+// Returns an acceleration along the path, reduced to what the coordinates' acceleration limits allow without the effect
+// of bends.
 inline double AccelerationAt(const PathPoint& point, const CoordinateLimits& limits, double acceleration) noexcept {
   for (std::size_t k = 0; k < limits.count; ++k) {
     const double slope = std::abs(point.slopes.first[k]);
@@ -41,7 +42,7 @@ inline double AccelerationAt(const PathPoint& point, const CoordinateLimits& lim
   return acceleration;
 }
 
-// Finds T for a motion from one stop to the next, from samples of what is known of its path.
+// Finds the build-up time T for a motion from one stop to the next, from samples of the known part of its path.
 class BuildUp {
  public:
   void Add(const PathPoint& point, const CoordinateLimits& limits) noexcept {
@@ -62,16 +63,17 @@ class BuildUp {
     most_time_ += std::max(acceleration, deceleration) / jerk;
   }
 
-  // What the motion may do, in the mean.
+  // Returns the mean limits of the motion.
   AlongPath Mean() const noexcept {
     const double n = std::max(count_, 1);
     return {sums_.velocity / n, sums_.acceleration / n, sums_.deceleration / n, sums_.jerk / n};
   }
 
-  // Whole cycles. Longer than it takes to build up what may be is of no use, nor, on a short way, longer than it takes
-  // to build up what can be used: a quarter of the least time from rest to rest with that jerk. Between what one of
-  // acceleration and deceleration needs and what the other does, the time of the whole motion decides; it is not known
-  // of an infinite length.
+  // Returns T [s], a multiple of the period. T longer than building up the admissible acceleration takes is of no use,
+  // nor, over a short distance, T longer than building up the usable acceleration takes: a quarter of the least time
+  // from rest to rest with that jerk. Between the times that the weaker and the stronger one of acceleration and
+  // deceleration need, the T with the shortest motion is chosen; for an infinite `length` (not known) it is the longer
+  // time.
   double For(double length, double period_s, double most_cycles) const noexcept {
     const double n = std::max(count_, 1);
     const AlongPath mean = Mean();
@@ -89,7 +91,8 @@ class BuildUp {
  private:
   static constexpr int kTried = 8;
 
-  // From rest to rest with accelerations that build up in T, and are taken back before it brakes.
+  // Returns the time [s] from rest to rest with accelerations that build up in T and are removed before the motion
+  // brakes.
   static double TimeWith(double time, double length, const AlongPath& mean) noexcept {
     const double built_up = mean.jerk * time;
     const double ramps = 1 / std::min(mean.acceleration, built_up) + 1 / std::min(mean.deceleration, built_up);
@@ -101,19 +104,19 @@ class BuildUp {
   }
 
   int count_ = 0;
-  double least_time_ = 0;  // T for the weaker one of acceleration and deceleration
-  double most_time_ = 0;   // and for the stronger one
+  double least_time_ = 0;  // sum of T for the weaker one of acceleration and deceleration
+  double most_time_ = 0;   // sum of T for the stronger one
   AlongPath sums_;
 };
 
-// How far from a node the next one may be on a stretch at both ends of which the motion may be slow. Between two nodes
-// it can neither speed up and brake again nor do better than the worse one allows, so they are the nearer to one
-// another the less a motion from rest, or to rest, has speeded up.
+// Returns the largest distance [mm] from a node to the next one on a stretch at both ends of which the motion may be
+// slow. Between two nodes it can neither speed up and brake again nor exceed what the worse one allows, so nodes are
+// the closer the less a motion from rest, or to rest, has sped up.
 inline double StepBetweenSlowPlaces(const PathPoint& point, double begin, double end, const CoordinateLimits& limits,
                                     double build_up_s, double period_s) noexcept {
   namespace c = sampling;
   const double time = std::max(c::kTimeShare * build_up_s, c::kCycles * period_s);
-  // The square root of the way from rest, 0.5 a t², grows so much from node to node.
+  // The square root of the distance from rest, 0.5 a t², grows by this much from node to node.
   const auto growth = [&](double acceleration) {
     const double has = AccelerationAt(point, limits, acceleration);
     return std::max(std::sqrt(0.5 * has) * time, std::sqrt(2 * (end - begin)) / c::kMostSteps);
@@ -125,12 +128,13 @@ inline double StepBetweenSlowPlaces(const PathPoint& point, double begin, double
   return std::max(least * least, std::min(out, in));
 }
 
-// Where bends between the places that are looked at are searched for. Ignored: the second slopes are not those of the
+// How bends between the sampled points are searched for. Ignored: the second slopes are not the derivatives of the
 // first.
 enum class HiddenBends : std::uint8_t { kIgnored, kInAcceleration, kInJerk };
 
-// The node behind `before`, at `end` at most. `slopes_at(s, point)` fills slopes and what is left of the limits; it
-// answers false where there is no path, then this does, too. The limits along the way are those of `before`.
+// Computes the node after `before`, at `end` at most. `slopes_at(s, point)` writes the slopes and the remaining shares
+// of the limits; it returns false where there is no path, and so does this function. The limits along the path are
+// copied from `before`.
 template <typename SlopesAt>
 bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limits, double build_up_s, double period_s,
                HiddenBends bends, const SlopesAt& slopes_at, PathPoint& next) {
@@ -146,7 +150,7 @@ bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limi
   for (int i = 0;; ++i) {
     next.s = step < left ? before.s + step : end;
     middle.s = before.s + 0.5 * step;
-    // In this order: the caller may count on it.
+    // In this order: the caller may rely on it.
     if (!slopes_at(next.s, next) || !slopes_at(middle.s, middle)) return false;
     const double there = square_at(next);
     bool linear = step <= 2 * std::sqrt(there) * time;
@@ -156,14 +160,14 @@ bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limi
       const double line = 0.5 * (before.slopes.second[k] + next.slopes.second[k]);
       linear = std::abs(middle.slopes.second[k] - line) * square <= c::kBend * limits.of[k].acceleration;
       if (!linear || bends == HiddenBends::kIgnored || i >= c::kHalvingsForHidden) continue;
-      // A bend that all three places miss changes the first slopes.
+      // A bend that all three points miss changes the first slopes.
       const double before_it = before.slopes.second[k], in_it = middle.slopes.second[k], behind = next.slopes.second[k];
       const double whole =
           (before_it + 4 * in_it + behind) / 6 - (next.slopes.first[k] - before.slopes.first[k]) / step;
       const double half =
           (5 * before_it + 8 * in_it - behind) / 24 - (middle.slopes.first[k] - before.slopes.first[k]) / step;
-      // A cubic that is 0 at all three places is 16 times as steep at the ends as its mean over a half is far from 0.
-      // What is passed within a cycle is no finer than the set points.
+      // A cubic that is 0 at all three points is 16 times as steep at the ends as its mean over a half is far from 0.
+      // Details passed within one cycle are finer than the set points resolve.
       double most = c::kHidden * limits.of[k].acceleration;
       const double passing_s = step / std::sqrt(square);
       if (bends == HiddenBends::kInJerk && passing_s > period_s)

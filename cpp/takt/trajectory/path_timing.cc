@@ -10,58 +10,59 @@ namespace takt::trajectory {
 namespace {
 
 constexpr double kLead_s = 0.012;         // from the order of a plan to its start, at least, with a plan in force ...
-constexpr double kFirstLead_s = 0.004;    // ... and without ...
-constexpr std::uint64_t kOfLastPlan = 2;  // ... and so many times as long as the last one took
+constexpr double kFirstLead_s = 0.004;    // ... without one ...
+constexpr std::uint64_t kOfLastPlan = 2;  // ... and as a multiple of the time that the last plan took
 constexpr std::uint64_t kMostLead = 400;  // cycles
-constexpr std::uint64_t kOrderAgain = 8;  // cycles after one that failed
-constexpr double kRenew_s = 0.4;          // before a law ends, if the path does not ...
-constexpr double kRenewShare = 0.75;      // ... and this share of its duration
-constexpr double kBrakesSoon_s = 0.1;     // ... and where it brakes to its end within that time
-constexpr double kShort_s = 0.15;         // laws as short as this are those from rest: the motion still accelerates
-constexpr double kSlow_s = 0.04;          // from the order to the start: plans take so long that none is refined
-constexpr double kOfTime = 12;            // ... or so many times the time that plans take
-constexpr double kBehind_s = 0.1;         // before the end of a law the motion behind a stop there is planned
-constexpr double kAgainShare = 0.1;       // of the time before it ends: the wait after a plan that failed, at least
-constexpr int kRefinements = 3;           // of a plan, as long as ...
-constexpr double kRefined = 0.99;     // ... they shorten it to this share; no other is taken where a plan holds speeds
-constexpr double kUrgent_s = 0.15;    // before the law in force ends: a slower plan is accepted
-constexpr double kWithin = 1 + 1e-7;  // of a limit
-constexpr int kSamples = 12;          // of a piece of a profile that is verified, besides the nodes it passes
-constexpr double kShares[] = {1, 0.8, 0.6, 0.45, 0.3, 0.2, 0.1};  // of limits, tried for bridges
+constexpr std::uint64_t kOrderAgain = 8;  // cycles after a failed order
+constexpr double kRenew_s = 0.4;          // before a law ends: time from which it is renewed if the path continues ...
+constexpr double kRenewShare = 0.75;      // ... at most this share of its duration
+constexpr double kBrakesSoon_s = 0.1;     // ... or it brakes to its end within this time
+constexpr double kShort_s = 0.15;         // laws as short as this start from rest: the motion still accelerates
+constexpr double kSlow_s = 0.04;          // lead from which plans take too long to be refined
+constexpr double kOfTime = 12;            // as a multiple of the time that plans take, instead
+constexpr double kBehind_s = 0.1;         // before the end of a law: the motion behind a stop there is planned
+constexpr double kAgainShare = 0.1;       // of the time left of a law: least wait after a failed plan
+constexpr int kRefinements = 3;           // refinements of a plan, as long as ...
+constexpr double kRefined = 0.99;     // ... each shortens it to this share; required at once where a plan holds speeds
+constexpr double kUrgent_s = 0.15;    // before the law in force ends: slower plans are accepted
+constexpr double kWithin = 1 + 1e-7;  // factor on a limit
+constexpr int kSamples = 12;          // samples of a piece of a profile that is verified, besides the nodes it passes
+constexpr double kShares[] = {1, 0.8, 0.6, 0.45, 0.3, 0.2, 0.1};  // shares of limits, tried for bridges
 constexpr double kMuchFaster = 4;  // times the slowest speed of a bridge: it ends where more is allowed
 constexpr double kCrawls = 4;      // times the duration of the reference: bridges, with stops between them, are faster
 constexpr double kBrakeShares[] = {1,   0.8,  0.6,   0.45,   0.3,  0.2,
                                    0.1, 0.05, 0.025, 0.0125, 0.006};  // of limits, tried for braking
 constexpr double kBrakesWithin[] = {kWithin, 1.008, 1.018};  // of the limits of the window, 0.98 of the members'
-constexpr double kOfBrakes = 2;                              // of deceleration, times that of jerk
-constexpr double kLastResort = 0.1;       // share of the limits that may be tried within more than kWithin
+constexpr double kOfBrakes = 2;                              // ratio of the deceleration share to the jerk share
+constexpr double kLastResort = 0.1;       // largest share of the limits that may be tried within more than kWithin
 constexpr std::uint64_t kMoreAfter = 10;  // cycles in which nothing was found within less
-constexpr std::uint64_t kBrakeAgain = 4;  // cycles after which a harder one is tried
-// References of a plan, tried in turn.
+constexpr std::uint64_t kBrakeAgain = 4;  // cycles after which a harder braking is tried
+// References for a plan, tried in turn.
 struct Reference {
-  double share;    // of limits
-  bool follow;     // the law in force at first
-  double slowest;  // time that the plan may take, of that of the law in force until it brakes to its end
-  bool urgent;     // only if that is near
+  double share;    // share of limits
+  bool follow;     // begins with the law in force
+  double slowest;  // accepted time of the plan, as a multiple of what the law in force takes until it brakes to its end
+  bool urgent;     // tried only if the end of that law is near
 };
 constexpr double kAnyTime = std::numeric_limits<double>::infinity();
 constexpr Reference kReferences[] = {
     {1, false, 1.03, false}, {1, true, 1.15, false}, {0.8, false, kAnyTime, true}, {0.5, false, kAnyTime, true}};
-constexpr double kRoomForPlans = 0.97;           // of limits: a plan can start from such a motion
+constexpr double kRoomForPlans = 0.97;           // share of limits: a plan can start from such a motion
 constexpr double kSamePosition = 1e-9;           // mm
-constexpr double kCoordinatesShare = 0.979;      // of the coordinates' limits; plans use 0.98
+constexpr double kCoordinatesShare = 0.979;      // share of the coordinates' limits; plans use 0.98
 constexpr int kTails = 8;                        // starts tried for a tail
-constexpr double kTailShares[] = {1, 0.8, 0.5};  // of limits, tried for it
+constexpr double kTailShares[] = {1, 0.8, 0.5};  // shares of limits, tried for tails
 constexpr double kStraight = 1e-12;              // second slopes that are rounding
 constexpr double kUnlimitedAlong = std::numeric_limits<double>::max();
-constexpr double kGentle = 0.3;  // of the limits: a stop that kBrakeShares finds later may be so gentle
+constexpr double kGentle = 0.3;  // of the limits: a stop found later with kBrakeShares may be this gentle
 
-// What a motion to rest may use of the limits after so many cycles in which none was found.
+// Returns the use of limits accepted for a motion to rest after this many cycles in which none was found.
 double WithinAfter(std::uint64_t cycles) {
   return kBrakesWithin[std::min<std::size_t>(cycles / kMoreAfter, std::size(kBrakesWithin) - 1)];
 }
 
-// At a joint: a step of accelerations, as a share of what jerk makes in a cycle, and the use of jerk there.
+// At a joint, `step` is the step of accelerations as a share of what jerk changes in a cycle, `use` the use of jerk
+// there.
 bool LeavesTooLittle(double step, double use, double within) {
   constexpr double kForStep = (1 - kJerkAtJoint) / kStepAtJoint;
   return step > within * kStepAtJoint || use + kForStep * step > within;
@@ -110,7 +111,7 @@ void PathTiming::DropPlan() noexcept {
   ready_ = false;
 }
 
-// The path behind an arc length changes: a plan that ends there or before stays.
+// The path behind an arc length changes: a plan that ends there or before is kept.
 void PathTiming::KeepPlanTo(double place) noexcept {
   known_to_ = std::min(known_to_, place);
   if (ready_ && next_.EndPlace() > known_to_ + kSamePosition) ready_ = false;
@@ -151,7 +152,7 @@ bool PathTiming::Settles(double place) const noexcept {
   return !braking_ && (current_.planned || final_) && rest_place() >= place - 1e-6;
 }
 
-// Returns whether a motion keeps the limits of all coordinates and never reverses.
+// Returns true if a motion keeps the limits of all coordinates and never reverses.
 bool PathTiming::Holds(const PathWindow& window, std::uint64_t node, const Profile& profile,
                        double within) const noexcept {
   if (profile.VelocityRange().min < -kSamePosition) return false;
@@ -163,7 +164,7 @@ bool PathTiming::Holds(const PathWindow& window, std::uint64_t node, const Profi
     const double length_s = profile.piece_ends_s[k] - begin_s;
     for (int sample = 0; sample <= kSamples; ++sample) {
       const KinematicState at = profile.pieces[k].At(length_s * sample / kSamples);
-      // Nodes between two samples, with their slopes on both sides.
+      // Nodes between two samples, with the slopes on both of their sides.
       while (node + 1 < window.known() && !window[node].stop && window[node + 1].at.s <= at.position + kSamePosition) {
         const double s = window[node + 1].at.s;
         const double length = at.position - before.position;
@@ -188,12 +189,12 @@ bool PathTiming::Holds(const PathWindow& window, std::uint64_t node, const Profi
   return true;
 }
 
-// Takes one motion from the present state to rest: where the path begins to bend, or `slowly` at its end, no faster
-// than its slowest node.
+// Takes one motion from the present state to rest: where the path begins to bend or, with `slowly`, up to where the
+// allowed speed changes much, no faster than the slowest node.
 bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, const PathPace& pace) noexcept {
   const std::uint64_t end = StopBehind(window, pace.node);
   if (!(window[end].at.s > pace.now.position + kSamePosition)) return false;
-  // To the end, or to where bends begin.
+  // To the end, or to the first bend.
   std::uint64_t bend = end, furthest = end;
   const auto steady = [&](std::uint64_t i) {
     const PathSlopes& slopes = window[i].at.slopes;
@@ -205,8 +206,8 @@ bool PathTiming::Bridge(const PathWindow& window, double factor, bool slowly, co
     bend = i - 1;
     break;
   }
-  // A path that bends at once waits for its plan. Without one the speed is that of the slowest place, up to the first
-  // place that allows much more or much less.
+  // On a path that bends at once the motion waits for its plan. If there is no plan it moves at the speed of the
+  // slowest node, up to the first node that allows much more or much less.
   if (slowly) {
     double slowest = std::numeric_limits<double>::infinity(), fastest = 0;
     std::uint64_t alike = pace.node;
@@ -281,7 +282,7 @@ void PathTiming::Advance(const PathWindow& window, double factor, PathPace& pace
   Go(window, pace);
 }
 
-// Takes one jerk-limited motion to rest, the hardest that is found: of those above `least`, a share of the limits.
+// Takes the hardest jerk-limited motion to rest that is found with a share of the limits above `least`.
 bool PathTiming::Brake(const PathWindow& window, const PathBrake& brake, double least, const PathPace& pace) noexcept {
   AlongPath asked = window[pace.node].at.limits;
   if (brake.deceleration > 0) asked.deceleration = brake.deceleration;
@@ -302,9 +303,9 @@ bool PathTiming::Brake(const PathWindow& window, const PathBrake& brake, double 
     if (within > (braking_ ? braked_within_ : WithinAfter(refused_))) break;
     for (const double share : kBrakeShares) {
       if (share <= least) break;
-      if (within > kWithin && share > kLastResort) continue;  // only what hardly changes the motion
+      if (within > kWithin && share > kLastResort) continue;  // only motions that hardly change the present one
       Profile profile{};
-      // What bends leave is less of jerk than of acceleration where both are nearly used up.
+      // Bends leave less jerk than acceleration where both are nearly used up.
       const Limits limits{along.velocity, along.deceleration, std::min(1.0, kOfBrakes * share) * along.deceleration,
                           share * along.jerk};
       if (planner_.Stop(pace.now, limits, profile).failed()) continue;
@@ -331,7 +332,7 @@ void PathTiming::Stop(const PathWindow& window, const PathBrake& brake, PathPace
     if (!braking_ || (brake.full && !full_)) {
       Brake(window, brake, 0, pace);
     } else if (braked_ < 1 && tick_ >= tried_ + kBrakeAgain) {
-      Brake(window, brake, braked_, pace);  // the slower the motion, the more bends leave
+      Brake(window, brake, braked_, pace);  // the slower the motion, the more the bends leave
     }
   } else {
     DropPlan();
@@ -349,11 +350,11 @@ double PathTiming::BrakesTo(const PathWindow& window, const PathPace& pace) cons
   return std::min(window[StopBehind(window, pace.node)].at.s, StopPosition(pace.now, gentle));
 }
 
-// From the order of a plan to its start [ticks].
+// Returns the lead from the order of a plan to its start [ticks].
 std::uint64_t PathTiming::Lead() const noexcept {
   const auto least = static_cast<std::uint64_t>(std::ceil((current_.planned ? kLead_s : kFirstLead_s) / period_s_));
   const std::uint64_t lead = std::clamp(kOfLastPlan * took_, std::max(late_, least), std::max(kMostLead, least));
-  // Rather at half of the way to a stop than there.
+  // Preferably at half of the time to a stop rather than there.
   const std::uint64_t half = rest_cycles() / 2;
   return lead > half && took_ < rest_cycles() && current_.planned ? std::max({half, took_, least}) : lead;
 }
@@ -391,7 +392,7 @@ bool PathTiming::OrderFrom(const PathWindow& window, std::uint64_t node, const K
   return true;
 }
 
-// The motion behind the stop at a node, so that it sets out at once and its duration is known then.
+// Orders the motion behind the stop at a node, so that it starts at once and its duration is known by then.
 void PathTiming::OrderBehind(const PathWindow& window, std::uint64_t stop, double factor) noexcept {
   const std::uint64_t node = stop + 1;
   if (rest_s() > kBehind_s || !window.swept() || node + 1 >= window.known()) return;
@@ -400,7 +401,7 @@ void PathTiming::OrderBehind(const PathWindow& window, std::uint64_t stop, doubl
     wait_until_ = tick_ + kOrderAgain;
     return;
   }
-  from_rest_ = false;  // not from that of the law in force
+  from_rest_ = false;  // not from the rest of the law in force
   maker_->urgent = false;
   maker_->refinements = kRefinements;
   behind_ = true;
@@ -412,12 +413,12 @@ void PathTiming::Ask(const PathWindow& window, double factor, const PathPace& pa
   if (ready_ && behind_ && next_.factor != factor) DropPlan();
   if (ready_) return;
   if (planning_) {
-    if (tick_ > ordered_ + kMostLead) no_plan_ = true;  // no maker runs
+    if (tick_ > ordered_ + kMostLead) no_plan_ = true;  // no thread computes plans
     return;
   }
   const std::uint64_t end = StopBehind(window, pace.node);
   const bool further = window[end].at.s > rest_place() + kSamePosition;
-  // Sooner where plans take long: they are to begin before the law in force brakes to its end.
+  // Earlier if plans take long: they are to begin before the law in force brakes to its end.
   const double renew_s =
       std::max(std::min(kRenew_s, kRenewShare * current_.Duration()), kOfTime * period_s_ * static_cast<double>(took_));
   const auto brakes_soon = [&] {
@@ -449,8 +450,7 @@ std::optional<std::uint64_t> PathTiming::MakePlan() noexcept {
     if (maker_->status == PathPlanStatus::kScaled && crawls) maker_->status = PathPlanStatus::kNoPlan;
     if (found && next_.course.IsSlower(next_.plan, reference.slowest)) maker_->status = PathPlanStatus::kNoPlan;
   }
-  // With the plan as the reference once more: where its speed changes by orders of magnitude it is far from the
-  // optimum.
+  // Refine with the plan as the reference: where its speed changes by orders of magnitude it is far from the optimum.
   for (int i = 0; i < maker_->refinements && maker_->status == PathPlanStatus::kPlanned; ++i) {
     const double before_s = next_.plan.duration();
     const double most_s = maker_->planner.holds() ? kRefined * before_s : before_s;
@@ -470,7 +470,7 @@ void PathTiming::MakeAgain() noexcept {
   maker_->order.store(OrderState::kOrdered, std::memory_order_release);
 }
 
-// Whether the plan leads further than the law in force, or there sooner.
+// Returns true if the plan leads further than the law in force, or ends sooner.
 bool PathTiming::EndsSooner() const noexcept {
   const auto end_s = [&](const Law& law) { return static_cast<double>(law.begin) * period_s_ + law.Duration(); };
   return next_.EndPlace() > current_.EndPlace() + kSamePosition || end_s(next_) < end_s(current_);
@@ -481,7 +481,7 @@ void PathTiming::TakePlan(std::uint64_t number) noexcept {
   MakePlan();
   maker_->order.store(OrderState::kNone, std::memory_order_relaxed);
   planning_ = false;
-  took_ = std::max(tick_ - ordered_, took_ - took_ / 4);  // one that fails may be there at once
+  took_ = std::max(tick_ - ordered_, took_ - took_ / 4);  // a plan that fails may be ready at once
   if (dropped_) return;
   const PathPlanStatus status = maker_->status;
   const bool found = status == PathPlanStatus::kPlanned || status == PathPlanStatus::kScaled;
@@ -497,7 +497,7 @@ void PathTiming::TakePlan(std::uint64_t number) noexcept {
     late_ = std::min(2 * (next_.begin - ordered_), kMostLead);
     return;
   } else {
-    // The law in force may be that of a low speed factor, which lasts for a long time.
+    // The law in force may be one of a low speed factor, which lasts for a long time.
     const double wait_s = kAgainShare * std::min(rest_s(), kRenew_s);
     wait_until_ = tick_ + std::max(kOrderAgain, static_cast<std::uint64_t>(wait_s / period_s_));
     no_plan_ = from_rest_;
@@ -511,7 +511,7 @@ bool PathTiming::StopBefore(const PathWindow& window, double place, const PathPa
     KeepPlanTo(place);
     return true;
   }
-  // When it gets there, to the cycle.
+  // The last cycle before the position.
   std::uint64_t last = tick_;
   const auto ends = static_cast<std::uint64_t>(std::ceil(rest_s() / period_s_)) + tick_;
   std::uint64_t behind = ends;

@@ -9,10 +9,10 @@ namespace takt::trajectory {
 
 namespace {
 
-// Between nodes everything is taken for linear, and the mean of accelerations for the acceleration of the mean: so much
-// of the coordinates' limits is used.
+// Share of the coordinates' limits that is used: between nodes everything is taken as linear, and the mean of
+// accelerations as the acceleration of the mean.
 constexpr double kShare = 0.97;
-// Of the coordinates' jerk, for bends gone at a steady speed.
+// Share of the coordinates' jerk for bends travelled at constant speed.
 constexpr double kDriftShare = 0.8;
 constexpr std::size_t kKept = 64;
 
@@ -74,8 +74,8 @@ void PathWindow::Append(const PathPoint& point, bool stop) noexcept {
   Spread(end_++);
 }
 
-// Slow and weak places hold for all from which, or to which, the mean reaches. Where the velocity allowed changes, also
-// for the first node beyond: on the way to it the motion is no faster than there.
+// Limits of a node hold for all nodes from which, or to which, the mean reaches. Where the velocity limit changes, also
+// for the first node beyond: on the way to it the motion is no faster than the lower limit.
 void PathWindow::Spread(std::uint64_t i) noexcept {
   PathNode& node = Node(i);
   const double half = 0.5 * node.build_up_s;
@@ -97,7 +97,7 @@ void PathWindow::Spread(std::uint64_t i) noexcept {
     before.bounds.strength = strength;
     lowest_ = std::min(lowest_, k - 1);
   }
-  // No place further back than the fastest one reaches is slower and reaches as far.
+  // No node further back than the fastest one reaches is slower and reaches as far.
   for (std::uint64_t k = i; !IsFirst(k) && !Node(k).at.renewed; --k) {
     const PathNode& before = Node(k - 1);
     const double distance = node.at.s - before.at.s;
@@ -128,7 +128,7 @@ void PathWindow::SweepFrom(std::uint64_t behind) noexcept {
 }
 
 void PathWindow::Weaken(double from, double to, std::uint64_t first, const PathShares& shares) noexcept {
-  std::uint64_t behind = known_ - 1;  // the last one is a stop
+  std::uint64_t behind = known_ - 1;  // the last node is a stop
   while (behind > first + 1 && Node(behind - 1).at.s > to) --behind;
   kept_.clear();
   std::uint64_t i = behind;
@@ -159,7 +159,7 @@ void PathWindow::TakeBack() noexcept {
 void PathWindow::Close() noexcept {
   if (known_ == end_) return;
   const std::uint64_t last = end_ - 1;
-  std::uint64_t first = std::max(known_, begin_ + 1) - 1;  // what led to the old end goes on now
+  std::uint64_t first = std::max(known_, begin_ + 1) - 1;  // the path that led to the old end now continues
   if (known_ > begin_ && Node(known_ - 1).stop) first = known_;
   if (!swept()) first = std::min(first, low_);
   low_ = std::max(begin_, std::min(first, lowest_));
@@ -172,7 +172,7 @@ void PathWindow::Close() noexcept {
 
 bool PathWindow::Sweep(std::size_t nodes) noexcept {
   for (; nodes > 0 && next_ > low_; --nodes) Raise(--next_);
-  // Beyond what had to be done: as long as something changes.
+  // Beyond the required nodes: as long as ceilings change.
   for (; nodes > 0 && next_ == low_ && low_ > begin_ && !Node(low_ - 1).stop; --nodes) {
     if (!Raise(low_ - 1)) break;
     next_ = --low_;
@@ -180,7 +180,7 @@ bool PathWindow::Sweep(std::size_t nodes) noexcept {
   return swept();
 }
 
-// True: its ceiling has changed.
+// Updates the ceiling of a node. Returns true if it has changed.
 bool PathWindow::Raise(std::uint64_t i) noexcept {
   PathNode& node = Node(i);
   if (node.stop) {
@@ -200,8 +200,8 @@ bool PathWindow::Raise(std::uint64_t i) noexcept {
   return node.ceiling != before || node.coast != coast_before;
 }
 
-// The largest square of the speed that may be held for the time T from there without getting above a ceiling; and for
-// one cycle more, since an acceleration that ends at a node does so within a cycle.
+// Returns the largest squared speed that may be held for the time T from there without exceeding a ceiling, and for one
+// cycle more, since an acceleration that ends at a node does so within a cycle.
 double PathWindow::CoastFrom(std::uint64_t i) const noexcept {
   const double s = (*this)[i].at.s;
   double square = (*this)[i].ceiling;
@@ -209,9 +209,9 @@ double PathWindow::CoastFrom(std::uint64_t i) const noexcept {
     const PathNode& node = (*this)[k];
     const PathNode& next = (*this)[k + 1];
     const double hold_s = node.build_up_s + period_s_;
-    const double to_next = (next.at.s - s) / hold_s;  // the speed that gets there in that time
+    const double to_next = (next.at.s - s) / hold_s;  // speed that reaches the next node in that time
     if (std::min(square, next.ceiling) <= to_next * to_next) {
-      // The speed u with u² = ceiling at s + u hold, which is a line up to there.
+      // The speed u with u² = ceiling at s + u hold; the ceiling is linear up to there.
       const double length = next.at.s - node.at.s;
       const double tilt = length > 0 ? (next.ceiling - node.ceiling) / length : 0;
       const double half = 0.5 * tilt * hold_s;

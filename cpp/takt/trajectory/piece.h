@@ -23,10 +23,10 @@ struct Piece {
             velocity + t * (acceleration + t * jerk * 0.5), acceleration + t * jerk};
   }
 
-  // Times at which the velocity passes 0, ascending; NaN or infinite where there is none.
+  // Returns the times at which the velocity passes 0, ascending; NaN or infinite if there is no such time.
   std::array<double, 2> VelocityZeros() const noexcept {
     if (jerk == 0) return {-velocity / acceleration, -velocity / acceleration};
-    // The larger root first and the other from their product: nothing cancels.
+    // The larger root first, the other one from their product: no cancellation.
     const double root = std::sqrt(acceleration * acceleration - 2 * jerk * velocity);
     const double sum = -(acceleration + std::copysign(root, acceleration));
     const double one = sum / jerk;

@@ -13,9 +13,9 @@ namespace takt::trajectory {
 
 namespace {
 
-constexpr double kOnCurve = 1e-6;   // of the way to standstill
-constexpr double kSteepest = 1e9;   // 1/s, jerk over acceleration: jerk times below 1 ns are lost in rounding
-constexpr double kAbsurd = 1e30;    // 1/s, the same: problems beyond it are left to fail
+constexpr double kOnCurve = 1e-6;   // share of the distance to standstill
+constexpr double kSteepest = 1e9;   // [1/s] jerk over acceleration: jerk times below 1 ns are lost in rounding
+constexpr double kAbsurd = 1e30;    // [1/s] the same; problems beyond it may fail
 constexpr double kFarApart = 1e-5;  // tolerance of the velocity limit where limits lie far apart
 
 bool IsFinite(const KinematicState& s) noexcept {
@@ -34,8 +34,8 @@ bool IsSound(const Limits& l) noexcept {
   return IsPositive(l.velocity) && IsPositive(l.acceleration) && CanStop(l);
 }
 
-// Units in which a problem is solved. That of time is free; the others follow so that the jerk (unlimited: the larger
-// acceleration) is 1.
+// Units in which a problem is solved. The unit of time is free; the others follow from it so that the jerk (unlimited:
+// the larger acceleration) is 1.
 struct Scale {
   double time;
   double acceleration;
@@ -48,7 +48,7 @@ Scale ScaleOf(double time, const PositionProblem& q) noexcept {
   return {time, acceleration, acceleration * time, acceleration * time * time};
 }
 
-// How long the motion would last if nothing but the jerk (unlimited: the acceleration) bound it. In this unit no number
+// Returns the duration of the motion if only the jerk (unlimited: the acceleration) bounded it. In this unit no number
 // of the start and the target exceeds 1, however small or large the motion, and however far away the limits.
 double MotionTime(const PositionProblem& q) noexcept {
   const double speed = std::max(std::abs(q.velocity), std::abs(q.end_velocity));
@@ -62,8 +62,8 @@ double MotionTime(const PositionProblem& q) noexcept {
   return distance > j * time * time * time ? maths::Cbrt(distance / j) : time;
 }
 
-// How long it takes to reach the velocity limit from rest: the second unit. It helps where a start far beyond the
-// limits, and so a long way of braking, makes the limits too small in the first.
+// Returns the time to reach the velocity limit from rest: the second unit. It helps where a start far beyond the
+// limits, with a long braking distance, makes the limits too small in the first unit.
 double RampTime(const PositionProblem& q) noexcept {
   const double a = std::max(q.bounds.up, q.bounds.down);
   return q.velocity_limit / a + (q.bounds.jerk > 0 ? a / q.bounds.jerk : 0);
@@ -84,14 +84,14 @@ PositionProblem InScale(const PositionProblem& q, const Scale& s) noexcept {
           {q.bounds.up * acceleration, q.bounds.down * acceleration, q.bounds.jerk > 0 ? 1.0 : 0.0}};
 }
 
-// Whether the speed is and stays within its limit when the acceleration of the start is taken away.
+// Returns true if the speed is within its limit and stays so while the initial acceleration is reduced to 0.
 bool StartsWithin(const PositionProblem& q) noexcept {
   const double taken = q.bounds.jerk > 0 ? q.acceleration * std::abs(q.acceleration) / (2 * q.bounds.jerk) : 0;
   const double limit = q.velocity_limit * (1 + 1e-9);
   return std::abs(q.velocity) <= limit && std::abs(q.velocity + taken) <= limit;
 }
 
-// Empties `out`, which holds nothing or what an attempt before has left. Cheaper than a new one.
+// Clears `out`, which is empty or left by an earlier attempt. Cheaper than a new one.
 void Begin(const KinematicState& from, Profile& out) noexcept {
   for (; out.piece_count > 0; --out.piece_count) {
     const auto last = static_cast<std::size_t>(out.piece_count - 1);
@@ -115,8 +115,8 @@ bool SnapTo(const KinematicState& target, const PositionProblem& q, const Scale&
   return hits;
 }
 
-// The solution found with `time` as unit, integrated anew in user units from the exact start. False: it misses the
-// target.
+// Integrates the solution found with the time unit `time` anew in user units from the exact start. Returns false if it
+// misses the target.
 bool Build(const KinematicState& from, const KinematicState& target, const PositionProblem& q, double time,
            const Scale& tolerance, const Solution& solution, Profile& out) noexcept {
   Begin(from, out);
@@ -141,9 +141,10 @@ double Distance(double velocity, double acceleration, const Ramp& ramp) noexcept
   return state.position;
 }
 
-// Motions that need no solver: the quickest ramp to the end velocity where it hits the target by itself, and a ramp to
-// the velocity limit, a cruise and a ramp to the end velocity where there is room. Not only cheaper: a motion under way
-// that is planned anew runs along its limits to rounding, and there a solver may find that it must turn back first.
+// Motions that need no solver: the quickest ramp to the end velocity if it reaches the target by itself, and a ramp to
+// the velocity limit, a cruise and a ramp to the end velocity where there is room. Not only cheaper: a motion in
+// progress that is planned again runs along its limits to rounding, and there a solver may find that it must reverse
+// first.
 bool BuildOfRamps(const KinematicState& from, const KinematicState& target, const PositionProblem& q,
                   const Scale& scale, Profile& out) noexcept {
   const Ramp at_once = QuickestRamp(q.velocity, q.acceleration, q.end_velocity, q.bounds);
@@ -204,7 +205,7 @@ bool Planner::Solve(const KinematicState& from, double position, double end_velo
     return true;
   };
   // Usually the ramps failed because the distance is too short to reach the velocity limit: with a larger limit the
-  // solver cannot mistake a rounding error for an excess. If they failed by rounding, the result exceeds the limit.
+  // solver cannot mistake a rounding error for an excess. If they failed due to rounding, the result exceeds the limit.
   if (StartsWithin(problem)) {
     problem.velocity_limit *= 2;
     const bool found = solve_at_a_scale();
@@ -230,12 +231,12 @@ Status Planner::ToPosition(const KinematicState& from, double position, double e
 
   Bounds bounds{limits.acceleration, limits.deceleration, limits.jerk};
   if (limits.acceleration != limits.deceleration) {
-    // A motion on its braking curve stops at the target but for rounding: it does not reverse.
+    // A motion on its braking curve stops at the target except for rounding: it does not reverse.
     const double stop = StopPosition(from, limits);
     const bool on_curve = std::abs(position - stop) <= kOnCurve * std::abs(stop - from.position);
     bounds = DirectedBounds(from, on_curve ? from.velocity : position - stop, limits);
   }
-  // A plan that reverses where none was expected shows it by itself; each round can only lower a bound.
+  // A plan with an unexpected reversal exceeds a limit there; each round can only lower a bound.
   for (int round = 0; round < 3; ++round) {
     Profile plan;
     if (!Solve(from, position, end_velocity, limits.velocity, bounds, plan)) break;

@@ -13,20 +13,20 @@ static_assert(std::is_trivially_copyable_v<Profile>);
 
 namespace {
 
-constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();  // share of a time that does not count
+constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();  // share of a time that is ignored
 
 void Include(Profile::Range& range, double value) noexcept {
   range.min = std::min(range.min, value);
   range.max = std::max(range.max, value);
 }
 
-// When a piece that does not turn round between `left` and `right` is at `position`; NaN: not there.
+// Returns the time at which a piece that does not reverse between `left` and `right` is at `position`; NaN: never.
 double MonotoneTime(const Piece& piece, double position, double left, double right) noexcept {
   const double begin = piece.At(left).position - position;
   const double end = piece.At(right).position - position;
   if (begin == 0) return left;
   if (begin * end > 0) return std::numeric_limits<double>::quiet_NaN();
-  // Newton's steps; where one leads out, half of what is left.
+  // Newton's method; where a step leaves the interval, the interval is bisected.
   double t = 0.5 * (left + right);
   for (int i = 0; i < 200 && t > left && t < right; ++i) {
     const KinematicState at = piece.At(t);

@@ -1,4 +1,4 @@
-// A motion known from beginning to end: pieces of constant jerk.
+// A motion known from start to end: pieces of constant jerk.
 #pragma once
 
 #include <array>
@@ -10,59 +10,59 @@
 
 namespace takt::trajectory {
 
-// Pieces of constant jerk from time 0 on. Evaluation is pure: the same time gives the same bits, in whatever order it
-// is asked. The members are open to be described, hashed and looked at; they are written by the functions only.
+// Pieces of constant jerk from time 0 on. Evaluation is pure: the same time gives the same bits, in any order of calls.
+// The members are public to be described, hashed and inspected; only the functions write them.
 struct Profile {
   static constexpr int kCapacity = 16;
 
-  // `Profile(start)`: stands (or goes on at constant velocity) in `start` forever, without pieces.
+  // `Profile(start)`: no pieces; stays in `start` forever (at rest, or at constant velocity).
   KinematicState start_state;
   KinematicState end_state = start_state;
   std::int32_t piece_count = 0;
-  std::array<double, kCapacity> piece_ends_s{};  // s from the start, ascending; 0 behind piece_count
-  std::array<Piece, kCapacity> pieces{};         // zero behind piece_count
+  std::array<double, kCapacity> piece_ends_s{};  // [s] from the start, ascending; 0 from piece_count on
+  std::array<Piece, kCapacity> pieces{};         // zero from piece_count on
 
-  // Appends a piece of `duration_s` (ignored unless > 0) with constant jerk [u/s³]. A step of acceleration before it
-  // (unlimited jerk) is given as `acceleration`. False: no room, nothing changed.
+  // Appends a piece of `duration_s` [s] (ignored unless > 0) with constant jerk [u/s³]. A step of acceleration before
+  // it (unlimited jerk) is given as `acceleration`. Returns false, with nothing changed, if there is no room.
   bool Append(double duration_s, double jerk) noexcept {
     return AppendWithAcceleration(duration_s, end_state.acceleration, jerk);
   }
   bool AppendWithAcceleration(double duration_s, double acceleration, double jerk) noexcept;
-  // Appends all pieces of `other`, whose start must be this one's end.
+  // Appends all pieces of `other`. Requires: it starts at the end of this one.
   bool Append(const Profile& other) noexcept;
   // Replaces the computed end by the exact one (they differ by rounding only).
   void SnapEnd(const KinematicState& exact) noexcept { end_state = exact; }
 
-  // Ends the motion at `t`, with what it is there.
+  // Ends the motion at `t` [s], in the state there.
   void Cut(double t) noexcept;
 
-  // Begins the motion at `t` instead, with what it is there.
+  // Begins the motion at `t` [s] instead, in the state there.
   void Skip(double t) noexcept;
 
-  // Moves the whole motion by `distance`.
+  // Shifts the whole motion by `distance` [u].
   void Shift(double distance) noexcept {
     start_state.position += distance;
     end_state.position += distance;
     for (int i = 0; i < piece_count; ++i) pieces[Index(i)].position += distance;
   }
 
-  // State at `t` seconds; up to 0 the start, at duration() the end, after it the end position moving on at the end
-  // velocity with no acceleration. Acceleration is continuous from the right.
+  // Returns the state at `t` [s]: the start up to 0, the end at duration(), after it the end position moving on at the
+  // end velocity with no acceleration. Acceleration is continuous from the right.
   KinematicState At(double t) const noexcept {
     if (t <= 0) return start_state;
     if (t >= duration()) return After(t);
     const Local at = Find(t);
     return at.piece->At(at.t);
   }
-  // Jerk of the piece at `t`; 0 before the start and from the end on.
+  // Returns the jerk of the piece at `t` [s]; 0 before the start and from the end on.
   double JerkAt(double t) const noexcept { return t < 0 || t >= duration() ? 0 : Find(t).piece->jerk; }
 
-  double duration() const noexcept { return piece_count > 0 ? piece_ends_s[Index(piece_count - 1)] : 0; }  // s
+  double duration() const noexcept { return piece_count > 0 ? piece_ends_s[Index(piece_count - 1)] : 0; }  // [s]
   const KinematicState& start() const noexcept { return start_state; }
   const KinematicState& end() const noexcept { return end_state; }
   int size() const noexcept { return piece_count; }
 
-  // s, when the motion is first at `position`, from `begin_s` on until its end; NaN: never.
+  // Returns the time [s] at which the motion is first at `position`, from `begin_s` on until its end; NaN: never.
   double TimeAt(double position, double begin_s = 0) const noexcept;
 
   // Extreme values over [0, duration()], exact (roots of the pieces' derivatives), not sampled.
@@ -70,7 +70,7 @@ struct Profile {
     double min, max;
   };
   Range PositionRange() const noexcept { return PositionRange(0); }
-  // From `begin_s` on.
+  // From the time `begin_s` [s] on.
   Range PositionRange(double begin_s) const noexcept;
   Range VelocityRange() const noexcept;
   Range AccelerationRange() const noexcept;

@@ -1,4 +1,4 @@
-// A curve of the fifth degree from one state to another, over time or over the way of something that moves.
+// A polynomial of the fifth degree from one state to another, over time or over the position of a master.
 #pragma once
 
 #include <array>
@@ -8,12 +8,12 @@
 
 namespace takt::trajectory {
 
-// Positions, velocities and accelerations are those over x: per s for a time, per master's unit for a way.
+// Derivatives are by x: per s over time, per master unit over a master position.
 struct Quintic {
-  std::array<double, 6> c{};  // over the share x / length, from the lowest power on
-  double length = 1;          // not 0; negative where x falls on the way
+  std::array<double, 6> c{};  // of the powers of x / length, in ascending order
+  double length = 1;          // not 0; negative where x falls along the curve
 
-  // Not only between both ends: the curve goes on beyond them.
+  // Valid outside of 0 to `length`, too: the polynomial continues there.
   KinematicState At(double x) const noexcept {
     const double s = x / length;
     const double y = c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * c[5]))));
@@ -23,10 +23,11 @@ struct Quintic {
   }
 };
 
-// From `begin` at 0 to `end` at `length`.
+// Returns the curve from `begin` at 0 to `end` at `length`.
 Quintic Connect(double length, const KinematicState& begin, const KinematicState& end) noexcept;
 
-// What follows something with the motion `way`, `over` being its place and its derivatives over that way.
+// Returns the motion over time of a value that depends on a master: `over` is the value with its derivatives by the
+// master's position, `way` the motion of the master.
 inline KinematicState AlongWay(const KinematicState& over, const KinematicState& way) noexcept {
   return {over.position, over.velocity * way.velocity,
           over.acceleration * way.velocity * way.velocity + over.velocity * way.acceleration};

@@ -1,4 +1,4 @@
-// The quickest change of velocity, in closed form: what everything that only cares about velocity is made of.
+// The quickest change of velocity, in closed form: the basis of everything that plans in velocity only.
 #pragma once
 
 #include <array>
@@ -9,17 +9,17 @@
 
 namespace takt::trajectory {
 
-// A stretch of constant jerk, as solvers hand it on. Lengths and times in whatever scale the solver works.
+// A piece of constant jerk as solvers return it, in the solver's scale of length and time.
 struct Stretch {
   double duration = 0;
   double acceleration = 0;  // at its beginning
   double jerk = 0;
 };
 
-// Bounds of acceleration by sign. Jerk 0: unlimited.
+// Acceleration bounds by sign. Jerk 0: unlimited.
 struct Bounds {
   double up = 0;    // largest positive acceleration, > 0
-  double down = 0;  // largest negative acceleration as a positive number, > 0
+  double down = 0;  // magnitude of the largest negative acceleration, > 0
   double jerk = 0;
 };
 
@@ -29,8 +29,8 @@ inline KinematicState Advance(const KinematicState& from, const Stretch& s) noex
   return Piece{from.position, from.velocity, s.acceleration, s.jerk}.At(s.duration);
 }
 
-// From velocity `v` and acceleration `a` to velocity `target` and no acceleration, as soon as the bounds allow. An
-// acceleration beyond its bound is brought inside at full jerk. A stretch may last 0.
+// Returns the quickest ramp from velocity `v` and acceleration `a` to velocity `target` and no acceleration. An
+// acceleration beyond its bound is brought inside at full jerk. Stretches may have the duration 0.
 inline Ramp QuickestRamp(double v, double a, double target, const Bounds& bounds) noexcept {
   if (bounds.jerk == 0) {
     const double dv = target - v;
@@ -38,10 +38,10 @@ inline Ramp QuickestRamp(double v, double a, double target, const Bounds& bounds
     return {{{dv / acceleration, acceleration, 0}, {}, {}}};
   }
   const double j = bounds.jerk;
-  // Where the velocity ends if the acceleration is taken away at once decides the direction.
+  // The velocity reached if the acceleration is removed at once decides the direction.
   const double rest_dv = a * std::abs(a) / (2 * j);
   if (std::abs(target - v - rest_dv) <= 1e-15 * (std::abs(target) + std::abs(v) + std::abs(rest_dv))) {
-    // Taking it away is all there is to do. The root below would make 1e-8 of the 1e-16 missing here.
+    // Removing it is all that is needed. The root below would turn the 1e-16 missing here into 1e-8.
     return {{{std::abs(a) / j, a, -std::copysign(j, a)}, {}, {}}};
   }
   const double sign = target - v > rest_dv ? 1 : -1;

@@ -7,14 +7,14 @@ namespace takt::trajectory {
 
 namespace {
 
-constexpr double kStandstill = 1e-9;  // of the velocity limit
-constexpr double kSlack = 1e-9;       // of an acceleration limit: rounding
+constexpr double kStandstill = 1e-9;  // share of the velocity limit
+constexpr double kSlack = 1e-9;       // share of an acceleration limit: rounding
 
 double Smaller(const Limits& l) noexcept {
   return std::min(l.acceleration, l.deceleration);
 }
 
-// Largest positive acceleration over a stretch of speeds from `low` to `high`.
+// Returns the largest positive acceleration for velocities from `low` to `high`.
 double BoundBetween(double low, double high, const Limits& l) noexcept {
   const double standstill = kStandstill * l.velocity;
   if (low >= -standstill) return l.acceleration;
@@ -53,7 +53,7 @@ bool LowerWhereExceeded(const Profile& plan, const Limits& l, Bounds& bounds) no
     const Piece& piece = plan.pieces[n];
     const double begin = i == 0 ? 0 : plan.piece_ends_s[n - 1];
     const double length = plan.piece_ends_s[n] - begin;
-    // The acceleration runs straight: between two zeros of the velocity only its ends count.
+    // The acceleration is linear: between two zeros of the velocity only its ends count.
     const auto check_between = [&](double left, double right) {
       const double v = piece.At(0.5 * (left + right)).velocity;
       check(begin + left, piece.At(left).acceleration, v);

@@ -1,4 +1,4 @@
-// Where acceleration and deceleration limits differ: which of them bounds which sign of the acceleration.
+// Acceleration and deceleration limits that differ: which of them bounds which sign of the acceleration.
 #pragma once
 
 #include "takt/core/kinematic_state.h"
@@ -8,14 +8,15 @@
 
 namespace takt::trajectory {
 
-// Bounds for a motion that, once it stops running the wrong way, goes in the direction of `way`.
+// Returns the bounds for a motion in the direction of the sign of `way` (0: positive), which may have to reverse first.
 Bounds DirectedBounds(const KinematicState& from, double way, const Limits& limits) noexcept;
 
-// Bounds for the quickest ramp to `velocity`.
+// Returns the bounds for the quickest ramp to `velocity`.
 Bounds VelocityBounds(const KinematicState& from, double velocity, const Limits& limits) noexcept;
 
-// Holds `plan`, made with `bounds`, against the limits. A bound that let the plan exceed them is lowered to the smaller
-// limit. True if any was. An acceleration the start came with is no excess while it falls at full jerk.
+// Checks `plan`, made with `bounds`, against the limits; lowers each bound that let the plan exceed them to the smaller
+// limit. Returns true if any bound was lowered. An acceleration inherited from the start does not count as exceeding
+// while it falls at full jerk.
 bool LowerWhereExceeded(const Profile& plan, const Limits& limits, Bounds& bounds) noexcept;
 
 }  // namespace takt::trajectory

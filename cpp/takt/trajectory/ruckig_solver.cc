@@ -9,8 +9,8 @@ namespace takt::trajectory {
 
 namespace {
 
-// A solver keeps three or six candidates and does not count them while it adds. Indices beyond its array were reported
-// (its issue 216), so it gets room behind it.
+// A solver keeps three or six candidates and adds them without a bounds check. Indices beyond its array were reported
+// (its issue 216), so it gets spare memory behind it.
 template <typename Solver>
 struct WithRoom {
   template <typename... Arguments>

@@ -1,5 +1,4 @@
-// Ruckig behind one function. It works with absolute tolerances and is meant for numbers near 1: whoever calls chooses
-// the scale.
+// Ruckig behind one function. Its tolerances are absolute and meant for numbers near 1: the caller chooses the scale.
 #pragma once
 
 #include <array>
@@ -13,13 +12,13 @@ namespace takt::trajectory {
 struct PositionProblem {
   double distance = 0;
   double velocity = 0;
-  double acceleration = 0;  // without meaning where jerk is unlimited
+  double acceleration = 0;  // ignored if jerk is unlimited
   double end_velocity = 0;
   double velocity_limit = 0;  // > 0
   Bounds bounds;
 };
 
-// Stretches one after the other: two to come inside the limits, seven to the target.
+// Consecutive stretches: up to two to come inside the limits, up to seven to the target.
 struct Solution {
   std::array<Stretch, 9> stretches;
   std::size_t size = 0;
@@ -32,7 +31,7 @@ inline constexpr double kPositionTolerance = 1e-8;
 inline constexpr double kVelocityTolerance = 1e-8;
 inline constexpr double kAccelerationTolerance = 1e-10;
 
-// The time-optimal motion. False: none found.
+// Finds the time-optimal motion. Returns false if none is found.
 bool SolveWithRuckig(const PositionProblem& problem, Solution& out) noexcept;
 
 }  // namespace takt::trajectory

@@ -10,9 +10,9 @@ namespace takt::trajectory {
 
 namespace {
 
-// Cycles; with 2.2 it would no longer settle, since its jerk changes once a cycle only.
+// Least time constant in cycles; with 2.2 the filter would no longer settle, since its jerk changes only once a cycle.
 constexpr double kFastest = 3;
-constexpr double kFollows = 3.5;  // times as fast as the slow one of two estimates
+constexpr double kFollows = 3.5;  // speed relative to that of the slow estimate, if there are two
 
 KinematicState After(const KinematicState& x, double jerk, double t) {
   return {x.position + t * (x.velocity + t * (0.5 * x.acceleration + t * jerk / 6)),
@@ -30,7 +30,7 @@ TrackingEstimate Between(const TrackingEstimate& from, const TrackingEstimate& t
           std::lerp(from.jerk, to.jerk, share)};
 }
 
-// One cycle of t, with all poles of the error at one place.
+// Advances the estimate by one cycle of t [s], with all poles of the error equal.
 void Correct(double filter_s, double t, double position, TrackingEstimate& estimate) {
   const double fresh = -maths::Expm1(-t / filter_s);
   const double pole = 1 - fresh;
