@@ -14,7 +14,7 @@
 namespace takt::path {
 namespace {
 
-// An angle of the ellipse over the parameter of a piece.
+// Angle of the ellipse per piece [rad].
 constexpr double kAngle = std::numbers::pi / kArchQuintics;
 
 struct Feet {
@@ -25,8 +25,8 @@ struct Feet {
   Vector crest = Vector::Zero();   // from the centre up
   bool rises = false;              // a straight piece before ...
   bool falls = false;              // ... or behind the ellipse
-  bool straight = false;           // no ellipse, but a line between its feet ...
-  bool upright = false;            // ... or nothing but the straight piece
+  bool straight = false;           // no ellipse, but a line between the feet ...
+  bool upright = false;            // ... or only the vertical piece
 
   int pieces() const { return upright ? 1 : (straight ? 1 : kArchQuintics) + (rises || falls ? 1 : 0); }
 };
@@ -60,7 +60,7 @@ VectorPolynomial Quarter(const Feet& s, int piece) {
   return VectorHermite(at(piece * kAngle), at((piece + 1) * kAngle));
 }
 
-// Without orientation.
+// Sets the position of a piece; not its orientation.
 void SetPiece(const Feet& s, int piece, Segment& out) {
   const bool line = s.upright || s.straight || (s.rises && piece == 0) || (s.falls && piece + 1 == s.pieces());
   if (!line) return SetQuintic(out, Quarter(s, piece - (s.rises ? 1 : 0)));

@@ -14,34 +14,34 @@
 namespace takt::path {
 namespace {
 
-// Cosine of half the angle by which the path turns: less is a way back.
+// Cosine of half the angle by which the path turns; below it the path reverses.
 constexpr double kReversal = 1e-4;
-// rad, that a curve may turn within a blend.
+// [rad] Largest turn of a curve within a blend.
 constexpr double kMostSweep = 1;
-// How much of the deviation allowed the search for a distance may leave unused.
+// Share of the allowed deviation that the search for a distance may leave unused.
 constexpr double kUnused = 0.02;
-// Part of the deviation that is kept free for what lies between the samples.
+// Share of the deviation kept free for points between the samples.
 constexpr double kMargin = 5e-3;
 constexpr std::size_t kSamples = 16;
 constexpr int kGuesses = 12;
-// Of a blend that bends least, for small turns: its largest curvature beside that of the circle, and how fast it rises.
+// Of a blend without ramps, for small turns: its largest curvature relative to the circle's, and how fast it rises.
 constexpr double kPeakBend = 1.62, kBendRise = 2;
-// Of the mean curvatures on both sides of a chord's middle, what it may be there.
+// Largest curvature at the middle of a chord, relative to the smaller mean curvature of its two sides.
 constexpr double kMostBend = 2.5;
 
-// Tangent length of a blend over its distance, by the cosine of half the angle.
+// Returns the tangent length of a blend over its distance, by the cosine of half the angle.
 double TangentShare(double q) {
   return q / (0.2067 + 0.28 * q);
 }
 
-// How one side of a blend begins at the line, over its distance from the corner: the first and the second derivative by
-// the parameter, both along the line.
+// One side of a blend where it leaves its line, relative to its distance from the corner: the first and the second
+// derivative by the parameter, both along the line.
 struct Side {
   double first = 0;
   double second = 0;
 };
 
-// The way from rest in which a motion gets so fast, without acceleration at either end.
+// Returns the distance from rest in which a motion reaches this velocity, without acceleration at either end.
 double WayTo(double velocity, const Ramp& ramp) {
   const double full = ramp.acceleration * ramp.acceleration / ramp.jerk;
   const double time = velocity > full ? velocity / ramp.acceleration + ramp.acceleration / ramp.jerk
@@ -49,8 +49,9 @@ double WayTo(double velocity, const Ramp& ramp) {
   return 0.5 * velocity * time;
 }
 
-// Two ramps that overlap on a corner, `q` the cosine of half its turn: in `k` times the time in which an acceleration
-// builds up. How fast each is where the blend begins or ends, and how fast the corner may be gone at one speed.
+// Two ramps that overlap on a corner, `q` the cosine of half its turn: the overlap takes `k` times the time in which an
+// acceleration builds up. `ramped`: speed of each ramp where the blend begins or ends; `steady`: constant speed at
+// which the corner may be passed.
 struct Overlapping {
   double x = 1, k = 1;
   double time_s = 0;
@@ -61,19 +62,19 @@ Overlapping OverlappingAt(double distance, double q, const Ramp& ramp) {
   const double built_up = highest * highest * highest / (6 * ramp.jerk * ramp.jerk);
   const double x = std::max(1.0, distance / built_up);
   const double k = 0.5 * (1 + std::sqrt(1 + 4.0 / 3 * (x - 1)));
-  const double within = maths::Cbrt(6 * distance / ramp.jerk);  // where the acceleration is not built up
+  const double within = maths::Cbrt(6 * distance / ramp.jerk);  // duration if the acceleration is not fully built up
   const double time_s = x > 1 ? k * highest / ramp.jerk : within;
   const double ramped = x > 1 ? highest * highest / ramp.jerk * (k - 0.5)
                               : 0.5 * ramp.jerk * maths::Cbrt(36 * distance * distance / (ramp.jerk * ramp.jerk));
-  // At one speed: its curvature, and how fast that comes and goes.
+  // At constant speed: from the curvature, and from how fast it changes.
   const double bend = kPeakBend * std::sqrt(std::max(0.0, 1 - q * q)) / (q * distance);
   const double steady =
       std::min(std::sqrt(ramp.acceleration / bend), maths::Cbrt(ramp.jerk * distance / (kBendRise * bend)));
   return {x, k, time_s, ramped, steady};
 }
 
-// For a corner at which the first motion ends and the second begins as a ramp does. Where the corner can be gone faster
-// at one speed the curve is the one that bends least.
+// Returns the side of a corner at which the first motion ends and the second begins as a ramp does. Where constant
+// speed is faster it is the side of the blend without ramps.
 Side SideFor(double distance, double tangent, double q, const Ramp& ramp) {
   if (!(ramp.jerk > 0)) return {tangent, 0};
   const auto [x, k, time_s, ramped, steady] = OverlappingAt(distance, q, ramp);
@@ -81,7 +82,7 @@ Side SideFor(double distance, double tangent, double q, const Ramp& ramp) {
   return {std::lerp(tangent, 6 * k * (k - 0.5) / x, share), 6 * k * k / x * share};
 }
 
-// Of the tangents to a circle, how long the arc between them is.
+// Returns the length of the arc between two tangents to a circle, relative to the sum of their lengths.
 double ArcShare(double q) {
   const double half = maths::Acos(std::min(q, 1.0));
   return half > 1e-6 ? half / maths::Tan(half) : 1;
@@ -96,7 +97,8 @@ Joint JointAt(const Segment& first, double s_first, const Segment& second, doubl
   return {PlaceAt(first, s_first), PlaceAt(second, s_second)};
 }
 
-// Of one side of the derivative, as a Bezier polynomial: control vectors all in one half space make no loop.
+// Returns true if the derivative at one side, as a Bézier polynomial, makes no loop: its control vectors all lie in one
+// half space.
 bool Onward(const Vector& way, const Vector& derivative, const Vector& second) {
   return way.dot(derivative + second / 4) > 0;
 }
@@ -151,7 +153,7 @@ double DistanceTo(const Segment& segment, const Vector& point, double near) {
   return (PlaceAt(segment, s).value - point).norm();
 }
 
-// What a blend replaces: the end of one segment, the beginning of the next.
+// The stretch that a blend replaces: the end of one segment and the beginning of the next.
 class Corner {
  public:
   Corner(const Segment& first, const Segment& second) : first_(first), second_(second) {
@@ -167,7 +169,7 @@ class Corner {
     double nearest = 0;
     double least = INFINITY;
     double side_before = -1;
-    double at_change = 0;  // there the distance may have a peak
+    double at_change = 0;  // distance where the blend changes sides, which may be a maximum
     for (std::size_t i = 1; i < kSamples; ++i) {
       const double u = static_cast<double>(i) / kSamples;
       const Vector p = Place(blend, u);
@@ -189,7 +191,7 @@ class Corner {
       const double less = distances[i - 1] - distances[i];
       const double more = distances[i + 1] - distances[i];
       if (less > 0 || more > 0 || less + more == 0) continue;
-      // The top of the parabola through these three.
+      // Maximum of the parabola through these three samples.
       const double top = static_cast<double>(i) + (less - more) / (2 * (less + more));
       most = std::max(most, FromPath(Place(blend, top / kSamples)));
     }
@@ -197,16 +199,17 @@ class Corner {
   }
 
  private:
-  // Below 0 before the corner, above it behind.
+  // Negative before the corner, positive behind it.
   double SideOf(const Vector& p) const { return way_.dot(p - place_); }
 
-  // On its side of the corner; beginning with the place on the segment that is as far from the corner.
+  // Distance from the path on its side of the corner; the search begins at the point of the segment equally far from
+  // the corner.
   double FromPath(const Vector& p) const { return SideOf(p) < 0 ? FromFirst(p) : FromSecond(p); }
   double FromBoth(const Vector& p) const { return std::max(FromFirst(p), FromSecond(p)); }
   double FromFirst(const Vector& p) const { return DistanceTo(first_, p, first_.length - (p - place_).norm()); }
   double FromSecond(const Vector& p) const { return DistanceTo(second_, p, (p - place_).norm()); }
 
-  // Where a blend changes sides, by two steps of the secant.
+  // Returns the parameter at which a blend changes sides, by two secant steps.
   double Change(const VectorPolynomial& blend, double from, double to) const {
     double a = SideOf(Place(blend, from));
     double b = SideOf(Place(blend, to));
@@ -220,7 +223,7 @@ class Corner {
     return u;
   }
 
-  // By Newton's steps from the nearest sample.
+  // Newton's method from the nearest sample.
   double FromCorner(const VectorPolynomial& blend, double u) const {
     for (int i = 0; i < 3; ++i) {
       const auto p = Evaluate(blend, u);
@@ -237,11 +240,11 @@ class Corner {
   Vector way_;
 };
 
-// By s, from the orientation of the corner.
+// Returns the turn from the orientation of the corner, with derivatives by s.
 Derivatives<Vector> TurnFrom(const KDL::Rotation& corner, const MovingFrame& frame, bool before) {
   Vector turn = ToVector(kinematics::TurnBetween(corner, frame.M.R));
   const Vector velocity = ToVector(frame.M.w);
-  // Half a turn has two ways: the one that the segment goes.
+  // Half a turn is ambiguous: the sense in which the segment turns.
   const double outward = turn.dot(velocity);
   if (turn.norm() > std::numbers::pi - 1e-6 && (before ? outward > 0 : outward < 0)) {
     turn -= turn.normalized() * (2 * std::numbers::pi);
@@ -257,7 +260,8 @@ bool SameOrientation(const KDL::Rotation& a, const KDL::Rotation& b) {
   return ToVector(kinematics::TurnBetween(a, b)).norm() <= kSameTurn * kDegree;
 }
 
-// How far apart the derivatives of turns or auxiliary axes are at the corner, in what the length counts.
+// Returns the difference of the derivatives of turns or auxiliary axes at the corner, in the unit that the length
+// counts.
 double Bend(const Segment& first, const Segment& second) {
   if (first.measure == Measure::kTurn) {
     const Vector a = ToVector(At(first, first.length).M.w);
@@ -280,7 +284,7 @@ double Apart(Measure measure, const Point& a, const Point& b) {
   return most;
 }
 
-// Of a function with one valley between 0 and 1.
+// Returns the minimum of a function with one valley between 0 and 1.
 template <typename Function>
 double Least(Function function) {
   double lower = 0;
@@ -296,13 +300,14 @@ double Least(Function function) {
   return function((lower + upper) / 2);
 }
 
-// The most of a curve that may be blended: up to kMostSweep.
+// Returns the length of a curve that may be blended: up to kMostSweep.
 double Sweep(const Derivatives<Vector>& place) {
   const double curvature = place.second.norm();
   return curvature > 0 ? kMostSweep / curvature : INFINITY;
 }
 
-// The longest distance whose blend stays within the deviation: `guess` is where to begin.
+// Returns the longest distance whose blend stays within the deviation, starting the search at `guess`; 0 if none is
+// found.
 double Search(const Segment& first, const Segment& second, const Corner& corner, double deviation, double guess,
               double most, const Ramp& ramp) {
   double good = 0;
@@ -381,7 +386,7 @@ std::optional<Triple> BendBetween(const Segment& before, const Segment& chord, c
   struct Side {
     double cosine = 0;
     Vector mean;  // curvature of the blend
-    Vector here;  // what it is at the chord, if it runs evenly
+    Vector here;  // curvature at the chord if it changes evenly
   };
   const auto side = [&](const Segment& other) -> Side {
     const Vector way = ToVector(other.place[1]);
@@ -394,7 +399,7 @@ std::optional<Triple> BendBetween(const Segment& before, const Segment& chord, c
   const Side first = side(before);
   const Side second = side(after);
   if (first.cosine < 0 || second.cosine < 0) return {};
-  // That before turns away from where it comes from.
+  // The vector of the first side is seen backwards, hence the opposite sign.
   if (!(first.mean.dot(second.mean) < 0)) return Triple{};
   const Vector middle = (second.here - first.here) / 2;
   const double most = kMostBend * std::min(first.mean.norm(), second.mean.norm());
@@ -419,7 +424,7 @@ double CornerDistance(const Segment& first, const Segment& second, double deviat
   const double q = corner.half_cosine();
   if (q < kReversal) return 0;
   const double sine = (b.first - a.first).norm() / 2;
-  // The middle of a blend that begins and ends as far from the corner, over its distance: of the six control points.
+  // Distance from the corner to the middle of a symmetric blend, relative to d, from its six control points.
   const auto middle = [&](double d) {
     const Side side = SideFor(d, TangentShare(q), q, ramp);
     return sine * (1 - (5.0 / 16) * side.first + side.second / 32);
@@ -427,7 +432,7 @@ double CornerDistance(const Segment& first, const Segment& second, double deviat
   double guess = deviation / middle(deviation);
   for (int i = 0; i < kGuesses && ramp.jerk > 0; ++i) guess = deviation / middle(std::min(guess, most));
   if (first.shape == Shape::kLine && second.shape == Shape::kLine) {
-    // The last guess may be a little too long.
+    // The last guess may be slightly too long.
     const double d = std::min(guess, most);
     return ramp.jerk > 0 ? d * std::min(1.0, (1 - 1e-9) * deviation / (middle(d) * d)) : d;
   }

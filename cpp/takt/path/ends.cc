@@ -8,10 +8,10 @@
 namespace takt::path {
 namespace {
 
-// How far a matrix may be from a rotation.
+// Tolerance of a rotation matrix.
 constexpr double kRotation = 1e-6;
 
-// rad, of a turn that is rounding.
+// [rad] A turn below this is rounding.
 constexpr double kNoTurn = 1e-14;
 
 Course CourseOf(const VectorPolynomial& turn) {
@@ -26,7 +26,7 @@ void SetBase(Segment& segment, const KDL::Rotation& base) {
   segment.base = {q.x(), q.y(), q.z(), q.w()};
 }
 
-// How many there are that are anywhere but at 0 all the way.
+// Counts up to the last one that is not 0 everywhere.
 void CountAuxiliaries(Segment& segment) {
   segment.auxiliary_count = 0;
   for (std::size_t i = 0; i < kMaxAuxiliaries; ++i) {

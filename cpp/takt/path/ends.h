@@ -1,4 +1,4 @@
-// What makers of segments share: their ends.
+// Common to all makers of segments: orientation and auxiliary axes at their ends.
 #pragma once
 
 #include "takt/path/segment.h"
@@ -6,19 +6,19 @@
 
 namespace takt::path {
 
-// Finite numbers, and a rotation.
+// Returns true if all numbers are finite and the orientation is a rotation.
 bool Sound(const Point& point) noexcept;
 
-// Orientation and auxiliary axes run evenly from one end to the other. `length` must stand.
+// Sets orientation and auxiliary axes to change linearly from one end to the other. Requires: `length` is set.
 void SetEven(Segment& segment, const Point& from, const Point& to) noexcept;
 
-// What goes along with the place at an end: derivatives by s.
+// Orientation and auxiliary axes at an end, with derivatives by s.
 struct Along {
-  Derivatives<Vector> turn;  // from the base
+  Derivatives<Vector> turn;  // from the base orientation
   AuxiliaryMotion auxiliaries;
 };
 
-// Orientation and auxiliary axes go on at both ends as said. `length` must stand.
+// Sets orientation and auxiliary axes to match these values and derivatives at both ends. Requires: `length` is set.
 void SetCurved(Segment& segment, const KDL::Rotation& base, const Along& begin, const Along& end) noexcept;
 
 }  // namespace takt::path

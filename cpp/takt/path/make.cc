@@ -17,25 +17,25 @@ namespace {
 
 constexpr double kWholeTurn = 2 * std::numbers::pi;
 constexpr double kSameAuxiliary = 1e-9;
-// A displacement up to this (mm or deg) does not count the length beside one a thousand times as long.
+// A displacement up to this (mm or deg) does not count for the length beside one a thousand times as long.
 constexpr double kTiny = 2e-4;
 constexpr double kTinyShare = 1e-3;
-// Sine of the angle between two sides of a triangle: less, and its points lie on a line.
+// Least sine of the angle between two sides of a triangle; below it its points lie on a line.
 constexpr double kOnALine = 1e-7;
-// The same where start, centre and end shall say what plane they are in: less, and it would be that of their errors.
+// The same where start, centre and end define the plane; below it the plane would be determined by their errors.
 constexpr double kPlaneSine = kCircleSlack;
 
-// mm: about a centre further away nobody can say what lies on the circle.
+// [mm] Largest radius: with a centre further away it cannot be decided which points lie on the circle.
 constexpr double kFarthest = 1e9;
 
-// An arc without orientations: its angle is counterclockwise about the normal, which has length 1, and above 0.
+// An arc without orientation: its angle is counterclockwise about the normal, which has length 1, and above 0.
 struct Round {
   Vector normal = Vector::UnitZ();
-  Vector radius = Vector::Zero();  // from the centre to the start: the centre may be far away
+  Vector radius = Vector::Zero();  // from the centre to the start; the centre may be far away
   double angle = 0;
 };
 
-// Counterclockwise from one radius to the other, above 0, at most a whole turn.
+// Returns the angle counterclockwise from one radius to the other, above 0, at most a whole turn.
 double AngleBetween(const Vector& normal, const Vector& from, const Vector& to) {
   const double angle = maths::Atan2(normal.dot(from.cross(to)), from.dot(to));
   return angle > 0 ? angle : angle + kWholeTurn;
@@ -59,7 +59,7 @@ Problem ThroughBorder(const Vector& from, const Vector& border, const Vector& to
   return Problem::kNone;
 }
 
-// A normal for start and end seen from the centre, where none is given.
+// Finds a normal for start and end relative to the centre, if none is given.
 Problem FindNormal(const Vector& from, const Vector& to, Vector& normal) {
   const double radius = from.norm();
   const Vector cross = from.cross(to);
@@ -100,7 +100,7 @@ Problem AboutCenter(const Vector& from, const Circle& circle, const Vector& to, 
     out.angle = kWholeTurn;
     return Problem::kNone;
   }
-  // Along the chord to where both ends are equally far away.
+  // Moves the centre along the chord to where both ends are equally far away.
   const double off = chord.dot(out.radius + chord / 2) / chord.squaredNorm();
   if (std::abs(off) * chord.norm() > kCircleSlack * radius) return Problem::kNotOnCircle;
   out.radius -= off * chord;
@@ -130,12 +130,12 @@ bool Finite(const Circle& circle) {
   return ToVector(circle.auxiliary_point).allFinite() && ToVector(circle.normal).allFinite();
 }
 
-// Whether a displacement is one, and the length may count it beside those that it drags along.
+// Returns true if a displacement is large enough for the length to count it beside the others.
 bool Counts(double displacement, double least, double others) {
   return displacement >= least && (displacement > kTiny || displacement >= kTinyShare * others);
 }
 
-// What the length of a straight piece counts, and how long it is.
+// Sets the quantity that the length of a straight piece counts, and its length.
 Problem Measured(const Vector& way, double turn_deg, const Auxiliaries& from, const Auxiliaries& to, Segment& segment) {
   double furthest = 0;
   for (std::size_t i = 0; i < kMaxAuxiliaries; ++i) furthest = std::max(furthest, std::abs(to[i] - from[i]));

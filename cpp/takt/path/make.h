@@ -1,7 +1,8 @@
 // Lines and arcs.
 //
 // The orientation is interpolated about one fixed axis (SLERP; MakeTwist: by the given vector), linearly in s, as are
-// auxiliary axes. MakeLine, MakeTwist and MakeArc return kNone and write `out`, or return the problem and leave it.
+// auxiliary axes. MakeLine, MakeTwist and MakeArc return kNone and write `out`, or return the problem and leave `out`
+// unchanged.
 #pragma once
 
 #include <cstdint>
@@ -11,60 +12,62 @@
 
 namespace takt::path {
 
-// Straight on. The length counts the tool's displacement; where that is less than kSame, or up to 0.2 um and less than
-// a thousandth of the others, its turn; where the same holds of that (kSameTurn, 0.0002 deg), the displacement of the
-// auxiliary axes. What the length does not count moves evenly along with it.
+// Makes a straight line. The length counts the tool's displacement; if that is less than kSame, or up to 0.2 um and
+// less than a thousandth of the turn or of the auxiliary axes' displacements, its turn; if the same holds for the turn
+// (kSameTurn, 0.0002 deg) and the auxiliary axes, the displacement of the auxiliary axis that moves furthest.
+// Everything that the length does not count changes linearly along with it.
 Problem MakeLine(const Point& from, const Point& to, Segment& out) noexcept;
 
-// Straight on by `way` and, meanwhile, turned evenly by the vector `turn` (axis times angle, of any number of turns),
-// to those auxiliary axes. The length counts as for MakeLine.
+// Makes a straight line with the displacement `way` [mm], linearly turned by the vector `turn_rad` (axis times angle,
+// any number of turns), to the auxiliary axes `to`. The length counts as for MakeLine.
 Problem MakeTwist(const Point& from, const Triple& way, const Triple& turn_rad, const Auxiliaries& to,
                   Segment& out) noexcept;
 
-// Where nothing moves: a place as a segment, of which only the beginning is of use.
+// Returns a segment in which nothing moves; only its beginning is meaningful.
 Segment Still(const Point& point) noexcept;
 
-// Nearer than this, points are the same.
+// Points closer than this are the same.
 inline constexpr double kSame = 1e-6;      // mm
 inline constexpr double kSameTurn = 1e-6;  // deg
 
 // How a circular arc is given (PLCopen's CircMode).
 enum class CircMode : std::uint8_t {
-  kBorder,  // a point that it goes through on its way to the end
-  kCenter,  // its centre
-  kRadius,  // a vector normal to its plane that is as long as its radius
+  kBorder,  // by a point that it passes on its way to the end
+  kCenter,  // by its centre
+  kRadius,  // by a vector normal to its plane, as long as its radius
 };
 
-// Which of several arcs.
+// Choice between several arcs.
 enum class PathChoice : std::uint8_t {
   kCounterclockwise,  // about the normal by the right-hand rule: as seen with the normal pointing at the eye
-  kClockwise,         // the other way
-  kShort,             // of radius mode: up to half a turn
-  kLong,              // of radius mode: half a turn or more
+  kClockwise,         // in the opposite sense
+  kShort,             // radius mode: up to half a turn
+  kLong,              // radius mode: half a turn or more
 };
 
 // An arc from a start to `end`.
 //
-// Border: the arc goes from the start through the border point to the end. The plane is that of the three points.
+// Border: the arc runs from the start through the border point to the end, in the plane of the three points.
 //
 // Center: kCounterclockwise or kClockwise about `normal`. Without a normal (0, 0, 0) the plane is that of start, centre
 // and end, and its normal the one with Z above 0; if Z is 0, the one with Y above 0; else with X. Where start, centre
-// and end lie on a line (half a turn, a whole one), the plane is parallel to X and Y if it can be. An end that is the
-// start is a whole turn. The centre may lie anywhere along the normal: it gives the axis.
+// and end lie on a line (half a turn, a whole one), the plane is parallel to X and Y if possible. An end equal to the
+// start is a whole turn. The centre may lie anywhere along the normal: it defines the axis.
 //
-// Radius: turns counterclockwise about the vector, so its other sign gives the other sense; kShort or kLong.
+// Radius: turns counterclockwise about the vector, so its opposite gives the opposite sense; kShort or kLong.
 //
-// An end out of the plane (center with a normal, radius) makes it a helix with an even rise. `turns` whole turns come
-// on top, in every mode.
+// An end out of the plane (center with a normal, radius) makes it a helix with a constant rise. `turns` whole turns are
+// added, in every mode.
 //
-// Small errors are taken: the centre is moved to where start and end are equally far away, by up to kCircleSlack of the
+// Small errors are accepted: the centre is moved to where start and end are equally far away, by up to kCircleSlack of
+// the radius; the radius grows by up to as much if the end lies too far away.
 // radius; the radius grows by as much where the end lies too far away.
 struct Circle {
   CircMode mode = CircMode::kBorder;
-  Triple auxiliary_point{};  // mm: border point, centre, or the vector of radius mode
+  Triple auxiliary_point{};  // [mm] border point, centre, or the vector of radius mode
   PathChoice choice = PathChoice::kCounterclockwise;
-  Triple normal{};   // of center mode, of any length
-  double turns = 0;  // whole turns on top: a whole number from 0 to kMostTurns, else Problem::kTurns
+  Triple normal{};   // center mode: normal of any length; 0: see above
+  double turns = 0;  // whole turns added: a whole number from 0 to kMostTurns, else Problem::kTurns
 };
 
 inline constexpr double kCircleSlack = 1e-3;

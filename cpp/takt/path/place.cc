@@ -8,26 +8,26 @@
 namespace takt::path {
 namespace {
 
-// Six points of Gauss and Legendre on (-1, 1).
+// Six-point Gauss-Legendre rule on (-1, 1).
 constexpr std::array<double, 6> kNodes{-0.9324695142031521, -0.6612093864662645, -0.2386191860831969,
                                        0.2386191860831969,  0.6612093864662645,  0.9324695142031521};
 constexpr std::array<double, 6> kWeights{0.1713244923791704, 0.3607615730481386, 0.4679139345726910,
                                          0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
-// Pieces that become two cells each. Of the whole length: how well that of a piece is to be known; its halves are known
+// Pieces, each divided into two cells. Error of a piece's length relative to the whole length; its halves are known
 // better by three powers of ten.
 constexpr std::size_t kFewestPieces = 4;
 constexpr std::size_t kMostPieces = kMaxCells / 2;
 constexpr double kPieceError = 1e-11;
 
-// Of a cell: after a step as short as this the rest is nothing.
+// Share of a cell: after a step this short the remaining error is negligible.
 constexpr double kCloseEnough = 3e-4;
 
 struct Piece {
   double from = 0;
   double to = 0;
-  double first = 0;   // mm, of its first half
-  double second = 0;  // mm, of the other
-  double error = 0;   // mm, about
+  double first = 0;   // [mm] length of its first half
+  double second = 0;  // [mm] length of its second half
+  double error = 0;   // [mm] estimate
 
   double middle() const { return (from + to) / 2; }
 };
@@ -42,7 +42,7 @@ Piece MakePiece(const VectorPolynomial& place, double from, double to, double le
 }  // namespace
 
 double LengthBetween(const VectorPolynomial& place, double from, double to) noexcept {
-  // All points at once, coordinate by coordinate: compilers make vectors of it.
+  // All points at once, coordinate by coordinate, so that compilers vectorise it.
   std::array<double, kNodes.size()> u, squared{};
   const double middle = (from + to) / 2;
   const double half = (to - from) / 2;
@@ -105,8 +105,8 @@ double ParameterAt(const Segment& segment, double s) noexcept {
   const double h = segment.cell_parameter[cell] - u0;
   const double length = segment.cell_length[cell] - s0;
   const double way = s - s0;
-  // Where a cubic over s puts it that has the right speed at both ends; then Halley's step, twice where that is not
-  // enough. The first leaves an error of the third power of the guess's.
+  // Start at the cubic over s that has the right speed at both ends; then Halley's method, usually one or two steps.
+  // The first step leaves an error of the third power of the guess's.
   const double share = way / length;
   const double begin = length / (h * Slope(segment.place, u0).norm());
   const double end = length / (h * Slope(segment.place, u0 + h).norm());
@@ -141,7 +141,7 @@ Derivatives<Vector> PlaceAt(const Segment& segment, double s) noexcept {
   const VectorPolynomial& c = segment.place;
   if (segment.shape == Shape::kLine) return {ToVector(c[0]) + s * ToVector(c[1]), ToVector(c[1]), Vector::Zero()};
   if (segment.shape == Shape::kQuintic) return ByLength(c, ParameterAt(segment, s));
-  // From the start, not from the centre, which may be far away. 1 - cos = 2 sin².
+  // Relative to the start, not to the centre, which may be far away. 1 - cos = 2 sin².
   const double half = segment.rate * s / 2;
   const auto [sine_half, cosine_half] = maths::SinCos(half);
   const double sine = 2 * sine_half * cosine_half;

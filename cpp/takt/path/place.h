@@ -1,4 +1,4 @@
-// Places by arc length.
+// Positions by arc length.
 #pragma once
 
 #include "takt/path/segment.h"
@@ -6,17 +6,17 @@
 
 namespace takt::path {
 
-// mm of the way between two parameters, which lie close enough together: Gauss and Legendre's rule.
+// Returns the arc length [mm] between two parameters, which must be close together: Gauss-Legendre quadrature.
 double LengthBetween(const VectorPolynomial& place, double from, double to) noexcept;
 
-// Makes `place` the place of the segment, and `length` what it is long. The cells become smaller where the speed over
-// the parameter changes fast.
+// Sets the position of the segment to `place`, and its `length`. The cells are smaller where the speed over the
+// parameter changes fast.
 void SetQuintic(Segment& segment, const VectorPolynomial& place) noexcept;
 
-// Of a quintic: the parameter after s, 0 <= s <= length.
+// Returns the parameter of a quintic at the arc length s. Requires: 0 <= s <= length.
 double ParameterAt(const Segment& segment, double s) noexcept;
 
-// Place, tangent and curvature, 0 <= s <= length.
+// Returns position, tangent and curvature. Requires: 0 <= s <= length.
 Derivatives<Vector> PlaceAt(const Segment& segment, double s) noexcept;
 
 }  // namespace takt::path

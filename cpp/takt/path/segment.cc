@@ -26,7 +26,7 @@ KDL::RotationAcc TurnAt(const Segment& segment, double s) {
     return {ToKdl(base), KDL::Vector::Zero(), KDL::Vector::Zero()};
   }
   const double share = s / segment.length;
-  if (segment.turning == Course::kEven) {  // about an axis that stands still
+  if (segment.turning == Course::kEven) {  // about a fixed axis
     const Vector whole = ToVector(segment.turn[1]);
     const Vector turn = share * whole;
     const double half = turn.norm() / 2;

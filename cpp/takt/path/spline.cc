@@ -12,7 +12,7 @@
 namespace takt::path {
 namespace {
 
-// How orientation and auxiliary axes change at a point, by arc length.
+// Rates of orientation and auxiliary axes at a point, by arc length.
 struct Rates {
   Vector turn = Vector::Zero();
   Vector turn_change = Vector::Zero();
@@ -20,8 +20,8 @@ struct Rates {
   Auxiliaries auxiliary_change{};
 };
 
-// Derivatives over the parameter at the points of the cubic spline through them: a tridiagonal system, eliminated from
-// the front (Thomas).
+// Returns the derivatives by the parameter at the points of the cubic spline through them: a tridiagonal system,
+// eliminated from the front (Thomas).
 std::vector<Vector> Slopes(std::span<const Vector> p, std::span<const double> h, const SplineOptions& options) {
   const std::size_t last = p.size() - 1;
   std::vector<Vector> right(p.size());
@@ -51,14 +51,14 @@ std::vector<Vector> Slopes(std::span<const Vector> p, std::span<const double> h,
   return slopes;
 }
 
-// From begin to end over the parameter 0 to 1, by the derivatives there.
+// Returns the cubic from begin to end over the parameter 0 to 1 with these derivatives there.
 VectorPolynomial Cubic(const Vector& begin, const Vector& begin_slope, const Vector& end, const Vector& end_slope) {
   const Vector way = end - begin;
   return {ToTriple(begin), ToTriple(begin_slope), ToTriple(3 * way - 2 * begin_slope - end_slope),
           ToTriple(begin_slope + end_slope - 2 * way)};
 }
 
-// Rate and its change in the middle of three points, by the mean rates on both sides and their lengths.
+// Returns the rate and its change at the middle of three points, from the mean rates on both sides and their lengths.
 template <typename T>
 std::pair<T, T> Parabola(const T& before, const T& behind, double length_before, double length_behind) {
   const double both = length_before + length_behind;

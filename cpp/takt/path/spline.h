@@ -1,8 +1,8 @@
-// Splines: smooth paths through points. Made when a machine file is loaded: not for the cycle.
+// Splines: smooth paths through points. Made when a machine file is loaded: not for use in the cycle.
 //
-// The place is a cubic spline; so tangent and curvature go on from piece to piece. Orientations and auxiliary axes have
-// at each point the rate and the change of it of a parabola (by arc length) through the point and its neighbours, and
-// run from point to point by polynomials of the fifth degree with these at their ends.
+// The position is a cubic spline, so tangent and curvature are continuous. At each point orientation and auxiliary axes
+// have the rate and its change of a parabola (by arc length) through the point and its neighbours; between the points
+// they are polynomials of the fifth degree with these at their ends.
 #pragma once
 
 #include <optional>
@@ -14,20 +14,21 @@
 
 namespace takt::path {
 
-// What the parameter of the spline advances by from point to point.
+// The increment of the spline's parameter from point to point.
 enum class Spacing : std::uint8_t {
-  kCentripetal,  // the square root of their distance: bends tightly at points close together, does not overshoot
+  kCentripetal,  // square root of their distance: bends tightly at points close together, does not overshoot
   kChord,        // their distance: wide bends
 };
 
 struct SplineOptions {
   Spacing spacing = Spacing::kCentripetal;
-  // Directions at the ends, of any length; without one the path does not bend there (natural).
+  // Directions at the ends, of any length; none: no curvature there (natural).
   std::optional<Triple> start_direction{};
   std::optional<Triple> end_direction{};
 };
 
-// One segment between any two points that follow one another. Two points must differ in place.
+// Makes one segment between each two consecutive points. Requires: consecutive points differ in position (else
+// kCoincide).
 Problem MakeSpline(std::span<const Point> points, const SplineOptions& options, std::vector<Segment>& out);
 
 void describe(Enumeration<Spacing>&);

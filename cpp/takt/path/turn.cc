@@ -7,12 +7,14 @@
 namespace takt::path {
 namespace {
 
-// With t the angle, of the velocity of a turn (1 - cos t) / t² and (t - sin t) / t³, and their derivatives by t over t.
+// With t the angle: the factors of the angular velocity, (1 - cos t) / t² and (t - sin t) / t³, and their derivatives
+// by t over t.
 struct Factors {
   double a, b, da, db;
 };
 
-// The same as series in t²: good to the last bit up to 1. Factor k of the first is 1 / (2 k + 2)!, with changing signs.
+// The same as series in t², exact to the last bit up to 1. Coefficient k of the first is 1 / (2 k + 2)!, with
+// alternating signs.
 constexpr int kTerms = 9;
 constexpr auto kSeries = [] {
   std::array<Factors, kTerms> out{};

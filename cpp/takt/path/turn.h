@@ -1,5 +1,5 @@
-// Orientations that are turned from a base by a vector: axis times angle. Turns about any axis that begin and end with
-// any angular velocity and acceleration are polynomials of that vector.
+// Orientations turned from a base by a vector: axis times angle. Turns about any axis that begin and end with any
+// angular velocity and acceleration are polynomials of that vector.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,7 +11,7 @@ namespace takt::path {
 
 Eigen::Quaterniond ToQuaternion(const KDL::Rotation& rotation) noexcept;
 
-// The turn by `turn`, its angular velocity and its angular acceleration, seen from the frame that stands still.
+// The rotation by `turn`, its angular velocity and its angular acceleration, in the fixed frame.
 struct Turned {
   Eigen::Quaterniond rotation;
   Vector velocity;
@@ -19,7 +19,8 @@ struct Turned {
 };
 Turned TurnBy(const Derivatives<Vector>& turn) noexcept;
 
-// The other way: the derivatives of the vector `turn` (less than a whole turn) that moves so.
+// The inverse: returns the derivatives of the vector `turn` (less than a whole turn) for this angular velocity and
+// acceleration.
 Derivatives<Vector> TurnOf(const Vector& turn, const Vector& velocity, const Vector& acceleration) noexcept;
 
 }  // namespace takt::path

@@ -1,4 +1,4 @@
-// Three numbers as a vector to calculate with, and polynomials of them.
+// Three numbers as a vector for calculations, and polynomials of them.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,7 +31,7 @@ struct Derivatives {
   T second;
 };
 
-// Of the fifth degree, over its own parameter.
+// Returns the value and derivatives of a polynomial of the fifth degree, by its own parameter.
 inline Derivatives<double> Evaluate(const Polynomial& c, double u) noexcept {
   return {c[0] + u * (c[1] + u * (c[2] + u * (c[3] + u * (c[4] + u * c[5])))),
           c[1] + u * (2 * c[2] + u * (3 * c[3] + u * (4 * c[4] + u * (5 * c[5])))),
@@ -57,7 +57,7 @@ inline Vector Slope(const VectorPolynomial& c, double u) noexcept {
          u * (2 * ToVector(c[2]) + u * (3 * ToVector(c[3]) + u * (4 * ToVector(c[4]) + u * 5 * ToVector(c[5]))));
 }
 
-// The one from 0 to 1 with these values and derivatives at both ends.
+// Returns the polynomial over 0 to 1 with these values and derivatives at both ends.
 template <typename T>
 std::array<T, 6> Hermite(const Derivatives<T>& begin, const Derivatives<T>& end) noexcept {
   const T way = end.value - begin.value - begin.first - begin.second / 2;
