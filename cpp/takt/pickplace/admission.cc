@@ -1,4 +1,4 @@
-// Commands as they arrive: inputs and settings changed, targets taken, or refused.
+// Commands on arrival: inputs and settings change, targets are accepted or refused.
 #include "takt/core/describe.h"
 #include "takt/core/in_range.h"
 #include "takt/group/run.h"
@@ -18,7 +18,7 @@ void Finish(const Context& c, Ticket ticket) {
   Report(c, ticket, FeedbackState::kDone);
 }
 
-// PP-20: goes on from where the path was left.
+// PP-20: continues from where the path was left.
 void Resume(const Context& c, Ticket ticket, group::State& g, State& s) {
   if (s.hold.off) return Refuse(c, ticket, ErrorId::kOffPath, s);
   GoOn(c, g, s);
@@ -68,7 +68,7 @@ void CarryOut(const Context& c, Ticket ticket, double, const Control& command, g
   s.reset |= s.inputs.reset_error && !was.reset_error;
   s.abort |= s.inputs.abort && !was.abort;
   s.ack |= s.inputs.ack_gripper && !was.ack_gripper;
-  // What is asked for twice at once is asked for by the first.
+  // Of several requests in one command the first one is carried out.
   if (s.inputs.execute && !was.execute) return Execute(c, ticket, g, s);
   if (s.inputs.home_execute && !was.home_execute) return BeginHoming(c, ticket, g, s);
   if (s.inputs.return_to_path && !was.return_to_path) return Return(c, ticket, g, s);
@@ -81,7 +81,8 @@ void CarryOut(const Context& c, Ticket ticket, double lease_s, const Jog& comman
   const bool may = s.state == PickPlaceState::kReady || Jogs(s) || (rests && s.hold.held);
   ErrorId error = ErrorId::kNone;
   if (!may) error = ErrorId::kState;
-  if (s.jog.ticket == 0 && command.positive && command.negative) error = ErrorId::kParameter;  // which was first?
+  // Their order is not known
+  if (s.jog.ticket == 0 && command.positive && command.negative) error = ErrorId::kParameter;
   if (!IsOn(c, g)) error = WhyOff(c, g);
   if (held && error != ErrorId::kNone) return Refuse(c, ticket, error, s);
   Report(c, ticket, FeedbackState::kActive);
@@ -90,7 +91,7 @@ void CarryOut(const Context& c, Ticket ticket, double lease_s, const Jog& comman
   if (!held && !Jogs(s)) EndJog(c, FeedbackState::kDone, ErrorId::kNone, s);
 }
 
-// Static targets that were accepted do not lie in product coordinate systems that workpieces get.
+// Returns true if no static target that was accepted lies in a product coordinate system of workpieces.
 bool WaitingTargetsFit(const State& s) {
   Settings settings = s.settings;
   for (std::uint32_t i = 0; i < s.order_count; ++i) {
@@ -104,7 +105,7 @@ bool WaitingTargetsFit(const State& s) {
 void CarryOut(const Context& c, Ticket ticket, double, const Configure& command, group::State&, State& s) {
   const Settings was = s.settings;
   ApplyPatch(command, s.settings);
-  // Workpieces in one system: where it lifts from would be forgotten.
+  // With workpieces in one system the one from which the tool lifts would be overwritten.
   const bool fits = TargetFits(s.settings) && WorkpieceSystemsFit(s.settings) &&
                     (c.params.belts.empty() || (TargetSystemFits(s.settings) && WaitingTargetsFit(s)));
   if (!fits) {

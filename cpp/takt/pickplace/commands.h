@@ -1,5 +1,5 @@
-// What a pick and place module understands. Its inputs are levels, as those of the Track Pick & Place block: they stay
-// until they are changed.
+// Commands of a pick and place module. Its inputs are levels, like those of the Track Pick & Place block: they keep
+// their values until they are changed.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 
 namespace takt::pickplace {
 
-// The inputs of the Track Pick & Place manual, 3.6.2; "T&P:" in the doc strings gives their names there. Those of its
-// 3.6.3 are commands of the belts.
+// The inputs of the Track Pick & Place manual, 3.6.2; "T&P:" in the doc strings gives their names there. Those of 3.6.3
+// are commands of the belts.
 template <template <typename> class Of>
 struct InputsOf {
   Of<bool> enable = Preset<Of>(true);
@@ -41,20 +41,20 @@ struct InputsOf {
 };
 using Inputs = InputsOf<Plain>;
 
-// Changes inputs. Done at once; where a rising edge starts a profile, homing or the return to the path, done when that
+// Changes inputs. Done at once; if a rising edge starts a profile, homing or the return to the path, done when that
 // ends.
 using Control = InputsOf<std::optional>;
 
-// Whether it asks for power or motion.
+// Returns true if the command requests power or motion.
 bool AsksToMove(const Control& control) noexcept;
 
-// Level-sensitive: repeat to change the levels; both false, or a release, ends the jog.
+// Level-sensitive: repeat the command to change the levels; both false, or a release, ends the jog.
 struct Jog {
   bool positive = false;
   bool negative = false;
 };
 
-struct ResetCounters {};  // of what was picked, placed and missed
+struct ResetCounters {};  // of workpieces picked, placed and missed
 
 using Command = std::variant<Control, Jog, Configure, ConfigureBelt, ResetCounters>;
 

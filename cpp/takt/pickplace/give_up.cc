@@ -1,4 +1,4 @@
-// A pick is given up in time: the tool is never left low over the belt, in the way of what comes (PP-44).
+// Gives up a pick in time: the tool is never left low over the belt, where the following workpieces pass (PP-44).
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -14,13 +14,14 @@ namespace takt::pickplace {
 namespace {
 
 constexpr double kUp = 1e-6;   // mm
-constexpr double kLetsGo = 8;  // of the way in which it is braked along its path, at most
+constexpr double kLetsGo = 8;  // times the braking distance along the path, at most, for a tool that leaves its belt
 
 kinematics::Frame ToolFrom(const Context& c, const group::State& g, const Place& place) {
   return group::SystemFrame(c.group, g, place.system, place.pcs - 1).Inverse() * group::Present(c.group, g).tool;
 }
 
-// Along the path, where the way down begins, in step with the workpiece.
+// Returns the arc length on the path at which the way down begins, in step with the workpiece; infinite if it is not
+// planned.
 double WayDown(const Context& c, const Order& order) {
   const group::LookAhead& ahead = c.group.ahead;
   for (std::uint64_t i = ahead.first; i < ahead.end(); ++i) {
@@ -29,7 +30,7 @@ double WayDown(const Context& c, const Order& order) {
   return std::numeric_limits<double>::infinity();
 }
 
-// It is on the way up from the belt on which it began.
+// Returns true if the tool is on the way up from the belt on which the order began.
 bool Lifts(const group::State& g, const Order& order) {
   return order.from_belt && g.done <= order.first && !order.profile.legs[0].turns;
 }
@@ -43,14 +44,14 @@ bool ParkingLifts(const group::State& g, const State& s) {
   return s.parking && s.parking_lifts && g.done < s.parking_move;
 }
 
-// The point over where the tool is low, or may be when it comes to rest; nothing: nowhere.
+// Returns the point below which the tool is low, or may be low when it comes to rest; nothing if there is none.
 std::optional<Place> PointOver(const group::State& g, const Order& order) {
   if (Lifts(g, order)) return order.profile.legs[0].to;
   if (!Lowers(order)) return std::nullopt;
   return order.profile.legs[order.profile.count - 2].to;
 }
 
-// Up to `over`, in step.
+// Gives the move up to `over`, in step.
 ErrorId GiveLift(const Context& c, group::State& g, const State& s) {
   const PathRamps& ramps = s.lifting_ramps;
   return Tell(c,
@@ -84,7 +85,7 @@ void NoteHeight(const group::State& g, State& s) noexcept {
   }
 }
 
-// Braked now it rests in step with what it is low on.
+// If braked now, the tool would rest in step with the carrier over which it is low.
 bool IsLow(const Context& c, const group::State& g, const State& s) noexcept {
   if (!g.begun || g.ends || g.interrupted || g.lets_go || !group::IsOnRide(c.group, g)) return false;
   if (ParkingLifts(g, s)) return true;
@@ -92,7 +93,7 @@ bool IsLow(const Context& c, const group::State& g, const State& s) noexcept {
   if (!IsUnderWay(s)) return false;
   const Order& order = s.orders[0];
   if (Lifts(g, order)) return true;
-  // A tool that lets go of its belt may need more.
+  // A tool that leaves its belt may need more.
   const double place = g.pace.raw.position, rest = group::RestAt(c.group, g);
   return Lowers(order) && place + kLetsGo * (rest - place) >= WayDown(c, order);
 }
@@ -103,7 +104,7 @@ void ComeToRest(const Context& c, const PathRamps& ramps, group::State& g, State
   const std::uint32_t belt = s.at_belt != 0 ? s.at_belt : s.parked_at;
   LosePath(c, false, s);
   if (!low) return HaltGroup(c, g, s);
-  // What moves is braked in step, and rises meanwhile; IsLifted gives the rest of the way up.
+  // A moving tool is braked in step and rises meanwhile; IsLifted gives the rest of the way up.
   const bool moves = g.pace.now.velocity > 0 || s.over.system != group::CoordinateSystem::kPcs;
   s.lifting_ramps = ramps;
   if (moves) {
@@ -123,7 +124,7 @@ void StepLift(const Context& c, group::State& g, State& s) noexcept {
   if (!s.lifting || !IsLifted(c, g, s)) return;
   const std::uint32_t belt = s.at_belt;
   ForgetPlace(s);
-  s.at_belt = belt;  // it parks there if nothing else is to be done
+  s.at_belt = belt;  // parks there if nothing else is to be done
   if (IsOn(c, g) && !IsFree(c, g)) HaltGroup(c, g, s);
 }
 
@@ -134,7 +135,7 @@ double RiseTo(const Context& c, const group::State& g, const Place& over) noexce
 double TimeToGo(const Context& c, const group::State& g, const Order& order, const State& s) noexcept {
   const double known_s = group::TimeLeft(c.group, g);
   if (!std::isnan(known_s)) return known_s;
-  // It is being planned, or was stopped.
+  // The path is being planned, or was stopped.
   const group::LookAhead& ahead = c.group.ahead;
   const double way = g.begun && ahead.count > 0 ? ahead[ahead.end() - 1].end() - g.pace.now.position : 0;
   const double stopped_s = TimeFor(std::max(0.0, way), order.ramps);

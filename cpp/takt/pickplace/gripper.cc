@@ -1,4 +1,4 @@
-// When a profile will be over, to the cycle, and the gripper's pulse before it (PP-30).
+// The end of a profile, predicted to the cycle, and the gripper's pulse before it (PP-30).
 #include <cmath>
 #include <optional>
 
@@ -12,15 +12,15 @@ using trajectory::PathPace;
 using trajectory::PathWindow;
 
 constexpr double kThere = 1e-6;  // mm
-// The scout goes so many cycles in one: fewer than the group's rehearsal, which may slow the motion down where it
-// passes.
+// Cycles that the scout runs in one cycle: fewer than the group's rehearsal, which may still slow the motion down where
+// it runs.
 constexpr int kScouted = 16;
-// Where that is through already.
+// The same where the rehearsal is complete.
 constexpr int kScoutedBehind = 64;
-// Before the pulse may be due it is looked at in each cycle.
+// Cycles before the pulse may be due in which each cycle is checked.
 constexpr std::uint64_t kEarly = 3;
 
-// Along the path, where a move ends; nothing: it is not planned to its end.
+// Returns the arc length on the path at which a move ends; nothing if it is not planned to its end.
 std::optional<double> EndOf(const group::LookAhead& ahead, std::uint64_t move) {
   const PathWindow& window = ahead.window;
   for (std::uint64_t i = ahead.end(); i > ahead.first; --i) {
@@ -33,7 +33,7 @@ std::optional<double> EndOf(const group::LookAhead& ahead, std::uint64_t move) {
   return std::nullopt;
 }
 
-// As the group does.
+// Advances the pace in the same way as the group does.
 void Advance(const PathWindow& window, double period_s, PathPace& pace) {
   const std::uint64_t next = pace.node + 1;
   if (pace.raw_stands && trajectory::Stands(pace) && window[pace.node].stop && next + 1 < window.known()) {
@@ -59,7 +59,7 @@ bool IsOnItsWay(const group::State& g, const Order& order) {
          g.done <= order.last;
 }
 
-// Goes on ahead of the group to the end of an order.
+// Runs ahead of the group to the end of an order.
 void GoOn(const Context& c, double end, int cycles, Scout& scout) {
   for (int i = 0; i < cycles && !scout.known; ++i) {
     Advance(c.group.ahead.window, c.group.cycle.period_s, scout.pace);
@@ -79,7 +79,7 @@ void StepScout(const Context& c, const group::State& g, const Order& order, doub
   if (!scout.running) {
     scout = {.running = true, .order_last = order.last, .cycle = c.group.cycle.count - 1, .pace = g.pace};
   }
-  // A law that leads to the end says when; one that is to be replaced does not.
+  // A law that leads to the end determines its time; a law that is to be replaced does not.
   if (const trajectory::PathTiming& timing = c.group.ahead.timing; timing.active()) {
     scout.known = timing.Settles(end);
     scout.end_cycle = scout.cycle = c.group.cycle.count - 1 + timing.rest_cycles();
@@ -91,7 +91,7 @@ void StepScout(const Context& c, const group::State& g, const Order& order, doub
   Learn(s.profile_time, order, s);
 }
 
-// From the end of the first order to that of the second one, so that its time is known when it begins. Looked at again
+// Runs from the end of the first order to that of the second one, so that its time is known when it begins. Repeated
 // then: axes that have to keep up may make it longer.
 void StepNextScout(const Context& c, State& s) {
   Scout& scout = s.next_scout;
@@ -116,7 +116,7 @@ void StepGripper(const Context& c, const group::State& g, State& s) noexcept {
     s.next_scout = {};
   }
   if (!IsOnItsWay(g, order)) {
-    if (s.scout.order_last == order.last) s.next_scout = {};  // it is not when it was expected that it goes on
+    if (s.scout.order_last == order.last) s.next_scout = {};  // it does not continue at the expected time
     return;
   }
   if (s.scout.order_last != order.last) {
@@ -134,7 +134,7 @@ void StepGripper(const Context& c, const group::State& g, State& s) noexcept {
   const double period = c.group.cycle.period_s;
   const auto before = static_cast<std::uint64_t>(std::llround(order.gripper_time / period));
   if (c.group.cycle.count + before + kEarly < s.scout.end_cycle) return;
-  // What stands after this cycle is its first step.
+  // The state after this cycle is its first step.
   const trajectory::PathTiming& timing = c.group.ahead.timing;
   if (timing.active() ? timing.rest_cycles() > before + 1
                       : !ArrivesWithin(c.group.ahead.window, *end, before + 1, period, g.pace)) {

@@ -1,4 +1,4 @@
-// Homing in the order given (PP-04).
+// Homing in the given order (PP-04).
 #include <algorithm>
 
 #include "takt/group/members.h"
@@ -21,13 +21,13 @@ const axis::HomingParams* OwnHoming(const Context& c, const group::State& g, std
   return found != c.params.homing.end() ? &found->homing : nullptr;
 }
 
-// Those with this place in the order begin to look. An error: one cannot.
+// Starts homing of the axes with this place in the order; returns an error if one cannot home.
 ErrorId BeginPlace(const Context& c, std::uint32_t place, const group::State& g, const State& s) {
   for (std::size_t k = 0; k < group::kMaxAxes; ++k) {
     if (PlaceInOrder(c, g, s, k) != place) continue;
     const axis::Context of_axis = group::ContextOf(c.group, g, k);
     const axis::HomingParams before = of_axis.params.homing;
-    // Taken over by the command: the axis' own stand again behind it.
+    // Copied by the command: afterwards the axis' own parameters are restored.
     if (const axis::HomingParams* own = OwnHoming(c, g, k); own && s.settings.home_by_module) {
       of_axis.params.homing = *own;
     }
@@ -74,7 +74,7 @@ void EndHoming(const Context& c, FeedbackState feedback, ErrorId error, group::S
 }
 
 void InHoming(const Context& c, group::State& g, State& s) noexcept {
-  // Somebody else has stopped the group, switched it off or taken it away, or moves it.
+  // Another command has stopped the group, switched it off, taken it away or moves it.
   if (g.state != group::GroupState::kStandby || g.task != group::Task::kNone || !IsOn(c, g)) {
     const bool off = !group::AllMembers(c.group, g, [](const axis::State& m) { return m.loop_closed; });
     EndHoming(c, FeedbackState::kAborted, off ? ErrorId::kPowerOff : ErrorId::kNone, g, s);
@@ -88,7 +88,7 @@ void InHoming(const Context& c, group::State& g, State& s) noexcept {
   while (s.homing.place < kLastPlace) {
     ++s.homing.place;
     if (const ErrorId error = BeginPlace(c, s.homing.place, g, s); error != ErrorId::kNone) return Fail(c, error, g, s);
-    // Those that are where they are at once have begun none the less.
+    // Axes that are homed in place have already ended.
     if (!group::AllMembers(c.group, g, [](const axis::State& m) { return !IsLooking(m); })) return;
   }
   EndHoming(c, FeedbackState::kDone, ErrorId::kNone, g, s);

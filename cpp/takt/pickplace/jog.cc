@@ -16,11 +16,11 @@ namespace {
 
 using group::CoordinateSystem;
 
-constexpr double kFarthest = 16'384;  // mm or u
-constexpr double kWidest = 170;       // deg: beyond half a turn it would go the other way round
-constexpr double kUprightest = 89.9;  // deg, of B
-constexpr double kShort = 1e-3;       // of the end of what can be reached
-constexpr double kOfTurn = 0.1;       // of a turn that was asked for
+constexpr double kFarthest = 16'384;  // [mm] or [u]
+constexpr double kWidest = 170;       // [deg]: beyond half a turn the motion would take the opposite sense
+constexpr double kUprightest = 89.9;  // [deg] of B
+constexpr double kShort = 1e-3;       // margin to the end of what can be reached
+constexpr double kOfTurn = 0.1;       // share of a requested turn
 
 struct Ramps {
   double velocity, acceleration, deceleration, jerk;
@@ -38,7 +38,7 @@ Ramps RampsOf(const State& s) {
   return {p.real_axis_jog_velocity, p.real_axis_jog_acceleration, p.real_axis_jog_deceleration, p.real_axis_jog_jerk};
 }
 
-// The SW limits beyond which the axes would be with the tool there; none: it cannot be there at all.
+// Returns the SW limits that the axes would violate with the tool there; none if the tool cannot be there at all.
 group::Directions EndsAt(const Context& c, const group::State& g, const kinematics::Frame& tool,
                          const kinematics::Joints& near) {
   const kinematics::Solutions all =
@@ -60,7 +60,7 @@ double& NumberOf(kinematics::Pose& pose, SelectAxis axis) {
   return *numbers[static_cast<std::size_t>(axis) - 1];
 }
 
-// Of the tool along or about an axis of the MCS.
+// Returns a move of the tool along or about an axis of the MCS.
 group::MoveLinearAbsolute ToolMove(const Context& c, const group::State& g, double& way, State& s) {
   const group::End present = group::Present(c.group, g);
   const kinematics::Pose from = kinematics::ToPose(present.tool);
@@ -73,7 +73,7 @@ group::MoveLinearAbsolute ToolMove(const Context& c, const group::State& g, doub
     kinematics::Joints joints = present.joints;
     const kinematics::Frame tool = kinematics::ToFrame(at(way));
     if (group::JointsAt(c.group, tool, present.joints, joints) != kinematics::Reason::kNone) return false;
-    // Mechanisms without a wrist take any orientation for theirs.
+    // Mechanisms without a wrist accept any orientation as their own.
     kinematics::Frame reached;
     const bool turns = s.jog_axis > SelectAxis::kZ;
     if (turns && (group::ToolAt(c.group, joints, reached) != kinematics::Reason::kNone ||
@@ -110,7 +110,7 @@ group::MoveLinearAbsolute AxisMove(const Context& c, const group::State& g, std:
   return move;
 }
 
-// The place in the group of the real axis that is selected; none: kMaxAxes.
+// Returns the index in the group of the selected real axis; none: kMaxAxes.
 std::size_t PlaceOf(const Context& c, const group::State& g, const State& s) {
   for (std::size_t k = 0; k < group::kMaxAxes; ++k) {
     const std::size_t real = g.members[k] != 0 ? RealOf(c, g, k) : kRealAxes;
@@ -150,7 +150,7 @@ void EndJog(const Context& c, FeedbackState feedback, ErrorId error, State& s) n
 
 namespace {
 
-// Gives the jog's move, from where the tool is now. False: it is refused, and reported.
+// Gives the jog's move, from the present place of the tool. Returns false if it is refused; that is reported.
 bool BeginMove(const Context& c, group::State& g, State& s) {
   s.jog_axis = s.inputs.select_axis;
   s.jog_released = false;
@@ -166,7 +166,7 @@ bool BeginMove(const Context& c, group::State& g, State& s) {
 }  // namespace
 
 void BeginJog(const Context& c, group::State& g, State& s) noexcept {
-  // What rises is let go of first: a stop would wait for that.
+  // A lift ends first: a stop would wait for it.
   if (s.jog.ticket == 0 || s.halting || s.lifting || !IsOn(c, g) || !Stands(c, g)) return;
   if (!s.jog.keys.positive && !s.jog.keys.negative) return EndJog(c, FeedbackState::kDone, ErrorId::kNone, s);
   s.jog_sense = s.jog.keys.positive ? 1 : -1;
@@ -190,7 +190,7 @@ void InJog(const Context& c, group::State& g, State& s) noexcept {
     s.halting = s.jog_released = Tell(c, halt, g) == ErrorId::kNone;
     s.given = 0;
   }
-  if (g.ends && !s.halting && g.reason == kinematics::Reason::kNone) {  // somebody else has stopped it
+  if (g.ends && !s.halting && g.reason == kinematics::Reason::kNone) {  // another command has stopped it
     EndJog(c, FeedbackState::kAborted, ErrorId::kNone, s);
     s.given = 0;
     return Enter(s.back, s);
@@ -201,7 +201,7 @@ void InJog(const Context& c, group::State& g, State& s) noexcept {
     if (!BeginMove(c, g, s)) Enter(s.back, s);
     return;
   }
-  if (held && !refused) {  // it has come to the end of its range
+  if (held && !refused) {  // it has reached the end of its range
     if (!s.jog_end.any()) s.warning = ErrorId::kUnreachable;
     if (!s.jog_end.any()) return;
     s.given = 0;

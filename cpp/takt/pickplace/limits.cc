@@ -1,4 +1,4 @@
-// Limit switches and SW limits as the module sees them (PP-05, PP-60): towards a switch that is on nothing moves.
+// Limit switches and SW limits as the module sees them (PP-05, PP-60): nothing moves towards a switch that is on.
 #include <algorithm>
 #include <numbers>
 
@@ -17,10 +17,10 @@ namespace {
 using group::Directions;
 using kinematics::Frame;
 
-constexpr double kLeast = 1e-6;  // mm, rad, u, or per s: what is less is rounding
-constexpr int kSamples = 8;      // of a leg
+constexpr double kLeast = 1e-6;  // [mm], [rad], [u], or per s: below this it is rounding
+constexpr int kSamples = 8;      // per leg
 
-// The bit of the group for an axis of the module; none: the group has no such axis.
+// Returns the bit of the group for an axis of the module; nothing if the group has no such axis.
 std::optional<std::size_t> BitOf(const Context& c, const group::State& g, std::size_t axis) {
   if (axis < kFirstReal) return group::kMaxAxes + axis;
   for (std::size_t k = 0; k < group::kMaxAxes; ++k) {
@@ -29,7 +29,7 @@ std::optional<std::size_t> BitOf(const Context& c, const group::State& g, std::s
   return std::nullopt;
 }
 
-// Where the tool is after a share of a leg, in the MCS.
+// Returns the pose of the tool in the MCS after a share of a leg.
 Frame Along(const Context& c, const Leg& leg, const Frame& from, const Frame& to, double share) {
   Frame at = to;
   if (!leg.arch) {
@@ -44,7 +44,7 @@ Frame Along(const Context& c, const Leg& leg, const Frame& from, const Frame& to
   return at;
 }
 
-// What goes from one pose to another, as a motion of the axes and of the tool in 1 s.
+// Returns the closed directions in which axes and tool move from one pose to another, taken as a motion in 1 s.
 Directions Between(const Context& c, const group::State& g, const Directions& closed, const Frame& from,
                    const Frame& to, kinematics::Joints& joints) {
   kinematics::Joints after = joints, change{};
@@ -63,7 +63,7 @@ void StopFor(const Context& c, bool positive, std::size_t axis, group::State& g,
   if (g.state != group::GroupState::kDisabled) StopAxes(c, g, s);
 }
 
-// An axis that goes by itself, not along a path of the group, and does not brake.
+// Returns true if an axis moves by itself, not along a path of the group, and does not brake.
 bool GoesAlone(const axis::State& member, int sense) {
   return !axis::IsGuided(member) && member.plc != axis::PlcState::kStopping &&
          member.plc != axis::PlcState::kErrorStop && sense * member.setpoint.velocity > kLeast;
@@ -132,7 +132,7 @@ Directions ClosedOn(const Context& c, const group::State& g, const Profile& prof
       if (taken.any()) return taken;
       at = next;
     }
-    // In step with what carries it.
+    // In step with its carrier.
     if (leg.to.system == group::CoordinateSystem::kPcs) {
       const kinematics::MovingFrame carrier = group::PlaceOf(c.group, g.cargoes[leg.to.pcs - 1]);
       const bool moves = g.cargoes[leg.to.pcs - 1].carrier != 0;

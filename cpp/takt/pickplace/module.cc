@@ -12,14 +12,14 @@ namespace {
 
 using group::GroupState;
 
-constexpr double kLeastRamps = 0.1;  // least factor of accelerations and jerks by an override
+constexpr double kLeastRamps = 0.1;  // least factor of accelerations and jerks under an override
 
-// Something that stops harder than what is there.
+// Returns true if a stop input has risen that stops harder than the present state.
 bool StopRises(const State& s) {
   return Rises(s.inputs.stop_all, s.before.stop_all) || Rises(s.inputs.path_stop, s.before.path_stop);
 }
 
-// The manual's number for what stopped an axis, where it has one.
+// Returns the manual's number for the reason that stopped an axis, if it has one.
 ErrorId ErrorOf(ErrorId axis_error) {
   switch (axis_error) {
     case ErrorId::kLimitSwitchPositive:
@@ -48,7 +48,7 @@ void WatchFaults(const Context& c, group::State& g, State& s) {
   }
 }
 
-// What the module is about with its group.
+// Returns true if the module is active with its group.
 bool IsBusy(const State& s) {
   return Jogs(s) || s.state == PickPlaceState::kHoming || s.state == PickPlaceState::kPreparingPath ||
          s.state == PickPlaceState::kMovePp || s.state == PickPlaceState::kPathInterrupt;
@@ -66,13 +66,13 @@ PathRamps PathRampsOf(const State& s) {
   return {p.path_velocity, p.path_acceleration, p.path_deceleration, p.path_jerk};
 }
 
-// All that is done in this cycle.
+// Completes everything that is done in this cycle.
 void ArriveAll(const Context& c, const group::State& g, State& s) {
   while (Arrive(c, g, s)) {
   }
 }
 
-// Forgets all and brings the tool to rest, as high as it can. A pick on its workpiece ends as with ack_gripper.
+// Drops everything and brings the tool to rest, as high as it can. A pick on its workpiece ends as with ack_gripper.
 void Leave(const Context& c, FeedbackState feedback, ErrorId error, group::State& g, State& s) {
   ArriveAll(c, g, s);
   if (IsOnWorkpiece(c, g, s)) Complete(c, s);
@@ -86,7 +86,8 @@ void Leave(const Context& c, FeedbackState feedback, ErrorId error, group::State
   if (moves) HaltGroup(c, g, s);
 }
 
-// The group or a member is being switched off: it brakes, or its brake closes, and refuses power until then.
+// Returns true while the group or a member is being switched off: it brakes, or its brake closes, and it refuses power
+// until then.
 bool SwitchesOff(const Context& c, const group::State& g) {
   if (g.task == group::Task::kPower && !g.power_on) return true;
   return !group::AllMembers(
@@ -123,18 +124,19 @@ void SwitchPower(const Context& c, group::State& g, State& s) {
 void SetOverride(const Context& c, group::State& g, State& s) {
   const double factor = s.inputs.override_factor;
   if (factor == s.override_given) return;
-  // Moves keep the accelerations and jerks with which they were given. A hold (0) leaves these factors as they are.
+  // Moves keep the accelerations and jerks of the time at which they were given. A hold (0) leaves these factors
+  // unchanged.
   const auto ramps = [&](double given) { return factor > 0 ? std::max(factor, kLeastRamps) : given; };
   Tell(c, group::SetOverride{factor, ramps(g.acceleration_factor), ramps(g.jerk_factor)}, g);
   s.override_given = factor;
 }
 
-// Those of the path that is gone, or of the next one.
+// Returns the deceleration of the current path, or of the next one.
 double PathDeceleration(const State& s) {
   return s.order_count > 0 ? s.orders[0].ramps.deceleration : s.settings.path_deceleration;
 }
 
-// Where the path is held, for the way back.
+// Notes where the path is held, for the return.
 void NoteHold(const Context& c, const group::State& g, State& s) {
   const Place place = PresentPlace(c, g);
   s.hold.pose = place.pose;
@@ -149,9 +151,9 @@ void Interrupt(const Context& c, double deceleration, double jerk, group::State&
   Tell(c, group::Interrupt{.deceleration = std::max(deceleration, PathDeceleration(s)), .jerk = jerk}, g);
 }
 
-// On its path; a tool that is low over a belt rises in step first, and its order begins anew from there (PP-61). A pick
-// that has arrived ends at once, whatever its height, as with ack_gripper: the tool does not return to that workpiece.
-// It is missed if the tool is not on it: another command had interrupted the group.
+// Stops on the path; a tool that is low over a belt rises in step first, and its order begins again from there (PP-61).
+// A pick that has arrived ends at once, whatever its height, as with ack_gripper: the tool does not return to that
+// workpiece. It is missed if the tool is not on it: another command had interrupted the group.
 void StopOnPath(const Context& c, double deceleration, double jerk, group::State& g, State& s) {
   const std::uint32_t orders = s.order_count;
   ArriveAll(c, g, s);
@@ -208,16 +210,16 @@ void BeginStop(const Context& c, group::State& g, State& s) {
   if (s.state != PickPlaceState::kStop) Enter(PickPlaceState::kStop, s);
 }
 
-// A path that is held is lost as soon as its group is not interrupted any more, by another move, a halt, a stop, power
-// off or disable. What the group counts as over then says nothing about where the tool is. So is one that is to be
-// given again when the group moves meanwhile.
+// A held path is lost as soon as its group is no longer interrupted, due to another move, a halt, a stop, power off or
+// disable: the moves that the group counts as over then do not tell the position of the tool. A path that has to be
+// given again is lost when the group moves meanwhile.
 void WatchHold(const Context& c, group::State& g, State& s) {
   if (!s.hold.held || s.hold.off) return;
   if (g.interrupted) return NoteHold(c, g, s);
   const Phase phase = s.order_count > 0 ? s.orders[0].phase : Phase::kNew;
   s.hold.off = phase == Phase::kGoing || (phase == Phase::kHeld && !Stands(c, g));
   if (phase != Phase::kGoing && !s.parking) return;
-  // Continued by another command it would go on to a workpiece that is not the order's any more.
+  // Continued by another command it would lead to a workpiece that is no longer the order's.
   const bool goes_on = g.failed < (phase == Phase::kGoing ? s.orders[0].first : s.parking_move) && g.queue.count > 0;
   LosePath(c, true, s);
   if (goes_on) HaltGroup(c, g, s);
@@ -285,12 +287,13 @@ void InError(const Context& c, group::State& g, State& s) {
   Enter(PickPlaceState::kReady, s);
   const bool stopped =
       !group::AllMembers(c.group, g, [](const axis::State& m) { return m.emergency == axis::Emergency::kNone; });
-  if (!s.inputs.regulator_on || IsOn(c, g) || stopped) return;  // after an emergency stop it has to be asked for anew
+  // After an emergency stop power has to be requested again
+  if (!s.inputs.regulator_on || IsOn(c, g) || stopped) return;
   Tell(c, group::Power{.enable = true}, g);
   s.enables = g.state == GroupState::kDisabled;
 }
 
-// READY and SERVICE are one another's: what the group does by itself is a service.
+// Switches between READY and SERVICE: motions of the group that are not the module's are a service.
 void ReadyOrService(const Context& c, const group::State& g, State& s) {
   if (s.state != PickPlaceState::kReady && s.state != PickPlaceState::kService) return;
   const bool moves =
@@ -302,13 +305,13 @@ void ReadyOrService(const Context& c, const group::State& g, State& s) {
   Enter(wanted, s);
 }
 
-// Power was asked for, and the group is to be enabled once that is there.
+// Returns true if power was requested and the group will be enabled once it is on.
 bool WillBeOn(const Context& c, const group::State& g, const State& s) {
   return s.enables && group::AllMembers(c.group, g, [](const axis::State& m) { return m.enable; });
 }
 
-// The group was taken away, stopped or switched off by somebody else: what the module was about is over. It does not go
-// on by itself when the group is there again.
+// The group was taken away, stopped or switched off by another command: the module's activity ends, and does not
+// continue by itself when the group is available again.
 void WatchGroup(const Context& c, group::State& g, State& s) {
   if ((!IsBusy(s) && s.jog.ticket == 0) || IsOn(c, g) || WillBeOn(c, g, s)) return;
   if (s.state == PickPlaceState::kError || s.state == PickPlaceState::kHoming) return;  // see InError, InHoming
@@ -367,7 +370,7 @@ void RunStates(const Context& c, group::State& g, State& s) {
   }
   if (s.state != PickPlaceState::kError) WatchFaults(c, g, s);
   WatchSwitches(c, g, s);
-  // A jog from STOP goes on beneath the level that led there.
+  // A jog from STOP continues while the level that led to STOP is still true.
   const bool jogs = Jogs(s) && s.back == PickPlaceState::kStop;
   const bool stops = jogs ? StopRises(s) : StopIsAsked(s);
   if (s.state != PickPlaceState::kError && s.state != PickPlaceState::kStop && stops) BeginStop(c, g, s);
@@ -379,19 +382,19 @@ void RunStates(const Context& c, group::State& g, State& s) {
   StepState(c, g, s);
 }
 
-// Whether there is not enough time left for the workpiece that is gone for.
+// Returns true if there is not enough time left for the approached workpiece.
 bool IsTooLate(const Context& c, const group::State& g, const State& s) {
   if (s.order_count == 0 || s.orders[0].workpiece == 0) return false;
   const Order& order = s.orders[0];
   return !StaysWithin(c, g, order, TimeToGo(c, g, order, s) + order.own.sync_time);
 }
 
-// Along its path, or away from where it stood.
+// Returns true if the group moves along its path, or a member away from its position.
 bool MovesOn(const Context& c, const group::State& g) {
   return g.begun ? g.pace.now.velocity > 0 : !group::AllMembers(c.group, g, axis::AtRest);
 }
 
-// The tool is not at a place of the MCS any more: its frame, or the position of an axis, was set anew.
+// Returns true if the tool is no longer at a place in the MCS: its frame, or the position of an axis, was set anew.
 bool IsElsewhere(const Context& c, const group::State& g, const Place& place) {
   constexpr double kSamePosition = 0.01;     // mm
   constexpr double kSameOrientation = 1e-4;  // rad, of the elements of the rotation matrix
@@ -445,7 +448,7 @@ void Step(const Context& c, group::State& g, State& s) noexcept {
   s.pulse = false;
   const bool moves = MovesOn(c, g);
   if (moves) s.in_target = false;
-  if (s.parked_at != 0 && !s.parking && (moves || IsElsewhere(c, g, s.at))) ForgetPlace(s);  // by other commands
+  if (s.parked_at != 0 && !s.parking && (moves || IsElsewhere(c, g, s.at))) ForgetPlace(s);  // moved by other commands
   SwitchPower(c, g, s);
   SetOverride(c, g, s);
   CloseDirections(c, g, s);

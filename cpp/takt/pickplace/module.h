@@ -1,4 +1,4 @@
-// One pick and place module, stage by stage of the cycle: it moves a group by the group's own commands alone. Free
+// One pick and place module, stage by stage of the cycle: it moves a group with the group's own commands only. Free
 // functions over plain state; nothing here allocates, locks, throws or reads a clock.
 #pragma once
 
@@ -21,30 +21,32 @@ struct Belt {
   conveyor::State* state = nullptr;
 };
 
-// What every stage gets besides the module itself.
+// Input of every stage besides the module itself.
 struct Context {
   const PickPlaceParams& params;
   group::Context group;
-  // Those of the params, in their order.
+  // The belts of the params, in the same order.
   std::array<Belt, kBelts> belts{};
-  double path_error = 0;  // mm, of the group in the cycle before
+  double path_error = 0;  // [mm] path error of the group in the previous cycle
 };
 
-// As it stands when power comes on.
+// Returns the state at power-on.
 State MakeState(const PickPlaceParams& params) noexcept;
 
-// command: carries a command out or refuses it; reports either way. `lease_s` > 0: of a jog, see Renew.
+// Command stage: carries a command out or refuses it, and reports either. `lease_s` [s]: lease of a jog, see Renew; 0:
+// none.
 void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, group::State& group,
            State& s) noexcept;
-// Lets go of a jog with this ticket, and extends its lease. False: there is none.
+// Release ends the jog with this ticket, Renew extends its lease. Returns false if there is no such jog (Renew: with a
+// lease).
 bool Release(const Context& c, Ticket ticket, State& s) noexcept;
 bool Renew(const Context& c, Ticket ticket, State& s) noexcept;
 
-// Behind that of its group and axes: a module that was about something is in error, and does nothing that was asked for
-// before.
+// Runs after the emergency stop of the group and its axes: an active module goes into error and drops everything
+// requested before.
 void EmergencyStop(const Context& c, group::State& group, State& s) noexcept;
 
-// move: just before the group.
+// Motion stage: runs just before the group's.
 void Step(const Context& c, group::State& group, State& s) noexcept;
 
 void Publish(const Context& c, const group::State& group, const State& s, Outputs& out) noexcept;

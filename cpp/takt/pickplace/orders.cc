@@ -1,11 +1,11 @@
-// Targets, one behind the other: profiles to them are given to the group as moves, and watched.
+// Targets, in sequence: profiles to them are given to the group as moves, and monitored.
 //
-// Invariant: a workpiece counts as picked, or a product as placed, only in a cycle in which the tool is at its place.
-// Complete() alone counts. It is called for a static order whose moves have all ended as done (HasArrived: a move that
-// was aborted is none), and for an order over a belt while IsOnWorkpiece() holds: the same, and the tool rests on the
-// workpiece in step. Both are looked at in the cycle itself, so a group that is interrupted, halted, disabled or moved
-// by other commands meanwhile never completes an order. An order that had arrived on its workpiece and ends otherwise
-// counts as missed, and deletes it: whether the gripper has it is not known (LetGoOfWorkpiece).
+// Invariant: a workpiece counts as picked, or a product as placed, only in a cycle in which the tool is at its target.
+// Only Complete() counts. It is called for a static order whose moves have all ended as done (HasArrived: aborted moves
+// do not count), and for an order over a belt while IsOnWorkpiece() holds: its moves have ended as done, and the tool
+// rests on the workpiece in step. Both are checked in the cycle itself, so a group that is interrupted, halted,
+// disabled or moved by other commands meanwhile never completes an order. An order that had arrived on its workpiece
+// and ends otherwise counts as missed, and deletes it: whether the gripper has it is not known (LetGoOfWorkpiece).
 #include <algorithm>
 #include <cmath>
 
@@ -21,10 +21,10 @@ namespace {
 
 using group::SystemFrame;
 
-constexpr double kLimitShare = 0.98;  // as of the axes: the rest keeps the motion within
-constexpr double kOneAtATime = 0.25;  // of what is learned of a profile
-constexpr double kForget_s = 10;      // while nothing is to be learned
-constexpr double kMargin = 1.1;       // of the time that the next one is thought to take
+constexpr double kLimitShare = 0.98;  // of the tool's limits, as for axes: a margin
+constexpr double kOneAtATime = 0.25;  // weight of a new duration that is shorter
+constexpr double kForget_s = 10;      // [s] time constant while there is nothing to learn from
+constexpr double kMargin = 1.1;       // on the estimated time of the next profile
 
 bool IsStatic(const Order& order) {
   return order.belt == 0;
@@ -61,7 +61,7 @@ void Push(const Order& order, State& s) {
   s.orders[s.order_count++] = order;
 }
 
-// No other order gets the workpiece; `cause`: the counter of missed ones that says why.
+// Deletes the workpiece, so that no other order gets it. `cause`: the counter of missed ones to increment.
 void MissWorkpiece(const Context& c, Order& order, std::uint32_t& cause, State& s) {
   if (order.workpiece == 0) return;
   RemoveWorkpiece(c, order);
@@ -69,7 +69,7 @@ void MissWorkpiece(const Context& c, Order& order, std::uint32_t& cause, State& 
   ++cause;
 }
 
-// Of an order that ends, or begins anew, before it is done.
+// Releases the workpiece of an order that ends, or begins again, before it is done.
 void LetGoOfWorkpiece(const Context& c, Order& order, State& s) {
   if (order.phase == Phase::kStaying) {
     MissWorkpiece(c, order, s.counters.interrupted, s);
@@ -79,12 +79,12 @@ void LetGoOfWorkpiece(const Context& c, Order& order, State& s) {
   GiveBackWorkpiece(c, order);
 }
 
-// Its moves are over, and none of them was aborted.
+// Returns true if its moves are over, and none of them was aborted.
 bool HasArrived(const group::State& g, const Order& order) {
   return order.phase == Phase::kGoing && g.done > order.last && g.failed < order.first;
 }
 
-// The group has aborted moves of the order, or of the way to the parking position.
+// Returns true if the group has aborted moves of the order, or of the way to the parking position.
 bool IsLost(const group::State& g, const State& s) {
   const bool order = s.order_count > 0 && s.orders[0].phase == Phase::kGoing && g.failed >= s.orders[0].first;
   return order || (s.parking && g.failed >= s.parking_move);
@@ -133,7 +133,7 @@ struct QueuedLegs {
   std::uint64_t last = 0;
 };
 
-// From a leg on.
+// Gives the legs from `from` on.
 QueuedLegs GiveLegs(const Context& c, const Profile& profile, std::uint32_t from, const PathRamps& ramps,
                     bool keep_orientation, group::State& g, State& s) {
   QueuedLegs given{profile.error, g.done + g.queue.count, 0};
@@ -160,7 +160,7 @@ Systems SystemsOf(const Context& c, const group::State& g, const Place& start, c
           SystemFrame(c.group, g, target.system, target.pcs - 1)};
 }
 
-// Where the moves given end.
+// Sets the place at which the moves given so far end.
 void SetPlace(const Place& at, std::uint32_t belt, double distance, State& s) {
   s.at = at;
   s.at_known = true;
@@ -190,15 +190,15 @@ void Park(const Context& c, std::uint32_t belt, group::State& g, State& s) {
   s.parking_over = profile.legs[0].to;
 }
 
-// From where the tool is now, which mechanisms without a wrist turn otherwise than the parking position.
+// From the present place of the tool, which mechanisms without a wrist turn differently from the parking position.
 void EndParking(const Context& c, const group::State& g, State& s) {
   s.parking = false;
-  if (s.parked_at == 0) return;  // moves behind it were given
+  if (s.parked_at == 0) return;  // moves after it were given
   s.at = PresentPlace(c, g);
   s.at.parks = true;
 }
 
-// Its moves are given; or it waits for a workpiece, where such wait.
+// Gives the order's moves; an order over a belt waits if there is no workpiece.
 void Begin(const Context& c, group::State& g, Order& order, State& s) {
   s.in_target = false;
   Place target = order.target;
@@ -206,7 +206,7 @@ void Begin(const Context& c, group::State& g, Order& order, State& s) {
     const conveyor::Object* object = s.parking ? nullptr : ChooseWorkpiece(c, g, order, s);
     if (!object) {
       order.phase = Phase::kWaiting;
-      // What it learned may be why it waits.
+      // The learned slowness may be the reason for waiting.
       s.slowness += (1 - s.slowness) * std::min(1.0, c.group.cycle.period_s / kForget_s);
       if (s.parked_at != order.belt && !s.parking) Park(c, order.belt, g, s);
       return;
@@ -237,7 +237,7 @@ void Begin(const Context& c, group::State& g, Order& order, State& s) {
   SetPlace(target, order.belt, order.own.z_distance, s);
 }
 
-// The rest of a path that was left, from where it was left. An arch goes on to the same height.
+// Gives the rest of a path that was left, from the present place. An arch keeps its crest height.
 void BeginAgain(const Context& c, group::State& g, Order& order, State& s) {
   Leg& leg = order.profile.legs[order.next_leg];
   if (leg.arch) {
@@ -316,7 +316,8 @@ namespace {
 void Go(const Context& c, group::State& g, State& s) {
   Order& order = s.orders[0];
   if (g.done <= order.last) {
-    if (g.waits_for != 0) order.begin_cycle = c.group.cycle.count;  // the time at a zone is not that of the profile
+    // Waiting for a zone is not part of the profile's time
+    if (g.waits_for != 0) order.begin_cycle = c.group.cycle.count;
     if (IsStatic(order)) return;
     const double left_s = TimeToGo(c, g, order, s);
     const bool descends = g.done == order.last;
@@ -340,7 +341,7 @@ void Stay(const Context& c, const group::State& g, State& s) {
   const bool there = conveyor::Find(*c.belts[order.belt - 1].state, order.workpiece) != nullptr;
   if (on && !there) return;
   if (there && StaysWithin(c, g, order, static_cast<double>(cycles - stayed) * period)) return;
-  MissWorkpiece(c, order, s.counters.too_late, s);  // what comes next leads up
+  MissWorkpiece(c, order, s.counters.too_late, s);  // the next profile leads up
   order.phase = Phase::kNew;
 }
 
@@ -361,8 +362,8 @@ void StepOrder(const Context& c, group::State& g, State& s) {
   }
 }
 
-// Static targets behind one another are given as early as may be: their profiles join without a pause.
-// Under an override each begins behind the one before: its accelerations are those of the override at its begin.
+// Gives consecutive static targets as early as possible: their profiles join without a pause. Under an override each
+// begins after the previous one: its accelerations are those of the override at its start.
 void GiveAhead(const Context& c, group::State& g, State& s) {
   if (s.inputs.override_factor < 1) return;
   for (std::uint32_t i = 1; i < s.order_count && s.state != PickPlaceState::kError; ++i) {
@@ -414,7 +415,7 @@ std::pair<std::uint32_t, std::uint32_t> BeltsOf(const Settings& s) {
   }
 }
 
-// An ellipse is to lead onto a belt that is turned about A or B of the world.
+// Returns true if an ellipse would lead onto a belt that is turned about A or B of the world.
 bool IsTilted(const Context& c, std::uint32_t belt, const State& s) {
   if (belt == 0 || s.settings.path_mode != PathMode::kElliptical) return false;
   return !IsUpright(kinematics::ToFrame(c.belts[belt - 1].params->origin));
@@ -428,7 +429,7 @@ bool NoMore(const group::State& g, const State& s) {
 
 Shape ShapeFromHere(const Context& c, const group::State& g, const Shape& shape, const State& s) noexcept {
   Shape from_here = shape;
-  // The way up from a workpiece is the belt's.
+  // The way up from a workpiece is determined by its belt.
   if (s.at_belt != 0) from_here.start_distance = s.at_distance;
   if (s.low) from_here.start_distance = std::max(s.at_known ? 0 : shape.start_distance, RiseTo(c, g, s.over));
   return from_here;
@@ -439,7 +440,7 @@ void ForgetPlace(State& s) noexcept {
   s.at_belt = s.parked_at = 0;
 }
 
-// At once where it is longer, bit by bit where it is shorter.
+// At once if it is longer, gradually if it is shorter.
 void Learn(double takes_s, const Order& order, State& s) noexcept {
   if (order.expected_s <= 0 || order.gripper_off || order.pulse_at_end) return;
   const double slowness = std::max(1.0, kMargin * takes_s / order.expected_s);
@@ -495,7 +496,7 @@ void BeginLoop(const Context& c, Ticket ticket, State& s) noexcept {
 
 namespace {
 
-// What is known of it when the path is lost.
+// Keeps the known height when the path is lost.
 void KeepHeight(State& s) {
   if (!s.may_be_low) return;
   s.low = true;
@@ -546,7 +547,7 @@ void RunOrders(const Context& c, group::State& g, State& s) noexcept {
     s.halting = false;
   }
   if (s.lifting && !IsLifted(c, g, s)) return;
-  if (g.gets_off) {  // its belt would have carried it into a zone that it waits for: from there anew
+  if (g.gets_off) {  // its belt would have carried it into a zone that it waits for: start again from here
     LosePath(c, false, s);
     return HaltGroup(c, g, s);
   }

@@ -1,4 +1,4 @@
-// What a machine file says about one pick and place module.
+// Configuration of one pick and place module in a machine file.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@
 namespace takt::pickplace {
 
 struct PickPlaceBelt {
-  std::string belt;  // name of the machine's belt
+  std::string belt;  // name of a belt of the machine
   BeltSettings settings;
 };
 
-// How an axis looks for its reference with home_by_module.
+// Homing of an axis if home_by_module is set.
 struct AxisHoming {
   std::string axis;  // a member of the group
   axis::HomingParams homing;
@@ -26,21 +26,22 @@ struct AxisHoming {
 
 struct PickPlaceParams {
   std::string name;
-  std::string group;                 // that it moves
-  std::vector<PickPlaceBelt> belts;  // 1 to 16
-  Settings settings;                 // at the start
+  std::string group;                 // name of the group that the module moves
+  std::vector<PickPlaceBelt> belts;  // at most 16
+  Settings settings;                 // initial settings
   std::vector<AxisHoming> homing;
 };
 
-inline constexpr std::string_view kStaticTarget = "the static target";  // what 0 means for a belt
+inline constexpr std::string_view kStaticTarget = "the static target";  // meaning of belt 0
 
-// What is wrong with the number of a belt of a module with so many belts; empty: nothing. `none`: what 0 means.
+// Returns why the number of a belt is invalid for a module with this many belts; empty if it is valid. `none`: meaning
+// of 0; empty: 0 is invalid.
 std::string WhyNotBelt(std::uint32_t belt, std::size_t belts, std::string_view none);
-// What is wrong with a tracking mode of a module with so many belts; empty: nothing.
+// Returns why a tracking mode is invalid for a module with this many belts; empty if it is valid.
 std::string WhyNotMode(TrackingMode mode, std::size_t belts);
-// What is wrong with the work range that a module is to have on a belt; empty: nothing.
+// Returns why the module's work range on a belt is invalid; empty if it is valid.
 std::string WhyNotRange(const BeltSettings& settings, const conveyor::BeltParams& belt);
-// Why leave and upper_limit do not fit the upper_limit of the belt; empty: they do.
+// Returns why leave and upper_limit do not fit the upper_limit of the belt; empty if they do.
 std::string WhyNotLeave(const BeltSettings& settings, const conveyor::BeltParams& belt);
 
 void describe(Description<PickPlaceBelt>&);

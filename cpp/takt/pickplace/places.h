@@ -1,4 +1,4 @@
-// The axes that a pick and place module speaks of: those of the tool, the real ones and an auxiliary one.
+// The axes of a pick and place module: those of the tool, the real ones and an auxiliary one.
 #pragma once
 
 #include <array>
@@ -9,14 +9,14 @@
 
 namespace takt::pickplace {
 
-// Which axis: the number in lists is one less.
+// Selected axis; its index in lists is one less.
 enum class SelectAxis : std::uint8_t { kNone, kX, kY, kZ, kA, kB, kC, kA1, kA2, kA3, kA4, kA5, kA6, kAux1 };
 
 // X, Y, Z, A, B, C, A1 to A6, Aux1.
 inline constexpr std::size_t kAllAxes = 13;
-// A1 to A6, Aux1: what has a drive.
+// A1 to A6, Aux1: the axes with drives.
 inline constexpr std::size_t kRealAxes = 7;
-// X, Y, Z, A, B, C, Aux1: what a profile moves.
+// X, Y, Z, A, B, C, Aux1: the axes that a profile moves.
 inline constexpr std::size_t kProfileAxes = 7;
 inline constexpr std::size_t kFirstReal = 6;
 

@@ -14,9 +14,9 @@ namespace {
 
 using kinematics::Frame;
 
-// cos of what is still upright, and of what is no way back.
+// Cosine above which a system counts as upright, and below the negative of which a leg reverses.
 constexpr double kUpright = 1 - 1e-9;
-constexpr double kBoards = 2;  // mm, of a leg across on which the tool gets into step
+constexpr double kBoards = 2;  // [mm] of a leg across on which the tool gets in step
 
 Place Above(const Place& place, double distance) {
   Place above = place;
@@ -32,11 +32,11 @@ KDL::Vector In(const Frame& system, const Place& place) {
 struct ProfileBuilder {
   const Systems& systems;
   Profile profile;
-  KDL::Vector at;      // where the last leg ends
-  KDL::Vector before;  // and where it begins
-  double last = 0;     // mm, its length
+  KDL::Vector at;      // end of the last leg
+  KDL::Vector before;  // start of the last leg
+  double last = 0;     // [mm] length of the last leg
 
-  // `system`: that of the leg's end.
+  // `system`: coordinate system of the leg's end.
   void Add(const Leg& leg, const Frame& system, double radius) {
     const KDL::Vector to = In(system, leg.to);
     const double length = (to - at).Norm();
@@ -44,7 +44,7 @@ struct ProfileBuilder {
     added = leg;
     if (profile.count > 0 && last > path::kSame && length > path::kSame) {
       const double turn = dot(at - before, to - at) / (last * length);
-      // An arch begins upright, whatever its ends.
+      // An arch begins vertically, whatever its ends.
       if (leg.arch || turn > -kUpright) added.radius = std::min({radius, last / 2, length / 2});
     }
     ++profile.count;
@@ -54,8 +54,8 @@ struct ProfileBuilder {
   }
 };
 
-// Point 2, over the target. The tool gets into step on the leg there, before it is low: where it stands at that point
-// already, the leg leads further up (PP-61).
+// Returns point 2, above the target. The tool gets in step on the leg to it, before it is low: if the tool is already
+// at that point, the leg leads further up (PP-61).
 Place PointOver(const Place& target, const Place& start, double distance, const ProfileBuilder& m) {
   const Place over = Above(target, distance);
   const bool boards =
@@ -70,7 +70,7 @@ Profile Refused(ErrorId error) {
   return profile;
 }
 
-// To or from a parking position.
+// Adds the legs to or from a parking position.
 Profile Parking(const Place& start, const Place& target, const Shape& shape, ProfileBuilder& m) {
   const double up = shape.height + (target.parks ? shape.start_distance : shape.target_distance);
   const double radius = shape.height + shape.radius;

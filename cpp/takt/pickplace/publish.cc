@@ -1,4 +1,4 @@
-// What everybody sees of a module.
+// The published outputs of a module.
 #include <algorithm>
 
 #include "takt/group/members.h"

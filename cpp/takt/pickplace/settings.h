@@ -1,5 +1,5 @@
-// What can be set of a pick and place module at run time: the parameters of the manual's 3.6.5 and 3.6.6 with its
-// initial values; "T&P:" in the doc strings is the name there.
+// Settings of a pick and place module at run time: the parameters of the manual's 3.6.5 and 3.6.6 with its initial
+// values; "T&P:" in the doc strings gives their names there.
 #pragma once
 
 #include <array>
@@ -17,25 +17,25 @@ namespace takt::pickplace {
 inline constexpr std::size_t kBelts = 16;
 
 enum class PathMode : std::uint8_t { kLinear, kElliptical };
-// Who chooses targets.
+// How targets are chosen.
 enum class TrackingMode : std::uint8_t {
-  kProgram,        // each edge of execute brings one
-  kStaticToBelt1,  // the others go round and round by themselves
+  kProgram,        // each rising edge of execute gives one
+  kStaticToBelt1,  // this and the following modes repeat by themselves
   kBelt1ToStatic,
   kBelt1ToBelt2,
   kBelt2ToBelt1,
   kFromTo,  // from pick_belt to place_belt
 };
-// Which workpiece of those that can be reached.
+// Choice among the workpieces that can be reached.
 enum class WorkpieceRule : std::uint8_t {
   kFirst,    // furthest along the belt
-  kNearest,  // to the tool
-  kLatest,   // the last one that can still be reached: the others get further on meanwhile
+  kNearest,  // nearest to the tool
+  kLatest,   // least far along the belt: the others move on meanwhile
 };
 
 template <template <typename> class Of>
 struct SettingsOf {
-  // Stops along the path; a deceleration below that of the path counts for nothing.
+  // Stops along the path; a deceleration below that of the path has no effect.
   Of<double> path_stop_deceleration = Preset<Of>(10'000.0);
   Of<double> path_stop_jerk = Preset<Of>(100'000.0);
   Of<double> path_halt_deceleration = Preset<Of>(100.0);
@@ -43,7 +43,7 @@ struct SettingsOf {
   Of<double> path_velocity = Preset<Of>(10.0);
   Of<double> path_acceleration = Preset<Of>(100.0);
   Of<double> path_deceleration = Preset<Of>(100.0);
-  // Of each axis by itself.
+  // Stop of each axis by itself.
   Of<std::array<double, kAllAxes>> stop_deceleration = Preset<Of>(Filled<double, kAllAxes>(10'000.0));
   Of<std::array<double, kAllAxes>> stop_jerk = Preset<Of>(Filled<double, kAllAxes>(100'000.0));
 
@@ -64,15 +64,15 @@ struct SettingsOf {
   Of<std::array<std::uint32_t, kRealAxes>> homing_order = Preset<Of>(std::array<std::uint32_t, kRealAxes>{});
   Of<bool> home_by_module = Preset<Of>(false);
 
-  // Of the tool along X, Y, Z and about them, and of Aux1, on profiles; 0: none.
+  // Limits of the tool along and about X, Y, Z, and of Aux1, on profiles; 0: no limit.
   Of<std::array<double, kProfileAxes>> max_velocity = Preset<Of>(Filled<double, kProfileAxes>(10.0));
   Of<std::array<double, kProfileAxes>> max_acceleration = Preset<Of>(Filled<double, kProfileAxes>(100.0));
   Of<std::array<double, kProfileAxes>> max_jerk = Preset<Of>(Filled<double, kProfileAxes>(10'000.0));
 
-  Of<double> gripper_closing_time = Preset<Of>(0.0);  // s
-  Of<double> gripper_open_time = Preset<Of>(0.0);     // s
+  Of<double> gripper_closing_time = Preset<Of>(0.0);  // [s]
+  Of<double> gripper_open_time = Preset<Of>(0.0);     // [s]
 
-  // The static target, and how profiles run.
+  // The static target, and the parameters of profiles.
   Of<double> x_target = Preset<Of>(0.0);
   Of<double> y_target = Preset<Of>(0.0);
   Of<double> z_target = Preset<Of>(0.0);
@@ -89,53 +89,56 @@ struct SettingsOf {
   Of<double> blending_radius = Preset<Of>(0.0);
 
   Of<bool> watch_position_window = Preset<Of>(false);
-  Of<double> position_window = Preset<Of>(0.5);  // mm
+  Of<double> position_window = Preset<Of>(0.5);  // [mm]
   Of<double> position_window_ms = Preset<Of>(50.0);
 
   Of<TrackingMode> tracking_mode = Preset<Of>(TrackingMode::kProgram);
 
-  // Beyond the manual.
-  Of<std::uint32_t> pick_belt = Preset<Of>(std::uint32_t{0});   // of from_to; 0: the static place
-  Of<std::uint32_t> place_belt = Preset<Of>(std::uint32_t{0});  // likewise
+  // Not in the manual.
+  Of<std::uint32_t> pick_belt = Preset<Of>(std::uint32_t{0});   // from_to: belt to pick from; 0: the static target
+  Of<std::uint32_t> place_belt = Preset<Of>(std::uint32_t{0});  // from_to: belt to place on; 0: the static target
   Of<WorkpieceRule> workpiece_rule = Preset<Of>(WorkpieceRule::kFirst);
-  Of<bool> keep_orientation = Preset<Of>(false);                     // targets do not turn the tool: it has no wrist
-  Of<std::uint32_t> workpiece_pcs1 = Preset<Of>(std::uint32_t{15});  // the two that workpieces get in turn
+  Of<bool> keep_orientation = Preset<Of>(false);  // targets do not turn the tool: it has no wrist
+  // The two systems assigned to workpieces alternately
+  Of<std::uint32_t> workpiece_pcs1 = Preset<Of>(std::uint32_t{15});
   Of<std::uint32_t> workpiece_pcs2 = Preset<Of>(std::uint32_t{16});
 };
 using Settings = SettingsOf<Plain>;
-// The command that changes what is given of them.
+// The command that changes those settings that are given.
 using Configure = SettingsOf<std::optional>;
 
-// Of one belt. Its origin is the belt's own.
+// Settings of one belt. Its origin is the belt's own.
 template <template <typename> class Of>
 struct BeltSettingsOf {
-  Of<std::uint32_t> belt = Preset<Of>(std::uint32_t{1});  // of the module's list, from 1
+  Of<std::uint32_t> belt = Preset<Of>(std::uint32_t{1});  // index in the module's list, from 1
   Of<double> park_x = Preset<Of>(0.0);
   Of<double> park_y = Preset<Of>(0.0);
   Of<double> park_z = Preset<Of>(0.0);
   Of<double> park_a = Preset<Of>(0.0);
   Of<double> park_b = Preset<Of>(0.0);
   Of<double> park_c = Preset<Of>(0.0);
-  Of<double> z_distance = Preset<Of>(0.0);   // mm
-  Of<double> sync_time = Preset<Of>(0.0);    // s
-  Of<double> lower_limit = Preset<Of>(0.0);  // mm, along X of the belt
+  Of<double> z_distance = Preset<Of>(0.0);   // [mm]
+  Of<double> sync_time = Preset<Of>(0.0);    // [s]
+  Of<double> lower_limit = Preset<Of>(0.0);  // [mm] along X of the belt
   Of<double> upper_limit = Preset<Of>(0.0);
-  // What the belt may do while a workpiece is gone for, mm/s along its X: at least from its present speed to 0.
+  // Range of speeds that the belt may take while a workpiece is approached [mm/s along its X]; extended to the present
+  // speed.
   Of<double> lowest_speed = Preset<Of>(0.0);
   Of<double> highest_speed = Preset<Of>(0.0);
-  Of<double> sudden_acceleration = Preset<Of>(0.0);  // mm/s², of the belt without notice
-  // Which workpieces are taken; beyond the manual.
+  Of<double> sudden_acceleration = Preset<Of>(0.0);  // [mm/s²] of the belt without notice
+  // Workpieces that are taken; not in the manual.
   Of<std::uint32_t> kind = Preset<Of>(std::uint32_t{0});    // 0: any
   Of<std::uint32_t> colour = Preset<Of>(std::uint32_t{0});  // 0: any
   Of<double> least_quality = Preset<Of>(-1e9);
-  // How several modules share a belt: which of its workpieces are this one's.
-  Of<std::uint32_t> every = Preset<Of>(std::uint32_t{1});  // of so many one behind the other ...
+  // Sharing a belt with other modules: the workpieces of this module.
+  Of<std::uint32_t> every = Preset<Of>(std::uint32_t{1});  // of this many consecutive workpieces ...
   Of<std::uint32_t> turn = Preset<Of>(std::uint32_t{1});   // ... those from this one on, from 1, ...
-  Of<std::uint32_t> turns = Preset<Of>(std::uint32_t{1});  // ... so many
+  Of<std::uint32_t> turns = Preset<Of>(std::uint32_t{1});  // ... this many
   Of<double> most_per_minute = Preset<Of>(0.0);            // 0: any number
-  Of<std::uint32_t> leave = Preset<Of>(std::uint32_t{0});  // so many lie free behind its range before it takes one
-  Of<double> same_within = Preset<Of>(2.0);  // mm: what lies so near to a workpiece that was fetched is that one
-  // How the tool stands on a workpiece; beyond the manual.
+  // Takes a workpiece only while this many free ones are behind its range
+  Of<std::uint32_t> leave = Preset<Of>(std::uint32_t{0});
+  Of<double> same_within = Preset<Of>(2.0);  // [mm] objects this close to a fetched workpiece are the same one
+  // Pose of the tool on a workpiece; not in the manual.
   Of<double> grip_x = Preset<Of>(0.0);
   Of<double> grip_y = Preset<Of>(0.0);
   Of<double> grip_z = Preset<Of>(0.0);
@@ -145,26 +148,27 @@ struct BeltSettingsOf {
   Of<double> aux1_target = Preset<Of>(0.0);
 };
 using BeltSettings = BeltSettingsOf<Plain>;
-// The command that changes what is given of them.
+// The command that changes those settings that are given.
 using ConfigureBelt = BeltSettingsOf<std::optional>;
 
-// workpiece_pcs1 and workpiece_pcs2 differ.
+// Returns true if workpiece_pcs1 and workpiece_pcs2 differ.
 bool WorkpieceSystemsFit(const Settings& settings) noexcept;
-// The static target does not lie in a product coordinate system that workpieces get.
+// Returns true if the static target is not given in a product coordinate system of workpieces.
 bool TargetSystemFits(const Settings& settings) noexcept;
-// The static target is not seen from the axes.
+// Returns true if the static target is not given in ACS.
 bool TargetFits(const Settings& settings) noexcept;
-// The workpieces that a module takes in turn are among those of a round.
+// Returns true if the workpieces that a module takes in turn are among those of a round.
 bool TurnsFit(const BeltSettings& settings) noexcept;
-// It has a work range of its own; else that of the belt alone counts.
+// Returns true if the module has a work range of its own; else only that of the belt counts.
 bool HasRange(const BeltSettings& settings) noexcept;
-// It has none, or lower_limit lies below upper_limit.
+// Returns true if lower_limit lies below upper_limit, or there is no range.
 bool RangeFits(const BeltSettings& settings) noexcept;
-// It counts free workpieces behind its range and has a range of its own, or does not count them.
+// Returns true if `leave` is 0, or the module has a range of its own behind which it counts free workpieces.
 bool LeaveFits(const BeltSettings& settings) noexcept;
-// It counts none, or counts them between the end of its range and that of the belt, which deletes what lies beyond.
+// Returns true if free workpieces need not be counted, or are counted between the end of the module's range and that of
+// the belt, which deletes objects beyond it.
 bool LeaveMeets(const BeltSettings& settings, const conveyor::BeltParams& belt) noexcept;
-// It has none that fits, or one that overlaps the belt's own.
+// Returns true if the range overlaps the belt's own; also if there is none, or an invalid one (RangeFits).
 bool RangeMeets(const BeltSettings& settings, const conveyor::BeltParams& belt) noexcept;
 
 void describe(Enumeration<PathMode>&);

@@ -12,14 +12,14 @@ namespace takt::pickplace {
 enum class PickPlaceState : std::uint8_t {
   kInit,           // the module is not enabled
   kReady,          // waits; a path that was stopped may be held
-  kService,        // the group moves by itself, or is given to others
-  kHoming,         // axes look for their references
-  kJogPos,         // a key is held, or the axis comes to rest after it
+  kService,        // the group moves by other commands, or is released to them
+  kHoming,         // axes are homing
+  kJogPos,         // a key is held, or the axis comes to rest after its release
   kJogNeg,         //
   kPreparingPath,  // a profile is being planned
-  kMovePp,         // it is gone, or the tool waits at a belt
-  kPathInterrupt,  // rests on the path while path_interrupt is there
-  kStop,           // stops, or stands, while path_stop, path_halt or stop_all is there
+  kMovePp,         // a profile is being executed, or the tool waits at a belt
+  kPathInterrupt,  // rests on the path while path_interrupt is true
+  kStop,           // stops, or is at rest, while path_stop, path_halt or stop_all is true
   kError,          // until it is reset
 };
 inline constexpr int kModuleStates = 11;

@@ -1,4 +1,4 @@
-// Which workpiece is next, and whether it can be reached in time (PP-44).
+// Selection of the next workpiece, and whether it can be reached in time (PP-44).
 #include <algorithm>
 #include <cmath>
 
@@ -14,12 +14,12 @@ namespace {
 using conveyor::Object;
 using kinematics::Frame;
 
-// So often the place of arrival is worked out anew from the time that the way there takes.
+// Iterations between the position of arrival and the time to reach it.
 constexpr int kRounds = 3;
-// From the end of the time on a workpiece until the way up from it begins.
+// From the end of the time on a workpiece until the way up begins.
 constexpr double kCyclesBetween = 4;
 constexpr double kSpeedsUp_s = 0.05;
-// Workpieces in a cycle: one after the other they can be reached, or leave the range.
+// Workpieces tried per cycle: one after the other they become reachable, or leave the range.
 constexpr std::size_t kTriesWhileWaiting = 2;
 
 const Belt& BeltOf(const Context& c, const Order& order) {
@@ -30,19 +30,19 @@ bool IsInside(const BeltSettings& own, double place) {
   return !HasRange(own) || (place >= own.lower_limit && place <= own.upper_limit);
 }
 
-// PP-66: of the kind, the colour and the quality that are asked for.
+// PP-66: returns true if kind, colour and quality are as requested.
 bool IsWanted(const BeltSettings& own, const conveyor::Attributes& of) {
   return (own.kind == 0 || of.kind == own.kind) && (own.colour == 0 || of.colour == own.colour) &&
          of.quality >= own.least_quality;
 }
 
-// PP-67: it is this module's by its number.
+// PP-67: returns true if the workpiece belongs to this module by its number.
 bool IsOurs(const BeltSettings& own, std::uint32_t number) {
-  const std::uint32_t place = (number - 1) % own.every + 1;  // among so many
+  const std::uint32_t place = (number - 1) % own.every + 1;  // within the round
   return place >= own.turn && place - own.turn < own.turns;
 }
 
-// PP-67: the module may take another one of this belt by now.
+// PP-67: returns true if the module may take another workpiece of this belt by now.
 bool MayTake(const Context& c, const Order& order, const State& s) {
   const BeltSettings& own = order.own;
   const Belt& belt = c.belts[order.belt - 1];
@@ -63,12 +63,12 @@ kinematics::Pose GripOn(const BeltSettings& own) {
   return {own.grip_x, own.grip_y, own.grip_z, own.grip_a, own.grip_b, own.grip_c};
 }
 
-// Of the two that workpieces get in turn.
+// Returns the next one of the two systems that workpieces get alternately.
 std::uint32_t NextPcs(const State& s) {
   return s.second_pcs ? s.settings.workpiece_pcs2 : s.settings.workpiece_pcs1;
 }
 
-// Seen from the MCS, after so much travel of the belt.
+// Returns the pose of the object in the MCS after this travel of the belt.
 Frame ObjectAfter(const Context& c, const Belt& belt, const Object& object, double travel) {
   conveyor::State later;
   later.travel = belt.state->travel;
@@ -76,7 +76,7 @@ Frame ObjectAfter(const Context& c, const Belt& belt, const Object& object, doub
   return c.group.mounting.base_inverse * conveyor::PoseOf(*belt.params, later, object).GetFrame();
 }
 
-// What belts lose is missed while the module moves.
+// Returns true if objects lost by belts count as missed: while the module moves.
 bool CountsLost(const State& s) {
   return s.state == PickPlaceState::kMovePp || s.state == PickPlaceState::kPreparingPath;
 }
@@ -108,7 +108,7 @@ void CountLostObject(std::uint32_t belt, const conveyor::LostObject& lost, State
     CountLeft(s.left[i], s);
     return EraseLeft(i, s);
   }
-  // Of the belts of a tracking mode alone.
+  // Only belts of the tracking mode count.
   const bool of_mode = !s.loop.active || s.loop.pick_belt == belt || s.loop.place_belt == belt;
   const bool goes_there = s.order_count > 0 && s.orders[0].belt == belt;
   const BeltSettings& own = goes_there ? s.orders[0].own : s.belts[belt - 1];
@@ -117,18 +117,18 @@ void CountLostObject(std::uint32_t belt, const conveyor::LostObject& lost, State
   ++s.counters.missed;
 }
 
-// What a belt may do from now on. Between these it may change its speed as it likes.
+// Returns the range of speeds of a belt from now on. Within it the speed may change arbitrarily.
 std::array<double, 2> SpeedsOf(const Belt& belt, const BeltSettings& own) {
-  // One that speeds up goes on so for a while.
+  // A belt that speeds up continues to do so for a while.
   const KinematicState& travel = belt.state->travel;
   const bool speeds_up = travel.velocity * travel.acceleration >= 0;
   const double now = travel.velocity + (speeds_up ? kSpeedsUp_s * travel.acceleration : 0);
   return {std::min(now, own.lowest_speed), std::max(now, own.highest_speed)};
 }
 
-// From the end of the time on a workpiece until the tool is up.
+// Returns the time [s] from the end of the time on a workpiece until the tool is up.
 double TimeUp(const Context& c, const group::State& g, const Order& order, const BeltSettings& own) {
-  // From rest to rest: it does not stop up there, so that there is some time to spare.
+  // From rest to rest: the tool does not stop up there, so there is a margin.
   const double lift_s = own.z_distance > 0 ? TimeFor(own.z_distance, order.ramps) : 0;
   return kCyclesBetween * c.group.cycle.period_s + lift_s / OverrideOf(g);
 }
@@ -137,10 +137,10 @@ bool IsInside(const Belt& belt, const BeltSettings& own, double place) {
   return IsInside(own, place) && conveyor::IsWithin(*belt.params, place);
 }
 
-// Whether a place of the workpiece is within the range, and stays there while a tool that is on its way down is braked
-// and goes up again, though the belt changes its speed with the acceleration that is reckoned with. As long as that
-// holds for where the pick is expected to end, it can be given up within the range (PP-61): what the belt does in the
-// time T of that is at most v T + a T²/2.
+// Returns true if a place of the workpiece is within the range and stays there while a tool on its way down is braked
+// and goes up again, even if the belt changes its speed with the assumed acceleration. While that holds for the place
+// at which the pick is expected to end, it can be given up within the range (PP-61): in the time T of that the belt
+// moves at most v T + a T²/2.
 bool IsSafe(const Context& c, const group::State& g, const Order& order, double place, double speed) {
   const BeltSettings& own = order.own;
   const Belt& belt = BeltOf(c, order);
@@ -157,14 +157,14 @@ double Apart(const Belt& belt, const Object& object, const Object& other) {
   return (place(object) - place(other)).Norm();
 }
 
-// PP-66: it is a workpiece that was taken, seen twice.
+// PP-66: returns true if the object is a workpiece that was taken, detected twice.
 bool IsTaken(const Belt& belt, const BeltSettings& own, const Object& object) {
   return own.same_within > 0 && std::ranges::any_of(conveyor::ObjectsOf(*belt.state), [&](const Object& other) {
            return other.state == conveyor::ObjectState::kTaken && Apart(belt, object, other) <= own.same_within;
          });
 }
 
-// The tool can be there, and over there.
+// Returns true if the tool can reach the object, and the point above it.
 bool CanBeAt(const Context& c, const group::State& g, const Order& order, const Frame& object) {
   const BeltSettings& own = order.own;
   const group::End present = group::Present(c.group, g);
@@ -184,7 +184,7 @@ bool CanBeAt(const Context& c, const group::State& g, const Order& order, const 
   return true;
 }
 
-// Where tool and object meet if the belt runs at this speed, and how long the way there is thought to take.
+// The pose at which tool and object meet if the belt runs at this speed, and the estimated time to reach it.
 struct Meeting {
   ErrorId error = ErrorId::kNone;
   Frame object;
@@ -209,7 +209,7 @@ Meeting Meet(const Context& c, const group::State& g, const Order& order, const 
   return meeting;
 }
 
-// Whether they meet, and part, within the range and within reach.
+// Returns true if they meet, and part, within the range and within reach.
 bool IsReachableAt(double speed, const Context& c, const group::State& g, const Order& order, const Object& object,
                    const State& s) {
   const Belt& belt = BeltOf(c, order);
@@ -222,7 +222,7 @@ bool IsReachableAt(double speed, const Context& c, const group::State& g, const 
          CanBeAt(c, g, order, ObjectAfter(c, belt, object, travel));
 }
 
-// Wherever the belt may have come to meanwhile lies between where its two speeds take it.
+// Any position that the belt may reach meanwhile lies between those at its two extreme speeds.
 bool IsReachable(const Context& c, const group::State& g, const Order& order, const Object& object, const State& s) {
   const auto [lowest, highest] = SpeedsOf(BeltOf(c, order), order.own);
   return IsReachableAt(highest, c, g, order, object, s) &&
@@ -292,12 +292,12 @@ ErrorId BindWorkpiece(const Context& c, const Object& object, group::State& g, O
                       State& s) noexcept {
   const Belt& belt = BeltOf(c, order);
   const BeltSettings& own = order.own;
-  // Not the one in which the tool is now, which is that of a pick before one that was given up.
+  // Not the system in which the tool is now: that of the previous pick, which was given up.
   const Place& here = s.low ? s.over : s.at;
   const bool in_pcs = (s.low || s.at_known) && here.system == group::CoordinateSystem::kPcs;
   if (in_pcs && here.pcs == NextPcs(s)) s.second_pcs = !s.second_pcs;
   const std::uint32_t pcs = NextPcs(s);
-  // Where it is now: then it does not matter what the belt's axis counts.
+  // Relative to its present position, so that the count of the belt's axis does not matter.
   const double since = belt.state->travel.position - object.latch;
   Frame moved = kinematics::ToFrame(object.pose);
   if (belt.params->kind == conveyor::BeltKind::kTurning) {
@@ -380,7 +380,7 @@ void CountLost(const Context& c, State& s) noexcept {
     LeftWorkpiece& left = s.left[i];
     const Belt& belt = c.belts[left.belt - 1];
     const Object* object = conveyor::Find(*belt.state, left.number);
-    if (!object) {  // it was fetched by others
+    if (!object) {  // fetched by another module
       EraseLeft(i, s);
     } else if (!IsInside(belt, s.belts[left.belt - 1], conveyor::PlaceOf(*belt.params, *belt.state, *object))) {
       CountLeft(left, s);
