@@ -1,4 +1,4 @@
-// The bits of plane geometry that several mechanisms share.
+// Plane geometry shared by several mechanisms.
 #pragma once
 
 #include <cmath>
@@ -9,26 +9,26 @@
 
 namespace takt::kinematics {
 
-// `angle` with as many whole turns as bring it nearest to `near`. rad.
+// Returns `angle` plus the number of whole turns that brings it nearest to `near` [rad].
 inline double NearestTurn(double angle, double near) noexcept {
   constexpr double kTurn = 2 * std::numbers::pi;
   return angle + kTurn * std::round((near - angle) / kTurn);
 }
 
-// Two links in a plane that reach the point (x, y) from the origin: `first` from the x axis to the first link, `elbow`
-// from the first link on to the second, rad, positive from x to y.
+// Two links in a plane that reach the point (x, y) from the origin: `first` is the angle from the x axis to the first
+// link, `elbow` from the first link to the second [rad], positive from x to y.
 struct TwoLinks {
   double first = 0;
   double elbow = 0;
 };
 
-// Lengths in mm, both above 0. `positive`: the sign of the elbow.
+// Computes the angles. Lengths in [mm], both above 0. `positive`: the sign of the elbow.
 inline Reason Reach(double first_length, double second_length, double x, double y, bool positive,
                     TwoLinks& out) noexcept {
   const double distance = maths::Hypot(x, y);
   const double longest = first_length + second_length;
   const double shortest = std::abs(first_length - second_length);
-  // Differences of near lengths stay exact: 1 - cos and 1 + cos of the elbow, times `scale`.
+  // Keeps differences of nearly equal lengths exact: 1 - cos and 1 + cos of the elbow, times `scale`.
   const double scale = 2 * first_length * second_length;
   const double less = (longest - distance) * (longest + distance);
   const double more = (distance - shortest) * (distance + shortest);
@@ -42,12 +42,12 @@ inline Reason Reach(double first_length, double second_length, double x, double 
   return Reason::kNone;
 }
 
-// Whether Z points where it does in the frame itself: mechanisms without axes to tilt with.
+// Returns true if Z of the orientation is Z of the frame: for mechanisms without axes to tilt with.
 inline bool Upright(const KDL::Rotation& r) noexcept {
   return std::abs(r(0, 2)) <= kSlack && std::abs(r(1, 2)) <= kSlack && r(2, 2) > 0;
 }
 
-// Whether it turns about Z at most, but for rounding.
+// Returns true if the frame turns about Z only, except for rounding.
 inline bool UprightMotion(const MovingFrame& frame) noexcept {
   const auto small = [](const KDL::Vector& v) {
     const double slack = kSlack * (1 + std::abs(v.z()));
@@ -56,7 +56,7 @@ inline bool UprightMotion(const MovingFrame& frame) noexcept {
   return small(frame.M.w) && small(frame.M.dw);
 }
 
-// The angle about Z of an upright orientation, rad.
+// Returns the angle about Z of an upright orientation [rad].
 inline double AngleAboutZ(const KDL::Rotation& r) noexcept {
   return maths::Atan2(r(1, 0), r(0, 0));
 }

@@ -1,5 +1,5 @@
-// What carries something through the cell: a belt along a line, a table about an axis, or anything whose pose comes
-// from elsewhere (another tool, a mover, a camera). Pure geometry and motion: where it is and how it moves.
+// Carriers of objects in the cell: a belt along a line, a table about an axis, or a body whose pose is given (another
+// tool, a mover, a camera). Pure geometry and motion: pose and velocity.
 #pragma once
 
 #include <cstdint>
@@ -11,25 +11,26 @@
 namespace takt::kinematics {
 
 enum class CarrierKind : std::uint8_t {
-  kNone,      // there is none, or nothing is known of it: it stands
+  kNone,      // no carrier, or its state is unknown: at rest
   kStraight,  // along X of its origin: a belt
   kTurning,   // about Z of its origin: a table
-  kFree,      // as its pose says
+  kFree,      // by its pose
 };
 
 struct Carrier {
   CarrierKind kind = CarrierKind::kNone;
-  Frame origin;           // in the world; straight and turning
-  KinematicState travel;  // mm or rad from the origin's own place, counted on for ever; straight and turning
-  MovingFrame pose;       // in the world; free
+  Frame origin;           // in the world; straight and turning carriers
+  KinematicState travel;  // [mm] or [rad] from the origin, counted without end; straight and turning carriers
+  MovingFrame pose;       // in the world; free carriers
 };
 
-// Where something lies that is carried: at `on` from where the carrier's travel is `from` (free: at `on` from its
-// pose). pose = origin * translate_x(travel - from) * on, with velocity and acceleration; a table turns instead.
+// Returns the pose of a carried object: at `on` relative to the point of the carrier that was at the origin at the
+// travel `from` (free: at `on` relative to its pose). pose = origin * translate_x(travel - from) * on, with velocity
+// and acceleration; a table rotates instead.
 MovingFrame PoseOn(const Carrier& carrier, double from, const Frame& on) noexcept;
 
-// The same carrier a time later, if it goes on as fast as it goes now: a belt straight on, a table round, anything else
-// with its twist.
+// Returns the carrier a time [s] later, if it keeps its present velocity: a belt along its line, a table about its
+// axis, a free body with its twist.
 Carrier Ahead(const Carrier& carrier, double time_s) noexcept;
 
 void describe(Enumeration<CarrierKind>&);

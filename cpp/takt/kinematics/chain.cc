@@ -11,12 +11,12 @@ namespace {
 
 using Tall = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostColumns, kMostColumns>;
 
-// Below the closed forms' kSingularSine: what they accept is not refused here.
+// Below the closed forms' kSingularSine: poses that they accept are not refused here.
 constexpr double kRankThreshold = 1e-7;
-// Of a motion that few axes cannot follow exactly.
+// Largest relative residual of a motion that few axes cannot follow exactly.
 constexpr double kResidual = 1e-8;
 
-// Solves J x = y: exactly, or as well as few axes can, or with the smallest x.
+// Solves J x = y: exactly, or in the least-squares sense with few axes, or with the smallest x with many.
 class Solver {
  public:
   Solver(const Chain& chain, const Joints& joints) : length_(chain.length), axes_(static_cast<int>(chain.count)) {
@@ -122,7 +122,7 @@ Reason SolveMotion(const Chain& chain, const MovingFrame& tool, JointMotion& mot
   const Solver solver(chain, motion.position);
   if (solver.singular()) return Reason::kSingular;
   if (const Reason reason = solver.Solve(tool.GetTwist(), motion.velocity); reason != Reason::kNone) return reason;
-  // What the tool is accelerated by the axes' speeds alone.
+  // Acceleration of the tool due to the speeds of the axes alone.
   motion.acceleration = {};
   const KDL::Twist bias = Forward(chain, motion).GetAccTwist();
   return solver.Solve(tool.GetAccTwist() - bias, motion.acceleration);

@@ -9,15 +9,15 @@ namespace {
 
 using KDL::Vector;
 
-// What an arm's axis does to its lower arm: the constraint is |lower| = lower_arm, lower = tool - knee.
+// Relation between an arm's axis and its lower arm: the constraint is |lower| = lower_arm, lower = tool - knee.
 struct Arm {
-  Vector lower;      // from the knee to the platform, all of the platform's joints moved to the tool
+  Vector lower;      // from the knee to the platform, with all joints of the platform moved to the tool
   Vector along;      // d knee / d angle
   Vector inward;     // d along / d angle
   double lever = 0;  // lower · along, mm²: 0 where upper and lower arm are in line
 };
 
-// Sine and cosine of the angle of each arm, which knees and axes of arms share.
+// Sine and cosine of the angle of each arm, shared by knees and axes of the arms.
 using Turns = std::array<maths::SineCosine, 3>;
 
 Turns TurnsOf(const Joints& joints) {
@@ -47,14 +47,14 @@ Arms ArmsAt(const Delta& delta, const Turns& turns, const Vector& tool) {
   return {ArmAt(delta, 0, turns[0], tool), ArmAt(delta, 1, turns[1], tool), ArmAt(delta, 2, turns[2], tool)};
 }
 
-// The volume that the lower arms span, of that of a cube: below 0 with the platform hanging under the knees, 0 where
-// the arms cannot hold it.
+// Returns the volume spanned by the lower arms relative to a cube: below 0 with the platform hanging under the knees, 0
+// where the arms cannot hold it.
 double Spread(const Delta& delta, const Vector& first, const Vector& second, const Vector& third) {
   const double length = delta.lengths.lower_arm;
   return dot(first, second * third) / (length * length * length);
 }
 
-// The velocity for which every arm has lower · v = rate.
+// Returns the velocity for which every arm has lower · v = rate.
 Vector Meet(const Arms& arms, const std::array<double, 3>& rates) {
   const Vector a = arms[1].lower * arms[2].lower;
   const Vector b = arms[2].lower * arms[0].lower;
@@ -138,7 +138,7 @@ Reason Inverse(const Delta& delta, const Frame& tool, const Configuration&, cons
   const DeltaLengths& l = delta.lengths;
   std::array<Vector, 3> lower;
   for (std::size_t i = 0; i < 3; ++i) {
-    // In the plane of the arm: from its axis to the joint on the platform.
+    // In the plane of the arm, from its axis to the joint on the platform.
     const double out = dot(tool.p, delta.outward[i]) + l.platform_radius - l.base_radius;
     const double down = -tool.p.z();
     const double aside = dot(tool.p, Vector(-delta.outward[i].y(), delta.outward[i].x(), 0));

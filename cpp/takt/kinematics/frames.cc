@@ -13,10 +13,10 @@
 namespace takt::kinematics {
 namespace {
 
-// Of the cosine of B. Nearer to the lock than this, A is noise.
+// Least cosine of B; closer to the lock A is noise.
 constexpr double kGimbalLock = 1e-12;
 
-// In (-180, 180].
+// Returns degrees in (-180, 180].
 double Degrees(double angle) {
   const double degrees = angle / kDegree;
   return degrees <= -180 ? 180 : degrees;
@@ -41,7 +41,7 @@ Pose ToPose(const Frame& frame) noexcept {
   const double cos_b = maths::Hypot(r(2, 1), r(2, 2));
   const double a = cos_b < kGimbalLock ? 0 : maths::Atan2(r(2, 1), r(2, 2));
   const double b = maths::Atan2(-r(2, 0), cos_b);
-  // C is what is left when A is turned back: exact for whatever A was taken.
+  // C is the remaining turn once A is turned back: exact for any A.
   const auto [s, c] = maths::SinCos(a);
   const double rest = maths::Atan2(s * r(0, 2) - c * r(0, 1), c * r(1, 1) - s * r(1, 2));
   return {frame.p.x(), frame.p.y(), frame.p.z(), Degrees(a), Degrees(b), Degrees(rest)};

@@ -1,4 +1,4 @@
-// What a mechanism's axes are to its kinematics, and why there may be no answer.
+// Axes of a mechanism as seen by its kinematics, and the reasons for which there may be no solution.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace takt::kinematics {
 
 inline constexpr std::size_t kMaxJoints = 8;
 
-// One number an axis; those beyond the mechanism's number of axes are 0.
+// One number per axis; entries beyond the mechanism's number of axes are 0.
 using Joints = std::array<double, kMaxJoints>;
 
 struct JointMotion {
@@ -24,23 +24,23 @@ struct JointMotion {
 
 enum class JointKind : std::uint8_t { kLinear, kRotary };
 
-// Column i: the velocity of the tool (mm and rad) when only axis i moves, with 1 a second.
+// Column i: the velocity of the tool (mm and rad per second) when only axis i moves, with 1 per second.
 using Jacobian = std::array<KDL::Twist, kMaxJoints>;
 
-// Why there is no answer.
+// Why there is no solution.
 enum class Reason : std::uint8_t {
   kNone,         // there is one
-  kNotFinite,    // a number given is NaN or infinite
-  kOutOfReach,   // no position of the axes leads there
-  kOrientation,  // the place can be reached, but not turned so
-  kSingular,     // the axes cannot move the tool in every direction there: speeds are without bound
+  kNotFinite,    // a given number is NaN or infinite
+  kOutOfReach,   // no position of the axes reaches the position
+  kOrientation,  // the position can be reached, but not with this orientation
+  kSingular,     // the axes cannot move the tool in every direction there: axis speeds are unbounded
   kAxisLimit,    // an axis would have to leave its range
 };
 
 // One sentence without a full stop; empty for kNone.
 std::string_view Text(Reason reason) noexcept;
 
-// Which of several positions of the axes. kKeep: the one that the axes given as near are in.
+// Choice between several positions of the axes. kKeep: that of the axes given as `near`.
 enum class Shoulder : std::uint8_t { kKeep, kFront, kBack };
 enum class Elbow : std::uint8_t { kKeep, kPositive, kNegative };
 enum class Wrist : std::uint8_t { kKeep, kPositive, kNegative };
@@ -53,16 +53,16 @@ struct Configuration {
   constexpr bool operator==(const Configuration&) const = default;
 };
 
-// `wanted`, with what it keeps taken from `present`.
+// Returns `wanted`, with kKeep replaced by the value of `present`.
 constexpr Configuration Resolve(const Configuration& wanted, const Configuration& present) noexcept {
   return {wanted.shoulder == Shoulder::kKeep ? present.shoulder : wanted.shoulder,
           wanted.elbow == Elbow::kKeep ? present.elbow : wanted.elbow,
           wanted.wrist == Wrist::kKeep ? present.wrist : wanted.wrist};
 }
 
-// Nearer to a singularity than this there is no answer: the sine of the angle that is 0 or 180 degrees there.
+// Least distance to a singularity with a solution: the sine of the angle that is 0 or 180 degrees in the singularity.
 inline constexpr double kSingularSine = 1e-6;
-// How far a pose may be from what a mechanism of few axes can do at all and still count as that, in mm and rad.
+// Largest deviation of a pose from those that a mechanism of few axes can reach, in mm and rad.
 inline constexpr double kSlack = 1e-9;
 
 void describe(Enumeration<Reason>&);

@@ -7,7 +7,7 @@
 namespace takt::kinematics {
 namespace {
 
-// What moves the tool: chains are all alike in that.
+// Returns the part that moves the tool: the chain of all mechanisms that have one.
 const Linear& Mover(const Linear& linear) {
   return linear;
 }
@@ -19,7 +19,7 @@ const Chain& Mover(const Arm& arm) {
   return arm.chain;
 }
 
-// Chains and gantries always have an answer.
+// Chains and gantries always have a solution.
 Reason ForwardOf(const Chain& chain, const Joints& joints, Frame& tool) {
   tool = Forward(chain, joints);
   return Reason::kNone;

@@ -138,8 +138,8 @@ std::vector<LinkInfo> Describe(const SixAxis& arm) {
   return Describe(arm.chain);
 }
 
-// URDF's own names. A link keeps link_N where its own is base or tool, that of another link (as cut to the capacity of
-// a name), or the link_N of another one.
+// URDF's own names. A link keeps link_N if its own name is base or tool, that of another link (cut to the capacity of a
+// name), or the link_N of another one.
 std::vector<LinkInfo> Describe(const Serial& serial) {
   const std::vector<LinkInfo> numbered = Describe(serial.chain);
   std::vector<LinkInfo> all = numbered;
@@ -150,7 +150,7 @@ std::vector<LinkInfo> Describe(const Serial& serial) {
     const bool single = std::count(named, end, serial.links[i]) == 1;
     if (!name.empty() && name != kBase && name != kTool && single) all[i + 1].name = name;
   }
-  // A link that falls back to its number may take it from another one, which then falls back, too.
+  // A link that falls back to its number may take that name from another one, which then falls back, too.
   for (std::size_t round = 0; round < count; ++round) {
     for (std::size_t i = 1; i <= count; ++i) {
       const bool taken =
@@ -180,8 +180,8 @@ Reason FramesOf(const Chain& chain, const Joints& joints, LinkFrameArray& out) {
 
 void Complete(const Chain&, const Joints&, const Joints&, Sweep&) {}
 
-// Take the axes between the two links one by one, the one nearest to the point last: each then carries the point as far
-// from itself as it is at the start.
+// Takes the axes between the two links one by one, the one nearest to the point last: each axis then moves the point at
+// the distance that it has at the start.
 double MoveOf(const Chain& chain, const Sweep& sweep, std::size_t link, std::size_t seen_from, const Vector& point,
               double radius) {
   const Vector place = sweep.start[link] * point;
@@ -263,9 +263,9 @@ Reason FramesOf(const Delta& delta, const Joints& joints, LinkFrameArray& out) {
   return Reason::kNone;
 }
 
-// The lower arms hold the platform: |platform - knee| is l for each, so with lower arms w, moves e of the knees and d
-// of the platform w·d = w·e - |d - e|²/2. With e known and the inverse of the rows w that bounds d by a quadratic
-// equation; as the axes go straight, d begins at 0 and never gets beyond its first root.
+// The lower arms hold the platform: |platform - knee| is l for each, so with lower arms w, displacements e of the knees
+// and d of the platform w·d = w·e - |d - e|²/2. With e known and the inverse of the rows w that bounds d by a quadratic
+// equation; as the axes move monotonically, d begins at 0 and never exceeds its first root.
 void Complete(const Delta& delta, const Joints&, const Joints&, Sweep& sweep) {
   const double length = delta.lengths.lower_arm;
   std::array<Vector, 3> w;
@@ -285,7 +285,7 @@ void Complete(const Delta& delta, const Joints&, const Joints&, Sweep& sweep) {
   sweep.platform = half > 0 && root >= 0 ? rest / (half + std::sqrt(root)) : kUnknown;
 }
 
-// A rod goes with both of its ends; its frame turns with it, and about it so that Z stays across the arm's axis.
+// A rod moves with both of its ends; its frame turns with it, and about it so that Z stays across the arm's axis.
 double MoveOfRod(const Delta& delta, const Sweep& sweep, std::size_t link, const Vector& point, double radius) {
   const double length = delta.lengths.lower_arm;
   const double knee = delta.lengths.upper_arm * sweep.way[ArmOf(link)];

@@ -1,15 +1,15 @@
-// The parts of a mechanism: what they are called, where they are and how far they can come between two positions of
-// the axes. For whoever gives them shapes.
+// The parts of a mechanism: names, frames and bounds of their displacement between two positions of the axes. For users
+// that attach shapes to them.
 //
-//   gantry, CoreXY   what moves with some of the coordinates: x, y, z, xy, xz, yz, xyz; their frames are level
-//   SCARA            arm_1, arm_2 (X along the arm, at its axis), spindle (goes up and down), flange (turns, too)
+//   gantry, CoreXY   the parts that move with some of the coordinates: x, y, z, xy, xz, yz, xyz; their frames are level
+//   SCARA            arm_1, arm_2 (X along the arm, at its axis), spindle (moves up and down), flange (also turns)
 //   Delta            upper_arm_1 to 3 (X along the arm, at the motor), lower_arm_1_a to 3_b (X along the rod, at the
 //                    knee; b is the rod on the other side of the arm), platform (level)
 //   six axes         link_1 to link_6; each at its axis, as the axis has turned it
-//   URDF             the same; their names are those of URDF (40 bytes of them), but link_1 and so on where that would
+//   URDF             the same; their names are those of URDF (the first 40 bytes), or link_1 and so on where that would
 //                    be base, tool, or the name of another link
 //
-// In front of them stands base, behind them tool: the frame that Forward gives.
+// The first link is base, the last one tool: the frame returned by Forward.
 #pragma once
 
 #include <array>
@@ -25,34 +25,34 @@ inline constexpr std::size_t kMaxLinks = 12;
 
 struct LinkInfo {
   std::string name;
-  // From its own axis to the next one, in its own frame, mm; zero for those without such an extent.
+  // [mm] from its own axis to the next one, in its own frame; zero for links without this extent.
   KDL::Vector span;
-  // What it is fixed to, turns on or slides along: they meet at all times.
+  // Links to which it is fixed, on which it turns or along which it slides: they touch at all times.
   std::vector<std::size_t> neighbours;
 };
 
-// In the order of the frames below; base is the first, tool the last. Allocates.
+// Returns the links in the order of the frames below; base is the first, tool the last. Allocates.
 std::vector<LinkInfo> LinksOf(const Kinematics& kinematics);
 
 using LinkFrameArray = std::array<Frame, kMaxLinks>;
 
-// Where each link is, seen from the base. The reasons of Forward.
+// Computes the frame of each link in the base. Returns the reasons of Forward.
 Reason LinkFrames(const Kinematics& kinematics, const Joints& joints, LinkFrameArray& out) noexcept;
 
-// All axes on their way from one position to another, each going straight and no further.
+// A motion of all axes from one position to another, each monotonically.
 struct Sweep {
-  LinkFrameArray start;           // where the links are at the start
-  Joints way{};                   // of each axis, mm or rad, without sign
-  std::array<double, 4> shift{};  // gantries: of each coordinate, mm and rad, without sign
-  double platform = 0;            // Delta: the most that the platform moves, mm
+  LinkFrameArray start;           // frames of the links at the start
+  Joints way{};                   // displacement of each axis [mm] or [rad], without sign
+  std::array<double, 4> shift{};  // gantries: displacement of each coordinate [mm] or [rad], without sign
+  double platform = 0;            // Delta: largest displacement of the platform [mm]
 };
 
-// The reasons of Forward, for the start.
+// Returns the reasons of Forward, for the start.
 Reason MakeSweep(const Kinematics& kinematics, const Joints& from, const Joints& to, Sweep& out) noexcept;
 
-// No point of a ball about `point` (mm, in the frame of `link`, on which it is fixed) ever gets further from where it
-// was at the start of the sweep than this, seen from the link `seen_from`, mm. Infinite: nothing can be said about so
-// long a way (Delta); of a shorter one it can. At most in proportion for a part of the way.
+// Returns a bound [mm] of the displacement, relative to the link `seen_from`, of any point of a ball about `point` (mm,
+// in the frame of `link`, to which it is fixed) from its position at the start of the sweep. Infinite: no bound can be
+// given for such a long motion (Delta), but for a shorter one. At most proportional for a part of the motion.
 double LargestMove(const Kinematics& kinematics, const Sweep& sweep, std::size_t link, std::size_t seen_from,
                    const KDL::Vector& point, double radius) noexcept;
 

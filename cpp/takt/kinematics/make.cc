@@ -44,7 +44,7 @@ Kinematics Of(const SixAxisParams& p) {
   return k;
 }
 
-// Limits in URDF are the mechanism's; they become the axis' with its zero and sense.
+// Limits in URDF are the mechanism's; they are converted with the zero and sense of the axis.
 void TakeLimits(const UrdfChain& urdf, Kinematics& k) {
   for (std::size_t i = 0; i < k.count; ++i) {
     const JointScale& scale = k.scales[i];
@@ -57,7 +57,7 @@ void TakeLimits(const UrdfChain& urdf, Kinematics& k) {
   }
 }
 
-// Empty: all is well.
+// Returns what is wrong; empty if nothing is.
 std::string TakeScales(const std::vector<JointParams>& joints, Kinematics& k) {
   if (!joints.empty() && joints.size() != k.count) {
     return "expected one entry for each of the " + std::to_string(k.count) + " axes, found " +

@@ -43,12 +43,12 @@ Reason Inverse(const OffsetArm& arm, const Frame& tool, const Configuration& con
   if (maths::Hypot(turn(0, 1), turn(2, 1)) < kSingularSine) return Reason::kSingular;
   const double sign = configuration.wrist == Wrist::kPositive ? 1 : -1;
   const double sum = maths::Atan2(sign * turn(2, 1), -sign * turn(0, 1));
-  // The sum may be known badly; axes 5 and 6 make up for it.
+  // The sum may be inaccurate; axes 5 and 6 compensate for that.
   const KDL::Rotation rest = AboutY(-sum) * turn;
   const double fifth = maths::Atan2(-rest(0, 1), rest(1, 1));
   const double sixth = maths::Atan2(-rest(2, 0), rest(2, 2));
 
-  // Seen from the side, angles from Z to X.
+  // Side view, angles from Z to X.
   const maths::SineCosine hand = maths::SinCos(sum);
   TwoLinks links;
   const Reason reason = Reach(l.c2, l.c3, tool.p.z() - l.c4 * hand.cosine, front - l.a1 - l.c4 * hand.sine,

@@ -1,4 +1,4 @@
-// What a machine file says about the kinematics of a group of axes: which mechanism it is and how long its parts are.
+// Configuration of the kinematics of a group of axes in a machine file: the mechanism and its dimensions.
 //
 //   kinematics: {delta: {base_radius: 200, platform_radius: 45, upper_arm: 235, lower_arm: 800}}
 //   kinematics: {scara: {first_arm: 325, second_arm: 275}, joints: [{}, {invert: true}, {}, {}]}
@@ -14,7 +14,7 @@
 namespace takt::kinematics {
 
 struct GantryParams {
-  std::vector<Coordinate> axes;  // what each axis moves, in the order of the group
+  std::vector<Coordinate> axes;  // coordinate that each axis moves, in the order of the group
 };
 
 struct CoreXyParams {
@@ -23,23 +23,23 @@ struct CoreXyParams {
 };
 
 struct ScaraParams {
-  double first_arm = 0;   // mm
-  double second_arm = 0;  // mm
-  double height = 0;      // mm, Z of the tool with the Z axis at 0
+  double first_arm = 0;   // [mm]
+  double second_arm = 0;  // [mm]
+  double height = 0;      // [mm] Z of the tool with the Z axis at 0
 };
 
 struct DeltaParams {
-  double base_radius = 0;      // mm
-  double platform_radius = 0;  // mm
-  double upper_arm = 0;        // mm
-  double lower_arm = 0;        // mm
-  double rod_spacing = 0;      // mm
-  double first_arm_deg = 0;    // deg
+  double base_radius = 0;      // [mm]
+  double platform_radius = 0;  // [mm]
+  double upper_arm = 0;        // [mm]
+  double lower_arm = 0;        // [mm]
+  double rod_spacing = 0;      // [mm]
+  double first_arm_deg = 0;    // [deg]
   bool rotary = false;
 };
 
 struct SixAxisParams {
-  double a1 = 0;  // mm, all
+  double a1 = 0;  // [mm], all
   double a2 = 0;
   double b = 0;
   double c1 = 0;
@@ -49,15 +49,15 @@ struct SixAxisParams {
 };
 
 struct SerialParams {
-  std::string urdf;  // file, seen from the machine file; or the text itself
+  std::string urdf;  // file, relative to the machine file; or the text itself
   std::string base;  // link; empty: the root
   std::string tip;   // link; empty: the only end
 };
 
-// How an axis counts, where that is not as its mechanism does.
+// Count of an axis, where it differs from its mechanism's.
 struct JointParams {
-  double zero = 0;      // u, what the axis reads where the mechanism's own angle or way is 0
-  bool invert = false;  // the axis counts the other way round
+  double zero = 0;      // [u] reading of the axis where the mechanism's own angle or position is 0
+  bool invert = false;  // the axis counts in the opposite sense
 };
 
 struct KinematicsParams {
@@ -67,7 +67,7 @@ struct KinematicsParams {
   std::optional<DeltaParams> delta{};
   std::optional<SixAxisParams> six_axis{};
   std::optional<SerialParams> serial{};
-  std::vector<JointParams> joints;  // one an axis, or none
+  std::vector<JointParams> joints;  // one per axis, or empty
 };
 
 void describe(Description<GantryParams>&);

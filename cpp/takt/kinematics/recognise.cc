@@ -1,10 +1,10 @@
 // Articulated arms among serial chains, by the lines of their axes. With a spherical wrist: axes 2 and 3 parallel, axis
-// 1 and axis 4 perpendicular to them, axes 4, 5 and 6 through one point and perpendicular one to the next. With an
-// offset one: axes 2, 3 and 4 parallel, axis 1 and axis 5 perpendicular to them, axis 6 perpendicular to axis 5, which
-// meets both its neighbours. What is left open, where each axis counts from and which way, follows from the chain at
-// rest. Ours; the form of the first kind itself is that of Brandstoetter, Angerer, Hofbaur: An Analytical Solution of
-// the Inverse Kinematics Problem of Industrial Serial Manipulators with an Ortho-parallel Basis and a Spherical Wrist
-// (2014).
+// 1 and axis 4 perpendicular to them, axes 4, 5 and 6 through one point and perpendicular to one another in turn. With
+// an offset one: axes 2, 3 and 4 parallel, axis 1 and axis 5 perpendicular to them, axis 6 perpendicular to axis 5,
+// which meets both its neighbours. The remaining unknowns, zero and sense of each axis, follow from the chain with its
+// axes at 0. Ours; the form of the first kind itself is that of Brandstoetter, Angerer, Hofbaur: An Analytical Solution
+// of the Inverse Kinematics Problem of Industrial Serial Manipulators with an Ortho-parallel Basis and a Spherical
+// Wrist (2014).
 #include <cmath>
 
 #include "takt/core/maths.h"
@@ -14,9 +14,9 @@ namespace takt::kinematics {
 
 namespace {
 
-// Files give angles with few digits: solutions are made exact afterwards (solutions.cc).
-constexpr double kAngle = 2e-3;  // rad
-constexpr double kPart = 1e-3;   // of the arm's length
+// Files give angles with few digits: solutions are refined afterwards (solutions.cc).
+constexpr double kAngle = 2e-3;  // [rad]
+constexpr double kPart = 1e-3;   // share of the arm's length
 constexpr int kTrials = 4;
 
 struct Line {
@@ -34,7 +34,7 @@ double Distance(const KDL::Vector& point, const Line& line) {
   return ((point - line.point) * line.along).Norm();
 }
 
-// The point of `a` that is nearest to `b`, which is not parallel.
+// Returns the point of `a` that is nearest to `b`. Requires: the lines are not parallel.
 KDL::Vector Nearest(const Line& a, const Line& b) {
   const double cosine = KDL::dot(a.along, b.along);
   const KDL::Vector apart = b.point - a.point;
@@ -66,7 +66,7 @@ bool Agrees(const ClosedForm& form, const Chain& chain) {
 
 using Axes = std::array<Line, 6>;
 
-// Z is axis 1, Y points along axis 2, which lies in the plane of X and Y.
+// Z is axis 1, Y the direction of axis 2 (made perpendicular to Z), which lies in the plane of X and Y.
 Frame BaseOf(const Axes& axes) {
   const KDL::Vector& z = axes[0].along;
   KDL::Vector y = axes[1].along - KDL::dot(axes[1].along, z) * z;

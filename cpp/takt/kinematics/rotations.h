@@ -1,5 +1,5 @@
-// Rotations by an angle [rad]. KDL's own (RotX, Rot, RPY ...) take sine and cosine from the C library, which chooses
-// among implementations by the processor; these have the same bits on every processor.
+// Rotations by an angle [rad]. KDL's own (RotX, Rot, RPY ...) take sine and cosine from the C library, which selects an
+// implementation by processor; these have the same bits on every processor.
 #pragma once
 
 #include <kdl/frames.hpp>
@@ -30,8 +30,8 @@ inline KDL::Rotation About(const KDL::Vector& axis, double angle) noexcept {
           yz - s * x,       xz - s * y, yz + s * x, rest * z * z + c};
 }
 
-// Returns Rz(c) Ry(b) Rx(a): about X by a first, then about Y by b, then about Z by c, axes that stand still. URDF's
-// roll, pitch and yaw.
+// Returns Rz(c) Ry(b) Rx(a): about X by a first, then about Y by b, then about Z by c, about fixed axes. URDF's roll,
+// pitch and yaw.
 inline KDL::Rotation RollPitchYaw(double a, double b, double c) noexcept {
   const auto [sa, ca] = maths::SinCos(a);
   const auto [sb, cb] = maths::SinCos(b);

@@ -12,18 +12,18 @@ using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColM
 using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMostColumns>;
 
 constexpr int kSteps = 100;
-// Of the error, made comparable: below it is rounding.
+// Scaled error below which it is rounding.
 constexpr double kArrived = 1e-13;
-// Rounding of long chains, tried when no step makes it better.
+// Rounding of long chains; accepted when no step reduces the error.
 constexpr double kGoodEnough = 2e-12;
-// What a step may turn an axis at most, so that the first steps do not throw the arm about. rad, or parts of the
-// length.
+// Largest displacement of an axis in a step [rad, or shares of the length], so that the first steps do not swing the
+// arm about.
 constexpr double kLongestStep = 0.5;
-// Keeps the equations solvable in singular positions; too small to slow the last steps down.
+// Keeps the equations solvable in singular positions; too small to slow down the last steps.
 constexpr double kLeastDamping = 1e-12;
-// Axes that moved no further than this did so along a path: they stay on their side of every singularity.
+// Axes that moved less than this did so along a path: they stay on their side of every singularity.
 constexpr double kAlongPath = 0.5;
-// Of the smallest to the largest pivot.
+// Least ratio of the smallest to the largest pivot.
 constexpr double kSingularPivot = 1e-6;
 
 Columns ScaledJacobian(const Chain& chain, const Joints& joints) {
@@ -41,7 +41,7 @@ Six ErrorOf(const Chain& chain, const Joints& joints, const Frame& tool) {
   return Scaled({tool.p - present.p, TurnBetween(present.M, tool.M)}, chain.length);
 }
 
-// Newton-Raphson: with damping that vanishes with the error, so that the last steps are exact.
+// Newton-Raphson with damping that vanishes with the error, so that the last steps are exact.
 bool Approach(const Chain& chain, const Frame& tool, Joints& joints) {
   const auto axes = static_cast<int>(chain.count);
   Six error = ErrorOf(chain, joints, tool);
@@ -75,8 +75,8 @@ bool Approach(const Chain& chain, const Frame& tool, Joints& joints) {
   return size <= kGoodEnough;
 }
 
-// Positive when two positions are on the same side of all singularities, 0 when one of them is singular. Seen from the
-// tool, so that turning the whole arm does not matter.
+// Returns a positive number if two positions are on the same side of all singularities, 0 if one of them is singular.
+// Seen from the tool, so that turning the whole arm does not matter.
 double SameSide(const Chain& chain, const Joints& from, const Joints& to) {
   const auto seen_from_tool = [&](const Joints& joints) {
     const KDL::Rotation back = Forward(chain, joints).M.Inverse();
@@ -116,7 +116,7 @@ Reason Inverse(const Serial& serial, const Frame& tool, const Configuration&, co
   const Chain& chain = serial.chain;
   joints = near;
   if (!Approach(chain, tool, joints)) {
-    // A stretched arm does not know which way to bend.
+    // A stretched arm does not determine the side to which it bends.
     if (!Singular(chain, near)) return Reason::kOutOfReach;
     joints = near;
     for (std::size_t i = 0; i < chain.count; ++i) {

@@ -9,7 +9,7 @@
 namespace takt::kinematics {
 namespace {
 
-// How far the wrist is in front of axis 1.
+// Returns the distance [mm] of the wrist in front of axis 1.
 double FrontOf(const SixAxis& arm, const Joints& joints) {
   const double forearm = joints[1] + joints[2] + arm.forearm_angle;
   return arm.lengths.a1 + arm.lengths.c2 * maths::Sin(joints[1]) + arm.forearm * maths::Sin(forearm);
@@ -51,7 +51,7 @@ Reason Inverse(const SixAxis& arm, const Frame& tool, const Configuration& confi
   const double front = configuration.shoulder == Shoulder::kFront ? magnitude : -magnitude;
   const double first = maths::Atan2(wrist.y(), wrist.x()) - maths::Atan2(l.b, front);
 
-  // Seen from the side, angles from Z to X.
+  // Side view, angles from Z to X.
   TwoLinks links;
   const Reason reason =
       Reach(l.c2, arm.forearm, wrist.z() - l.c1, front - l.a1, configuration.elbow == Elbow::kPositive, links);
@@ -64,7 +64,7 @@ Reason Inverse(const SixAxis& arm, const Frame& tool, const Configuration& confi
   if (sine < kSingularSine) return Reason::kSingular;
   const double sign = configuration.wrist == Wrist::kPositive ? 1 : -1;
 
-  // Axis 4 may be known badly; axes 5 and 6 make up for it.
+  // Axis 4 may be inaccurate; axes 5 and 6 compensate for that.
   const double fourth = maths::Atan2(sign * turn(1, 2), sign * turn(0, 2));
   const KDL::Rotation rest = AboutZ(-fourth) * turn;
   const std::array<double, 6> angles{

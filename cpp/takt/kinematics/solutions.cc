@@ -16,7 +16,7 @@ bool Wants(T wanted, T one) {
   return wanted == T::kKeep || wanted == one;
 }
 
-// Out of reach in one configuration means less than singular in another.
+// Out of reach in one configuration is less specific than singular in another.
 void TakeReason(const Configuration& in, Reason reason, Solutions& out) {
   if (reason != Reason::kOutOfReach) out.reason = reason;
   if (out.failed_count == kMostSolutions) return;
@@ -66,7 +66,7 @@ void TryAll(const Kinematics& k, const Scara& scara, const Frame& tool, const Co
   }
 }
 
-// A closed form gives where to begin; the chain itself is met to the last bit.
+// A closed form gives the starting point; the iteration meets the chain itself to the last bit.
 void TryAll(const Kinematics& k, const Serial& serial, const Frame& tool, const Configuration& wanted,
             const Joints& present, Solutions& out) {
   if (!serial.closed.known) return Try(k, serial, tool, {}, present, out);

@@ -1,4 +1,5 @@
-// Twists of chains as columns of matrices: in one unit, as large as a chain may be, without allocating.
+// Twists of chains as columns of matrices: in one unit, with a fixed capacity for the largest chain, without
+// allocating.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +13,7 @@ inline constexpr int kMostColumns = static_cast<int>(kMaxJoints);
 using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostColumns, 1>;
 using Six = Eigen::Matrix<double, 6, 1>;
 
-// Its velocity in parts of this length, mm, which makes it comparable to its turning.
+// Returns the twist with its velocity divided by this length [mm], which makes it comparable to the angular velocity.
 inline Six Scaled(const KDL::Twist& twist, double length) {
   Six six;
   for (int i = 0; i < 3; ++i) {

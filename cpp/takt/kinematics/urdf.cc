@@ -14,8 +14,8 @@
 namespace takt::kinematics {
 namespace {
 
-constexpr double kMetre = 1000;           // mm: URDF counts in metres
-constexpr std::size_t kMostLevels = 100;  // of elements in one another; URDF itself has 6
+constexpr double kMetre = 1000;           // [mm] URDF counts in metres
+constexpr std::size_t kMostLevels = 100;  // nested elements; URDF itself has 6
 
 Frame ToFrame(const KDL::Rotation& rotation, const urdf::Vector3& p) {
   return {rotation, KDL::Vector(p.x, p.y, p.z) * kMetre};
@@ -25,7 +25,7 @@ Frame OriginOf(const urdf::Joint& joint, const UrdfAngles& angles) {
   return ToFrame(angles.joints.at(joint.name), joint.parent_to_joint_origin_transform.position);
 }
 
-// Cut between two characters of UTF-8.
+// Cuts the name between two characters of UTF-8.
 Name Cut(const std::string& name) {
   std::size_t size = std::min(name.size(), Name::kCapacity);
   while (size > 0 && size < name.size() && (static_cast<unsigned char>(name[size]) & 0xC0) == 0x80) --size;
@@ -36,7 +36,7 @@ std::string Quoted(const std::string& name) {
   return "'" + name + "'";
 }
 
-// Null when it cannot be read; the reader has then said why on stderr.
+// Returns null if it cannot be read; the reader has then printed the reason to stderr.
 urdf::ModelInterfaceSharedPtr Parsed(const std::string& xml) {
   if (ShapeOf(xml, kMostLevels) != XmlShape::kGood || !LinkInLoop(xml).empty()) return nullptr;
   try {
@@ -46,7 +46,7 @@ urdf::ModelInterfaceSharedPtr Parsed(const std::string& xml) {
   }
 }
 
-// The joints from base to tip; empty, and why, when there is no way.
+// Returns the joints from base to tip; empty, with the reason in `why`, if they are not connected.
 std::vector<urdf::JointConstSharedPtr> Way(const urdf::ModelInterface& model, const std::string& base,
                                            const std::string& tip, std::string& why) {
   std::vector<urdf::JointConstSharedPtr> way;
@@ -66,7 +66,7 @@ std::vector<urdf::JointConstSharedPtr> Way(const urdf::ModelInterface& model, co
   return way;
 }
 
-// The first link that hangs on two joints; empty: there is none.
+// Returns the first link that is the child of two joints; empty if there is none.
 std::string HangsTwice(const urdf::ModelInterface& model) {
   std::set<std::string> links;
   for (const auto& [name, joint] : model.joints_) {
@@ -75,7 +75,7 @@ std::string HangsTwice(const urdf::ModelInterface& model) {
   return {};
 }
 
-// The only link nothing hangs on.
+// Returns the only link without children.
 std::string OnlyEnd(const urdf::ModelInterface& model, std::string& why) {
   std::string end;
   for (const auto& [name, link] : model.links_) {
@@ -89,7 +89,7 @@ std::string OnlyEnd(const urdf::ModelInterface& model, std::string& why) {
   return end;
 }
 
-// Returns the pose, seen from `base`, of `base` and of each link above it up to the first joint that moves.
+// Returns the pose in `base` of `base` and of each link above it up to the first joint that moves.
 std::map<std::string, Frame> FixedAbove(const urdf::ModelInterface& model, const UrdfAngles& angles,
                                         const std::string& base) {
   std::map<std::string, Frame> poses;
@@ -105,8 +105,8 @@ std::map<std::string, Frame> FixedAbove(const urdf::ModelInterface& model, const
   return poses;
 }
 
-// Returns the number of the axis whose link carries link `of`, 0 for the base, and `pose`, that of `of` on this link;
-// nothing if an axis that does not belong to the chain lies between.
+// Returns the number of the axis whose link carries link `of`, 0 for the base, and in `pose` the pose of `of` on this
+// link; nothing if an axis that does not belong to the chain lies in between.
 std::optional<std::size_t> CarrierOf(const urdf::ModelInterface& model, const UrdfAngles& angles,
                                      const urdf::LinkConstSharedPtr& of,
                                      const std::vector<urdf::JointConstSharedPtr>& axes,
@@ -150,7 +150,7 @@ bool TakeGeometry(const urdf::Geometry& geometry, UrdfShape& shape) {
   return true;
 }
 
-// Returns the joints that move from `base` (empty: the root) to `tip`.
+// Returns the moving joints from `base` (empty: the root) to `tip`.
 std::vector<urdf::JointConstSharedPtr> AxesOf(const urdf::ModelInterface& model, const std::string& base,
                                               const std::string& tip) {
   std::string why;
@@ -221,7 +221,7 @@ std::optional<UrdfChain> ReadUrdf(const std::string& xml, const std::string& bas
   if (!why.empty()) return std::nullopt;
   const UrdfAngles angles = ReadUrdfAngles(xml);
   UrdfChain out;
-  Frame rest;  // behind the last axis
+  Frame rest;  // after the last axis
   for (const urdf::JointConstSharedPtr& joint : Way(*model, base.empty() ? model->getRoot()->name : base, end, why)) {
     rest = rest * OriginOf(*joint, angles);
     if (joint->type == urdf::Joint::FIXED) continue;

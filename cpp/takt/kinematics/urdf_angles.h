@@ -1,5 +1,5 @@
-// Orientations in a URDF. urdfdom turns roll, pitch and yaw into quaternions with the C library's sine, whose last bits
-// depend on the processor; these are made of the same attributes with the same bits on every processor.
+// Orientations in a URDF. urdfdom converts roll, pitch and yaw to quaternions with the C library's sine, whose last
+// bits depend on the processor; these are computed from the same attributes with the same bits on every processor.
 #pragma once
 
 #include <kdl/frames.hpp>
@@ -15,7 +15,7 @@ struct UrdfAngles {
   std::map<std::string, std::vector<KDL::Rotation>> visuals;     // likewise
 };
 
-// Requires: urdfdom has read the text. Without rpy the orientation is that of the parent.
+// Requires: urdfdom has read the text. Without rpy the orientation is the parent's.
 UrdfAngles ReadUrdfAngles(const std::string& xml);
 
 }  // namespace takt::kinematics

@@ -8,7 +8,7 @@
 namespace takt::kinematics {
 namespace {
 
-// The link that a joint names as its parent or child; empty: none.
+// Returns the link that a joint names as its parent or child; empty if there is none.
 std::string LinkOf(const TiXmlElement& joint, const char* which) {
   const TiXmlElement* element = joint.FirstChildElement(which);
   const char* name = element != nullptr ? element->Attribute("link") : nullptr;
@@ -17,15 +17,15 @@ std::string LinkOf(const TiXmlElement& joint, const char* which) {
 
 }  // namespace
 
-// Links that hang on nothing are taken away with the joints below them, as often as there are such (Kahn 1962). What is
-// left then is in a loop, or hangs on one.
+// Links without a parent are removed with the joints below them, as long as there are any (Kahn 1962). Links that
+// remain are in a loop, or below one.
 std::string LinkInLoop(const std::string& xml) {
   TiXmlDocument document;
   document.Parse(xml.c_str());
   const TiXmlElement* robot = document.FirstChildElement("robot");
   if (robot == nullptr) return {};
   std::map<std::string, std::vector<std::string>> children;
-  std::map<std::string, std::size_t> hangs_on;  // so many joints
+  std::map<std::string, std::size_t> hangs_on;  // number of joints
   for (const TiXmlElement* e = robot->FirstChildElement("joint"); e != nullptr; e = e->NextSiblingElement("joint")) {
     const std::string parent = LinkOf(*e, "parent"), child = LinkOf(*e, "child");
     if (parent.empty() || child.empty()) continue;  // urdfdom refuses it

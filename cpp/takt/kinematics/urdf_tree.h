@@ -1,12 +1,12 @@
-// Whether the links of a URDF form a tree, before urdfdom reads it: of links in a loop, each of which keeps the next
-// one, a model that it gives up would never be freed.
+// Checks that the links of a URDF form a tree, before urdfdom reads it: links in a loop keep one another alive, so that
+// a model that urdfdom gives up would never be freed.
 #pragma once
 
 #include <string>
 
 namespace takt::kinematics {
 
-// A link that hangs, through others or not, on itself; empty: there is none, or this is no URDF.
+// Returns a link that is its own ancestor or a descendant of one; empty if there is none, or this is no URDF.
 std::string LinkInLoop(const std::string& xml);
 
 }  // namespace takt::kinematics

@@ -30,7 +30,7 @@ class Scanner {
   }
 
  private:
-  // From '<' to behind its '>'. False: it is not well formed, or there are too many levels.
+  // Consumes from '<' to after its '>'. Returns false if it is not well formed, or there are too many levels.
   bool Markup() {
     if (Takes("<!--")) return Past("-->");
     if (Takes("<![CDATA[")) return Past("]]>");
@@ -87,7 +87,7 @@ class Scanner {
     }
     return text_.substr(begin, at_ - begin);
   }
-  // True: there was some.
+  // Returns true if there was any.
   bool Space() {
     const std::size_t begin = at_;
     while (at_ < text_.size() && IsSpace(text_[at_])) ++at_;
@@ -109,7 +109,7 @@ class Scanner {
   const std::size_t most_levels_;
   std::size_t at_ = 0;
   std::vector<std::string_view> open_;  // elements, the outermost first
-  bool any_ = false;                    // there was an element
+  bool any_ = false;                    // an element has been found
 };
 
 }  // namespace

@@ -88,7 +88,7 @@ void InHoming(const Context& c, group::State& g, State& s) noexcept {
   while (s.homing.place < kLastPlace) {
     ++s.homing.place;
     if (const ErrorId error = BeginPlace(c, s.homing.place, g, s); error != ErrorId::kNone) return Fail(c, error, g, s);
-    // Axes that are homed in place have already ended.
+    // Axes with direct homing also count as homing until their next step.
     if (!group::AllMembers(c.group, g, [](const axis::State& m) { return !IsLooking(m); })) return;
   }
   EndHoming(c, FeedbackState::kDone, ErrorId::kNone, g, s);
