@@ -61,7 +61,6 @@ enum class PathChoice : std::uint8_t {
 //
 // Small errors are accepted: the centre is moved to where start and end are equally far away, by up to kCircleSlack of
 // the radius; the radius grows by up to as much if the end lies too far away.
-// radius; the radius grows by as much where the end lies too far away.
 struct Circle {
   CircMode mode = CircMode::kBorder;
   Triple auxiliary_point{};  // [mm] border point, centre, or the vector of radius mode

@@ -81,7 +81,7 @@ void CarryOut(const Context& c, Ticket ticket, double lease_s, const Jog& comman
   const bool may = s.state == PickPlaceState::kReady || Jogs(s) || (rests && s.hold.held);
   ErrorId error = ErrorId::kNone;
   if (!may) error = ErrorId::kState;
-  // Their order is not known
+  // Their order is not known.
   if (s.jog.ticket == 0 && command.positive && command.negative) error = ErrorId::kParameter;
   if (!IsOn(c, g)) error = WhyOff(c, g);
   if (held && error != ErrorId::kNone) return Refuse(c, ticket, error, s);

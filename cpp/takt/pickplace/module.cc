@@ -287,7 +287,7 @@ void InError(const Context& c, group::State& g, State& s) {
   Enter(PickPlaceState::kReady, s);
   const bool stopped =
       !group::AllMembers(c.group, g, [](const axis::State& m) { return m.emergency == axis::Emergency::kNone; });
-  // After an emergency stop power has to be requested again
+  // After an emergency stop power has to be requested again.
   if (!s.inputs.regulator_on || IsOn(c, g) || stopped) return;
   Tell(c, group::Power{.enable = true}, g);
   s.enables = g.state == GroupState::kDisabled;

@@ -316,7 +316,7 @@ namespace {
 void Go(const Context& c, group::State& g, State& s) {
   Order& order = s.orders[0];
   if (g.done <= order.last) {
-    // Waiting for a zone is not part of the profile's time
+    // Waiting for a zone is not part of the profile's time.
     if (g.waits_for != 0) order.begin_cycle = c.group.cycle.count;
     if (IsStatic(order)) return;
     const double left_s = TimeToGo(c, g, order, s);

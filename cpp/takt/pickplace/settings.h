@@ -99,7 +99,7 @@ struct SettingsOf {
   Of<std::uint32_t> place_belt = Preset<Of>(std::uint32_t{0});  // from_to: belt to place on; 0: the static target
   Of<WorkpieceRule> workpiece_rule = Preset<Of>(WorkpieceRule::kFirst);
   Of<bool> keep_orientation = Preset<Of>(false);  // targets do not turn the tool: it has no wrist
-  // The two systems assigned to workpieces alternately
+  // The two systems assigned to workpieces alternately.
   Of<std::uint32_t> workpiece_pcs1 = Preset<Of>(std::uint32_t{15});
   Of<std::uint32_t> workpiece_pcs2 = Preset<Of>(std::uint32_t{16});
 };
@@ -135,7 +135,7 @@ struct BeltSettingsOf {
   Of<std::uint32_t> turn = Preset<Of>(std::uint32_t{1});   // ... those from this one on, from 1, ...
   Of<std::uint32_t> turns = Preset<Of>(std::uint32_t{1});  // ... this many
   Of<double> most_per_minute = Preset<Of>(0.0);            // 0: any number
-  // Takes a workpiece only while this many free ones are behind its range
+  // Takes a workpiece only while this many free ones are behind its range.
   Of<std::uint32_t> leave = Preset<Of>(std::uint32_t{0});
   Of<double> same_within = Preset<Of>(2.0);  // [mm] objects this close to a fetched workpiece are the same one
   // Pose of the tool on a workpiece; not in the manual.

@@ -44,7 +44,7 @@ struct Order {
   BeltSettings own;  // settings of the belt when the order was accepted
   PathRamps ramps;
   WorkpieceRule rule = WorkpieceRule::kFirst;
-  double gripper_time = 0;  // [s] of the gripper's pulse before the end
+  double gripper_time = 0;  // [s] from the gripper's pulse to the end of the profile
   Phase phase = Phase::kNew;
   Profile profile;
   std::uint32_t next_leg = 0;       // leg that was given first
@@ -110,7 +110,7 @@ struct Scout {
   bool known = false;           // the end of the profile is known
   std::uint64_t end_cycle = 0;  // cycle of that end
   bool running = false;
-  std::uint64_t order_last = 0;  // number of the move whose end is wanted
+  std::uint64_t order_last = 0;  // number of the move whose end is to be found
   std::uint64_t cycle = 0;       // cycle that it has reached
   trajectory::PathPace pace;
 };

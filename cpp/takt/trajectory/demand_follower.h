@@ -12,7 +12,7 @@
 
 namespace takt::trajectory {
 
-// What the axis is to match.
+// The quantity of the demand that the axis matches.
 enum class DemandMode : std::uint8_t {
   kVelocity,  // the demand's velocity: distance lost while catching up is not recovered; constant offset once in step
   kPosition,  // the demand's position

@@ -20,7 +20,7 @@ constexpr double kTurn = 0.15;      // jerk step at a node above this share of t
 constexpr double kLeastParts = 16;  // about the least number of intervals between two slow nodes
 constexpr int kAttempts = 6, kEasings = 4;
 constexpr double kEased = 0.97;  // largest share of a limit that the reference is to use at slow nodes
-// Share of the previous use, reached at most once a slow node is slower; else its speed is restored
+// Share of the previous use, reached at most once a slow node is slower; else its speed is restored.
 constexpr double kHelps = 0.995;
 constexpr double kHarder[] = {1,   1.01, 1.02, 1.04,
                               1.1, 1.25, 1.5,  2};  // shares of its limits, tried for the reference from a motion

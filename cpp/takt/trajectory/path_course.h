@@ -132,7 +132,7 @@ class PathCourse {
   std::vector<ReferenceRate> rates_;
   std::vector<Slow> slow_;
   std::vector<double> square_;  // squared speed limit at each node [mm²/s²]
-  // Squared speed that the step of the second slopes at a joint allows; may be the speed limit
+  // Squared speed that the step of the second slopes at a joint allows; may be the speed limit.
   std::vector<double> joints_;
   std::vector<Knot> knots_;
   std::vector<double> turns_;  // jerk step at each node at that speed, as a share of the jerk limit

@@ -10,7 +10,7 @@ namespace takt::trajectory {
 namespace {
 
 constexpr double kPlanShare = 0.99;  // share of each limit used by the rows; the rest is for values between knots
-// Intervals after a given pace, which may use all of a limit, until that share holds
+// Intervals after a given pace, which may use all of a limit, until that share holds.
 constexpr std::size_t kFadeIntervals = 8;
 constexpr int kVerifyRounds = 8;         // rounds of verifying and tightening
 constexpr int kRoundsFromMotion = 6;     // with a given pace; after more rounds the law in force is usually faster

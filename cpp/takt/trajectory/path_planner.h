@@ -74,8 +74,8 @@ enum class PathPlanStatus : std::uint8_t {
 // Guarantees for every plan returned (kPlanned, kScaled), whatever the request:
 //
 // Velocity, acceleration and jerk of every coordinate stay within its limits, to 1e-6 of them, if the rates are smooth
-// within the intervals: each interval is checked at kSamples + 1 points, and what may lie between two of them is bounded by
-// their second differences.
+// within the intervals: each interval is checked at kSamples + 1 points, and what may lie between two of them is
+// bounded by their second differences.
 //
 // The plan begins and ends with the requested paces, bit for bit, and covers the whole reference time. R is above 0 and
 // nothing is NaN. From rest to rest there always is a plan.
@@ -156,7 +156,7 @@ class PathPlanner {
   std::vector<double> kept_;           // ordinates of a feasible plan ...
   std::vector<Shares> kept_tighten_;   // ... and its factors
   std::vector<std::uint8_t> held_;     // of each interval: 1 if its ordinate is fixed
-  // Of each interval: 1 if its reference moves at the velocity limit of the first coordinate
+  // Of each interval: 1 if its reference moves at the velocity limit of the first coordinate.
   std::vector<std::uint8_t> cruises_;
   std::vector<double> signed_;  // velocity, acceleration and jerk of all coordinates at three samples
   std::vector<Row> rows_;

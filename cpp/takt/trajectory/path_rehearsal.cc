@@ -132,7 +132,7 @@ void PathRehearsal::Look(const PathWindow& window, const KinematicState& before,
   PathShares shares;
   PathCoordinateValues velocities, accelerations;
   KinematicState place = mean;
-  // At a stop: on the path that leads there, not on the one that begins there
+  // At a stop: on the path that leads there, not on the one that begins there.
   if (here_.pace.raw_stands && Stands(here_.pace)) {
     place.position = std::min(place.position, std::nextafter(window[here_.pace.node].at.s, -kFullSpeed));
   }

@@ -9,7 +9,7 @@
 // From the end of the window backwards each node gets its ceiling: the largest speed of the raw motion from which the
 // rest of the window can still be travelled within all limits, down to a stop at its end. While the speed is below the
 // ceiling, an admissible acceleration exists that keeps it below in the next cycle. When more of the path becomes known
-// ceilings rise, except just before its start, at nodes from which the mean reaches it.
+// ceilings rise, except at the nodes just before the new part, from which the mean reaches into it.
 //
 // On bends the mean of the raw accelerations is not the acceleration of the mean, so for coordinates all this is only
 // approximately right: PathRehearsal checks the result and weakens stretches where it is too much.
