@@ -59,8 +59,8 @@ KDL::Vector TurnBetween(const KDL::Rotation& from, const KDL::Rotation& to) noex
 // A share of the turn with its first and second derivative by time: 0 at the start, 1 at the end.
 struct Share {
   double value = 0;
-  double rate = 0;          // 1/s
-  double acceleration = 0;  // 1/s²
+  double rate = 0;          // [1/s]
+  double acceleration = 0;  // [1/s²]
 };
 
 // Returns the orientation on the arc with its angular velocity (rad/s) and acceleration (rad/s²).

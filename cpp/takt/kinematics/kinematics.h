@@ -29,7 +29,7 @@ using Mechanism = std::variant<Linear, Scara, Delta, SixAxis, Serial>;
 // From an axis' own count to the mechanism's: (position - zero) * factor.
 struct JointScale {
   double zero = 0;    // [u]
-  double factor = 1;  // mm or rad per u; negative: the axis counts in the opposite sense
+  double factor = 1;  // [mm/u] or [rad/u]; negative: the axis counts in the opposite sense
 };
 
 // Range of an axis, including its ends; by default unlimited.

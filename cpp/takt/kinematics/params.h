@@ -39,7 +39,7 @@ struct DeltaParams {
 };
 
 struct SixAxisParams {
-  double a1 = 0;  // [mm], all
+  double a1 = 0;  // [mm] all
   double a2 = 0;
   double b = 0;
   double c1 = 0;

@@ -55,7 +55,7 @@ double WayTo(double velocity, const Ramp& ramp) {
 struct Overlapping {
   double x = 1, k = 1;
   double time_s = 0;
-  double ramped = 0, steady = 0;  // mm/s
+  double ramped = 0, steady = 0;  // [mm/s]
 };
 Overlapping OverlappingAt(double distance, double q, const Ramp& ramp) {
   const double highest = std::sqrt(std::min(ramp.velocity * ramp.jerk, ramp.acceleration * ramp.acceleration));

@@ -27,8 +27,8 @@ Problem MakeTwist(const Point& from, const Triple& way, const Triple& turn_rad, 
 Segment Still(const Point& point) noexcept;
 
 // Points closer than this are the same.
-inline constexpr double kSame = 1e-6;      // mm
-inline constexpr double kSameTurn = 1e-6;  // deg
+inline constexpr double kSame = 1e-6;      // [mm]
+inline constexpr double kSameTurn = 1e-6;  // [deg]
 
 // How a circular arc is given (PLCopen's CircMode).
 enum class CircMode : std::uint8_t {

@@ -25,7 +25,7 @@ using AuxiliaryMotion = kinematics::JointMotion;
 
 // A point of a path.
 struct Point {
-  Frame frame;  // mm
+  Frame frame;  // [mm]
   Auxiliaries auxiliaries{};
 };
 

@@ -13,7 +13,7 @@ namespace takt::pickplace {
 
 namespace {
 
-constexpr double kUp = 1e-6;   // mm
+constexpr double kUp = 1e-6;   // [mm]
 constexpr double kLetsGo = 8;  // times the braking distance along the path, at most, for a tool that leaves its belt
 
 kinematics::Frame ToolFrom(const Context& c, const group::State& g, const Place& place) {

@@ -11,7 +11,7 @@ namespace {
 using trajectory::PathPace;
 using trajectory::PathWindow;
 
-constexpr double kThere = 1e-6;  // mm
+constexpr double kThere = 1e-6;  // [mm]
 // Cycles that the scout runs in one cycle: fewer than the group's rehearsal, which may still slow the motion down where
 // it runs.
 constexpr int kScouted = 16;

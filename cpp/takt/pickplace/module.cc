@@ -396,8 +396,8 @@ bool MovesOn(const Context& c, const group::State& g) {
 
 // Returns true if the tool is no longer at a place in the MCS: its frame, or the position of an axis, was set anew.
 bool IsElsewhere(const Context& c, const group::State& g, const Place& place) {
-  constexpr double kSamePosition = 0.01;     // mm
-  constexpr double kSameOrientation = 1e-4;  // rad, of the elements of the rotation matrix
+  constexpr double kSamePosition = 0.01;     // [mm]
+  constexpr double kSameOrientation = 1e-4;  // [rad] of the elements of the rotation matrix
   const kinematics::Frame present = kinematics::ToFrame(PresentPlace(c, g).pose);
   const kinematics::Frame then = kinematics::ToFrame(place.pose);
   return !KDL::Equal(present.p, then.p, kSamePosition) || !KDL::Equal(present.M, then.M, kSameOrientation);

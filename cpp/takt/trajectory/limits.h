@@ -6,10 +6,10 @@
 namespace takt::trajectory {
 
 struct Limits {
-  double velocity = 0;      // u/s, > 0
-  double acceleration = 0;  // u/s², > 0: largest while the speed grows
-  double deceleration = 0;  // u/s², > 0: largest while the speed falls
-  double jerk = 0;          // u/s³, >= 0; 0: unlimited (trapezoid)
+  double velocity = 0;      // [u/s] > 0
+  double acceleration = 0;  // [u/s²] > 0: largest while the speed grows
+  double deceleration = 0;  // [u/s²] > 0: largest while the speed falls
+  double jerk = 0;          // [u/s³] >= 0; 0: unlimited (trapezoid)
 };
 
 // Returns the distance [u] over which the speed changes from `from` to `to`, with no acceleration at both ends.

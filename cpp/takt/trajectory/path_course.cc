@@ -24,7 +24,7 @@ constexpr double kEased = 0.97;  // largest share of a limit that the reference 
 constexpr double kHelps = 0.995;
 constexpr double kHarder[] = {1,   1.01, 1.02, 1.04,
                               1.1, 1.25, 1.5,  2};  // shares of its limits, tried for the reference from a motion
-constexpr double kNoSlower = 0.9;                   // of the slower end: least speed in between of such a reference
+constexpr double kNoSlower = 0.9;                   // least speed in between, as a share of the slower end's
 constexpr double kNoSpeed = 1e-9;                   // share of the velocity that is rounding
 constexpr double kMostGrowth = 2.5;                 // ratio of the lengths of neighbouring intervals
 constexpr double kReferenceShare = 0.97;  // of the limits, used by the reference, so that a plan can start from it
@@ -34,7 +34,7 @@ constexpr double kNoLimitFrom = 1e11;
 constexpr double kStillBrakes = 1 + 1e-6;  // of the speed an interval later
 constexpr double kAtLimit = 1 - 1e-6;      // of the velocity limit
 constexpr double kNoAcceleration = 1e-6;   // share of the limit
-constexpr double kHere = 1e-9;             // mm
+constexpr double kHere = 1e-9;             // [mm]
 
 double InfiniteIfNone(double limit) {
   return limit < kNoLimitFrom ? limit : std::numeric_limits<double>::infinity();

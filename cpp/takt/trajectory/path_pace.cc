@@ -9,7 +9,7 @@ namespace takt::trajectory {
 
 namespace {
 
-constexpr double kOnNode = 1e-9;   // mm
+constexpr double kOnNode = 1e-9;   // [mm]
 constexpr double kLanding = 0.99;  // share of the deceleration; the rest is for stopping exactly
 
 struct RawLimits {

@@ -37,8 +37,8 @@ struct PathPace {
 
 // How a motion along a path is braked; 0: with the limits of the path.
 struct PathBrake {
-  double deceleration = 0;  // mm/s²
-  double jerk = 0;          // mm/s³
+  double deceleration = 0;  // [mm/s²]
+  double jerk = 0;          // [mm/s³]
   bool full = false;        // as hard as the coordinates can: the limits along the path are ignored
 };
 

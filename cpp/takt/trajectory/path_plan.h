@@ -15,9 +15,9 @@ struct ReferencePace {
 // A point of a plan: the reference time and its derivatives by time.
 struct ReferenceState {
   double time = 0;          // reference time [s]
-  double rate = 0;          // 1
-  double acceleration = 0;  // 1/s
-  double jerk = 0;          // 1/s²
+  double rate = 0;          // [1]
+  double acceleration = 0;  // [1/s]
+  double jerk = 0;          // [1/s²]
 };
 
 // A plan: R at the knots, quadratic between them. Evaluation is pure.
@@ -25,11 +25,11 @@ class PathPlan {
  public:
   explicit PathPlan(std::size_t intervals) : knots_(intervals + 1) {}
 
-  double duration() const noexcept { return count_ > 0 ? knots_[count_ - 1].at_s : 0; }  // s
+  double duration() const noexcept { return count_ > 0 ? knots_[count_ - 1].at_s : 0; }  // [s]
   std::size_t intervals() const noexcept { return count_ > 0 ? count_ - 1 : 0; }
   // Returns the pace at a knot, from which another plan can continue.
   ReferencePace pace(std::size_t knot) const noexcept { return {knots_[knot].square, knots_[knot].slope}; }
-  double knot_time(std::size_t knot) const noexcept { return knots_[knot].at_s; }  // s from the beginning
+  double knot_time(std::size_t knot) const noexcept { return knots_[knot].at_s; }  // [s] from the beginning
   // Returns the state at `time_s` from the beginning; outside of the plan, the state at the nearer end, exactly.
   ReferenceState At(double time_s) const noexcept;
   // Returns the state within an interval, at `share` (0 to 1) of its length in reference time.

@@ -48,7 +48,7 @@ constexpr double kAnyTime = std::numeric_limits<double>::infinity();
 constexpr Reference kReferences[] = {
     {1, false, 1.03, false}, {1, true, 1.15, false}, {0.8, false, kAnyTime, true}, {0.5, false, kAnyTime, true}};
 constexpr double kRoomForPlans = 0.97;           // share of limits: a plan can start from such a motion
-constexpr double kSamePosition = 1e-9;           // mm
+constexpr double kSamePosition = 1e-9;           // [mm]
 constexpr double kCoordinatesShare = 0.979;      // share of the coordinates' limits; plans use 0.98
 constexpr int kTails = 8;                        // starts tried for a tail
 constexpr double kTailShares[] = {1, 0.8, 0.5};  // shares of limits, tried for tails

@@ -12,10 +12,10 @@ namespace takt::trajectory {
 
 // The state at its beginning and the jerk that holds during it.
 struct Piece {
-  double position = 0;      // u
-  double velocity = 0;      // u/s
-  double acceleration = 0;  // u/s²
-  double jerk = 0;          // u/s³
+  double position = 0;      // [u]
+  double velocity = 0;      // [u/s]
+  double acceleration = 0;  // [u/s²]
+  double jerk = 0;          // [u/s³]
 
   // `t` seconds after its beginning.
   constexpr KinematicState At(double t) const noexcept {

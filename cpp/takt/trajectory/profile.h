@@ -78,7 +78,7 @@ struct Profile {
  private:
   struct Local {
     const Piece* piece;
-    double t;  // s from the beginning of the piece
+    double t;  // [s] from the beginning of the piece
   };
   static constexpr std::size_t Index(int i) noexcept { return static_cast<std::size_t>(i); }
   // 0 <= t < duration(), or NaN (which stays NaN).
