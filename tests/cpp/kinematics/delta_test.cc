@@ -85,7 +85,7 @@ TEST(Delta, PropertyClosesItsChains) {
   }
 }
 
-// GR-11: C turns with the shaft and nothing else; without it C of the pose does not matter.
+// GR-11: C turns with the shaft and nothing else; without it C of the pose is ignored.
 TEST(Delta, TurnsItsToolWithOrWithoutAShaft) {
   const Kinematics with =
       FromYaml("{delta: {base_radius: 200, platform_radius: 45, upper_arm: 235, lower_arm: 800, rotary: true}}");
@@ -119,15 +119,15 @@ TEST(Delta, RefusesFromTheBorderOn) {
   EXPECT_EQ(ask(border - 1), Reason::kNone);
 }
 
-// GR-12: on lines from a place inside outwards in all directions: solved up to a border found by bisection, and from
-// there on refused, to far beyond it; on the last stretch the answers are as exact as elsewhere.
+// GR-12: on lines from a point inside outwards in all directions: solved up to a border found by bisection, and from
+// there on refused, to far beyond it; on the last stretch the solutions are as exact as elsewhere.
 TEST(Delta, PropertyRefusesBeyondEveryBorder) {
   Random random(22);
   const Kinematics k = FromYaml(kFlexPicker);
   const KDL::Vector inside(0, 0, -900);
   for (int i = 0; i < Trials(1000); ++i) {
     KDL::Vector direction = random.Direction();
-    direction.z(-std::abs(direction.z()));  // upwards the space has hollows, behind which it goes on
+    direction.z(-std::abs(direction.z()));  // upwards the workspace has hollows, behind which it continues
     Joints joints{};
     const auto ask = [&](double distance) { return Inverse(k, Frame(inside + direction * distance), {}, {}, joints); };
     double good = 0, bad = 4000;
@@ -141,7 +141,7 @@ TEST(Delta, PropertyRefusesBeyondEveryBorder) {
       ASSERT_EQ(ask(good - back), Reason::kNone);
       const Frame wanted(inside + direction * (good - back));
       Frame found;
-      // Where the arms can hardly hold the platform forward has its own border; the equations still close.
+      // Where the arms can hardly hold the platform the forward solution has its own border; the equations still close.
       if (Forward(k, joints, found) == Reason::kNone && back == 1.0) {
         ASSERT_LT((found.p - wanted.p).Norm(), 1e-9);
       }
@@ -150,7 +150,7 @@ TEST(Delta, PropertyRefusesBeyondEveryBorder) {
   }
 }
 
-// GR-12: above the base the same lengths would fit, with the platform standing on its arms: never given.
+// GR-12: above the base the same lengths would fit, with the platform standing on its arms: never returned.
 TEST(Delta, NeverStandsOnItsArms) {
   const Kinematics k = FromYaml(kFlexPicker);
   Joints joints{};

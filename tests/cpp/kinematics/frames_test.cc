@@ -91,7 +91,7 @@ TEST(Frames, AnswerInTheGimbalLock) {
   const Pose up = ToPose(ToFrame({.a = 20, .b = 90, .c = 50}));
   EXPECT_EQ(up.a, 0);
   EXPECT_NEAR(up.b, 90, 1e-12);
-  EXPECT_NEAR(up.c, 30, 1e-9);  // about the same axis, the other way round
+  EXPECT_NEAR(up.c, 30, 1e-9);  // about the same axis, in the opposite sense
   const Pose down = ToPose(ToFrame({.a = 20, .b = -90, .c = 50}));
   EXPECT_EQ(down.a, 0);
   EXPECT_NEAR(down.b, -90, 1e-12);

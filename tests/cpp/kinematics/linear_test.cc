@@ -1,4 +1,4 @@
-// GR-11, GR-12: gantries, with an axis a coordinate or on crossed belts.
+// GR-11, GR-12: gantries, with one axis per coordinate or on crossed belts.
 #include "takt/kinematics/linear.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(Gantry, MovesWhatItsAxesSay) {
   EXPECT_NEAR(joints[2], 190, 1e-10);
 }
 
-// GR-11: forward beside KDL's own chain.
+// GR-11: forward compared with KDL's own chain.
 TEST(Gantry, PropertyAgreesWithKdl) {
   const Kinematics k = FromYaml("{gantry: {axes: [x, y, z, c]}}");
   KDL::Chain chain;
@@ -53,7 +53,7 @@ TEST(Gantry, PropertyAgreesWithKdl) {
   }
 }
 
-// GR-12: what no axis moves must not be asked for; but C without a C axis is not asked for at all.
+// GR-12: a coordinate that no axis moves must be 0; C without a C axis is ignored.
 TEST(Gantry, RefusesWhatNoAxisMoves) {
   const Kinematics k = FromYaml("{gantry: {axes: [x, y]}}");
   Joints joints{};
@@ -89,7 +89,7 @@ TEST(CoreXy, MovesAlongDiagonals) {
   EXPECT_EQ(joints[2], 5);
 }
 
-// GR-11: an H-bot whose second motor counts the other way round.
+// GR-11: an H-bot whose second motor counts in the opposite sense.
 TEST(CoreXy, TakesAMotorThatCountsTheOtherWay) {
   const Kinematics k = FromYaml("{core_xy: {}, joints: [{}, {invert: true, zero: 100}]}");
   const Frame tool = ForwardOrFail(k, {10, 90});

@@ -1,4 +1,4 @@
-// GR-13: where the parts of a mechanism are, and how far they can come.
+// GR-13: frames of the parts of a mechanism, and bounds of their displacement.
 #include "takt/kinematics/links.h"
 
 #include <gmock/gmock.h>
@@ -53,12 +53,12 @@ TEST(Links, HaveNames) {
                           "lower_arm_2_a", "lower_arm_2_b", "lower_arm_3_a", "lower_arm_3_b", "platform", "tool"));
   EXPECT_THAT(NamesOf(testing::CaseOf("Puma").kinematics),
               ElementsAre("base", "link_1", "link_2", "link_3", "link_4", "link_5", "link_6", "tool"));
-  // URDF's own; what it calls tool is not what Takt does.
+  // URDF's own names; a link called tool there is not Takt's tool.
   EXPECT_THAT(NamesOf(testing::CaseOf("SerialScara").kinematics),
               ElementsAre("base", "arm1", "arm2", "quill", "link_4", "tool"));
 }
 
-// GR-13: the last link is the tool, of every mechanism in any position; what meets is told by both.
+// GR-13: the last link is the tool, of every mechanism in any position; links that touch name each other.
 TEST(Links, EndWithTheTool) {
   testing::Random random(1);
   for (const testing::Case& c : testing::Cases()) {
@@ -135,7 +135,8 @@ TEST(Links, OfADeltaHangTogether) {
   }
 }
 
-// GR-13: nothing gets further than said, of any link, seen from any other, on straight ways of the axes short and long.
+// GR-13: no point moves further than the bound, of any link, relative to any other, on short and long motions of the
+// axes.
 TEST(Links, MoveNoFurtherThanSaid) {
   testing::Random random(3);
   for (const testing::Case& c : testing::Cases()) {
@@ -172,7 +173,7 @@ TEST(Links, MoveNoFurtherThanSaid) {
       }
     }
     EXPECT_GT(bounded, Trials(300) / 4);
-    EXPECT_GT(tightest, 0.5);  // and it is no empty promise
+    EXPECT_GT(tightest, 0.5);  // and the bound is not trivial
   }
 }
 

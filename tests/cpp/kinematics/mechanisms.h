@@ -1,4 +1,4 @@
-// The mechanisms that the tests try, as a machine file says them, and random positions of their axes.
+// The mechanisms of the tests, as in a machine file, and random positions of their axes.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ Kinematics FromYaml(const std::string& text);
 struct Case {
   std::string name;
   Kinematics kinematics;
-  std::vector<JointRange> sample;  // u, of each axis: no singularity lies inside but for single points
+  std::vector<JointRange> sample;  // [u] of each axis: no singularity inside except for single points
   bool closed_form = true;
 };
 
@@ -50,13 +50,14 @@ class Random {
 
 Frame ForwardOrFail(const Kinematics& k, const Joints& joints);
 
-// Largest to smallest of what a unit of motion of the axes does to the tool, with parts of `length` (mm) beside rad.
+// Ratio of the largest to the smallest effect of a unit of motion of the axes on the tool, with parts of `length` (mm)
+// comparable to rad.
 double ConditionOf(const Kinematics& kinematics, const Joints& joints, double length = 500);
 
-// The angle between two orientations, deg.
+// The angle between two orientations [deg].
 double DegreesBetween(const KDL::Rotation& a, const KDL::Rotation& b);
 
-// What a tool moves and turns from one frame to another, mm and rad.
+// Displacement and turn of a tool from one frame to another, mm and rad.
 KDL::Twist Difference(const Frame& from, const Frame& to);
 
 }  // namespace testing

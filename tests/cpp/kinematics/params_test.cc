@@ -1,4 +1,4 @@
-// GR-11: what a machine file may say about kinematics.
+// GR-11: kinematics in a machine file.
 #include "takt/kinematics/params.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace takt::kinematics {
 namespace {
 
-// Reader's or maker's sentence.
+// The sentence of the reader or of Make.
 std::string ProblemOf(const std::string& text) {
   const ReadResult<KinematicsParams> read = ReadYaml<KinematicsParams>(text, "m.yaml");
   if (!read.ok()) return read.problems.front().path + ": " + read.problems.front().message;

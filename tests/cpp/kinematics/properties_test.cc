@@ -1,4 +1,4 @@
-// What must hold for every mechanism, at random.
+// Properties of every mechanism, at random.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ Joints Nudged(Random& random, const Case& c, const Joints& joints, double by) {
 }
 
 // GR-11: forward(inverse(pose)) is the pose, within 1e-9 mm and 1e-9 deg, all over the workspace; and with the same
-// branch and turns asked for, the axes are where they were.
+// branch and turns requested, the axes are at their positions.
 TEST_P(Every, PropertyComesBack) {
   Random random(11);
   const Case& c = tried();
@@ -111,7 +111,7 @@ Joints At(const JointMotion& motion, double t) {
   return joints;
 }
 
-// GR-23: velocity and acceleration of the tool are the derivatives of its place (differences).
+// GR-23: velocity and acceleration of the tool are the derivatives of its position (differences).
 TEST_P(Every, PropertyMotionGoesForward) {
   Random random(13);
   const Case& c = tried();
@@ -141,7 +141,7 @@ TEST_P(Every, PropertyMotionGoesForward) {
   }
 }
 
-// GR-11, GR-23: velocities and accelerations come back, too. With an axis to spare only the tool's do.
+// GR-11, GR-23: velocities and accelerations are recovered, too. With a redundant axis only the tool's are.
 TEST_P(Every, PropertyMotionComesBack) {
   Random random(14);
   const Case& c = tried();
@@ -167,7 +167,7 @@ TEST_P(Every, PropertyMotionComesBack) {
   }
 }
 
-// A straight way with an even turn, in one second.
+// A straight line with an even turn, in one second.
 class Line {
  public:
   Line(const Frame& from, const Frame& to) : from_(from.p), way_(to.p - from.p), arc_(ArcBetween(from.M, to.M)) {}
@@ -180,8 +180,9 @@ class Line {
   GreatArc arc_;
 };
 
-// Whether the axes went from one motion to the next as their velocities say, which may change as their accelerations
-// say. An axis to spare may also drift by changes of the smallest motion, which its acceleration does not have.
+// Returns true if the axes moved from one motion to the next as their velocities say, which may change as their
+// accelerations say. A redundant axis may also drift by changes of the smallest motion, which its acceleration does not
+// include.
 bool Continuous(const Case& c, const JointMotion& from, const JointMotion& to, double period) {
   for (std::size_t k = 0; k < c.sample.size(); ++k) {
     const double moved = to.position[k] - from.position[k];
@@ -193,9 +194,9 @@ bool Continuous(const Case& c, const JointMotion& from, const JointMotion& to, d
   return true;
 }
 
-// GR-12: along a straight line with an even turn, point by point, each solved from the one before: the branch stays and
-// no axis jumps. Where axes are fast beside a singularity the points come closer; a jump would stay one however close
-// they are. Where the line leaves what can be done, a reason is given and nothing moves.
+// GR-12: along a straight line with an even turn, point by point, each solved from the previous one: the branch stays
+// and no axis jumps. Where axes are fast near a singularity the points come closer; a jump would stay one however close
+// they are. Where the line leaves the workspace, a reason is given and nothing moves.
 TEST_P(Every, PropertyBranchNeverJumpsAlongAPath) {
   Random random(15);
   const Case& c = tried();
@@ -231,7 +232,7 @@ TEST_P(Every, PropertyBranchNeverJumpsAlongAPath) {
   RecordProperty("refused", refused);
 }
 
-// GR-12: whatever is asked, the answer is a reason or finite numbers; a refusal leaves what was there.
+// GR-12: whatever is requested, the result is a reason or finite numbers; a refusal leaves the output unchanged.
 TEST_P(Every, PropertyAnswersEverything) {
   Random random(16);
   const Case& c = tried();
@@ -277,11 +278,11 @@ TEST_P(Every, PropertyAnswersEverything) {
   }
 }
 
-// GR-12: an axis' range is kept: what lies a little inside is given, what lies beyond is refused.
+// GR-12: an axis' range is kept: a position just inside is returned, one beyond is refused.
 TEST_P(Every, PropertyKeepsRangesOfAxes) {
   Random random(17);
   const Case& c = tried();
-  if (c.sample.size() > 6) return;  // an axis to spare goes elsewhere
+  if (c.sample.size() > 6) return;  // a redundant axis moves elsewhere
   for (int i = 0; i < Trials(300); ++i) {
     const Joints joints = random.In(c);
     const Frame pose = ForwardOrFail(c.kinematics, joints);
@@ -297,7 +298,7 @@ TEST_P(Every, PropertyKeepsRangesOfAxes) {
   }
 }
 
-// GR-30, GR-11: nothing of it allocates.
+// GR-30, GR-11: nothing of this allocates.
 TEST_P(Every, AllocatesNothing) {
   Random random(18);
   const Case& c = tried();

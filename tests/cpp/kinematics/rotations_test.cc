@@ -1,4 +1,4 @@
-// EN-35: rotations with the same bits on every processor, held against KDL's and urdfdom's.
+// EN-35: rotations with the same bits on every processor, compared with KDL's and urdfdom's.
 #include "takt/kinematics/rotations.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST(Rotations, KeepTheAxisAndComeBackAfterAWholeTurn) {
   EXPECT_EQ(Off(About(axis, 0), KDL::Rotation::Identity()), 0);
 }
 
-// Every way to say an orientation or to leave it out, in joints and in shapes, of which a link has several.
+// Every notation of an orientation, and none, in joints and in shapes, of which a link has several.
 constexpr const char* kUrdf = R"(<?xml version="1.0"?>
 <robot name="two">
   <link name="base">

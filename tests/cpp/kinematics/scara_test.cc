@@ -60,7 +60,7 @@ TEST(Scara, ReachesAsFarAsTheDataSheetSays) {
   EXPECT_EQ(ask(0), Reason::kOutOfReach);
 }
 
-// GR-12: from far beyond to just inside both borders, in steps down to rounding; what is solved is exact.
+// GR-12: from far beyond to just inside both borders, in steps down to rounding; solutions are exact.
 TEST(Scara, PropertyIsExactUpToItsBorders) {
   Random random(31);
   const Kinematics k = FromYaml(kCobra);
@@ -84,7 +84,7 @@ TEST(Scara, PropertyIsExactUpToItsBorders) {
   }
 }
 
-// GR-11: forward and Jacobian beside KDL's own chain.
+// GR-11: forward and Jacobian compared with KDL's own chain.
 TEST(Scara, PropertyAgreesWithKdl) {
   KDL::Chain chain;
   chain.addSegment(KDL::Segment(KDL::Joint(KDL::Joint::RotZ), Frame(KDL::Vector(325, 0, 387))));
@@ -123,7 +123,7 @@ TEST(Scara, RefusesToTilt) {
   EXPECT_EQ(Inverse(k, tilting, {.elbow = Elbow::kPositive}, {}, motion), Reason::kOrientation);
 }
 
-// GR-12: the arm asked for is taken, wherever the axes are; without one the arm stays.
+// GR-12: the requested arm is taken, wherever the axes are; if none is requested the arm stays.
 TEST(Scara, KeepsOrChangesItsArm) {
   const Kinematics k = FromYaml(kCobra);
   const Frame pose = ToFrame({.x = 300, .y = 200, .z = 300});
@@ -138,8 +138,8 @@ TEST(Scara, KeepsOrChangesItsArm) {
   EXPECT_NEAR(kept[1], left[1], 1e-12);
 }
 
-// GR-12: C goes on turning instead of jumping by a whole turn, and is refused at the end of its range rather than
-// turned back; from nowhere it comes into the middle of its range.
+// GR-12: C continues turning instead of jumping by a whole turn, and is refused at the end of its range rather than
+// turned back; without a history it comes into the middle of its range.
 TEST(Scara, CountsWholeTurns) {
   Kinematics k = FromYaml(kCobra);
   k.ranges[3] = {-270, 270};

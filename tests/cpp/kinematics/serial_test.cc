@@ -1,4 +1,4 @@
-// GR-11, GR-12: chains from URDF, solved step by step.
+// GR-11, GR-12: chains from URDF, solved iteratively.
 #include "takt/kinematics/serial.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include "mechanisms.h"
 #include "takt/core/angle.h"
 
-// The URDF library keeps what it has read of a robot without a root for ever, and says only that it is none.
+// The URDF library never frees the model of a robot without a root, and only reports that there is none.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:liburdfdom_model";
 }
@@ -36,7 +36,7 @@ std::string TextOf(const std::string& name) {
   return text.str();
 }
 
-// GR-11: the chain of a URDF is the arm of the closed form: the same poses, and the same answers from near.
+// GR-11: the chain of a URDF is the arm of the closed form: the same poses, and the same solutions from nearby.
 TEST(Serial, PropertyAgreesWithTheClosedForm) {
   const Kinematics closed = FromYaml(kPuma);
   const testing::Case& c = CaseOf("SerialPuma");
@@ -53,7 +53,7 @@ TEST(Serial, PropertyAgreesWithTheClosedForm) {
   }
 }
 
-// GR-11: beside KDL's own solver (Newton-Raphson with damped least squares) on the same arm of seven axes.
+// GR-11: compared with KDL's own solver (Newton-Raphson with damped least squares) on the same arm of seven axes.
 TEST(Serial, PropertyAgreesWithKdlOnSevenAxes) {
   const std::array<std::pair<double, KDL::Vector>, 7> axes{{{340, {0, 0, 1}},
                                                             {0, {0, 1, 0}},
@@ -97,7 +97,7 @@ TEST(Serial, PropertyAgreesWithKdlOnSevenAxes) {
   EXPECT_GT(solved, Trials(200));
 }
 
-// GR-12: what cannot be reached is said to be so, from anywhere near or far.
+// GR-12: unreachable poses are reported as such, from anywhere near or far.
 TEST(Serial, RefusesWhatIsOutOfReach) {
   Random random(63);
   for (const char* name : {"SerialPuma", "SerialSeven", "SerialScara"}) {
@@ -106,7 +106,7 @@ TEST(Serial, RefusesWhatIsOutOfReach) {
       const double distance = 1400 + random.Between(0, 1e5);
       Frame pose = ForwardOrFail(c.kinematics, random.In(c));
       pose.p = random.Direction() * distance;
-      if (c.sample.size() == 4) pose.p.z(0);  // its Z axis would go far, but for its range
+      if (c.sample.size() == 4) pose.p.z(0);  // its Z axis would move far, but for its range
       if (pose.p.Norm() < 1400) continue;
       Joints joints{};
       ASSERT_EQ(Inverse(c.kinematics, pose, {}, random.In(c), joints), Reason::kOutOfReach);
@@ -114,7 +114,7 @@ TEST(Serial, RefusesWhatIsOutOfReach) {
   }
 }
 
-// GR-12: the border of a SCARA solved step by step: 600 mm.
+// GR-12: the border of a SCARA solved iteratively: 600 mm.
 TEST(Serial, RefusesFromTheBorderOn) {
   const Kinematics k = FromYaml("{serial: {urdf: cobra.urdf, tip: tool}}");
   Joints joints{};
@@ -131,7 +131,7 @@ TEST(Serial, RefusesFromTheBorderOn) {
   EXPECT_NEAR(joints[1], std::acos(cosine) / kDegree, 1e-6);
 }
 
-// GR-11: a stretched arm, the zero position of many URDFs, finds its way out of it.
+// GR-11: a stretched arm, the zero position of many URDFs, moves out of it.
 TEST(Serial, StartsFromAStretchedArm) {
   const testing::Case& c = CaseOf("SerialSeven");
   Random random(64);
@@ -145,10 +145,10 @@ TEST(Serial, StartsFromAStretchedArm) {
     ASSERT_LT((back.p - pose.p).Norm(), 1e-9);
     ASSERT_LT(DegreesBetween(back.M, pose.M), 1e-9);
   }
-  EXPECT_GT(solved, 30);  // the others run against the ends of axes
+  EXPECT_GT(solved, 30);  // the other ones reach the ends of axes
 }
 
-// GR-11: stretched towards the place it is to go to, no axis says which way: it bends nevertheless.
+// GR-11: stretched towards the target, no axis determines the side: it bends nevertheless.
 TEST(Serial, BendsAnArmThatPointsAtItsTarget) {
   const Kinematics k = FromYaml("{serial: {urdf: cobra.urdf, tip: tool}}");
   const Frame pose = ToFrame({.x = 500, .z = 300});
@@ -157,8 +157,8 @@ TEST(Serial, BendsAnArmThatPointsAtItsTarget) {
   EXPECT_LT((ForwardOrFail(k, joints).p - pose.p).Norm(), 1e-9);
 }
 
-// GR-12: a pose just on the other side of a singularity is never answered with a position there: of the wrist of six
-// axes, of the elbow of four.
+// GR-12: a pose just on the other side of a singularity never gets a position there: of the wrist of six axes, of the
+// elbow of four.
 TEST(Serial, PropertyStaysOnItsSide) {
   Random random(65);
   const testing::Case& six = CaseOf("SerialPuma");
@@ -210,7 +210,7 @@ std::string Diagnose(const std::string& xml, const std::string& base = "", const
   return why;
 }
 
-// GR-11: what is wrong with a URDF is said in a sentence.
+// GR-11: errors in a URDF are reported in a sentence.
 TEST(Serial, SaysWhatIsWrongWithAUrdf) {
   const std::string cobra = TextOf("cobra.urdf");
   EXPECT_EQ(Diagnose("nonsense"), "this is no URDF that can be read");
@@ -233,7 +233,7 @@ TEST(Serial, SaysWhatIsWrongWithAUrdf) {
   mimic.replace(mimic.find("<limit"), 0, "<mimic joint=\"j2\"/>");
   EXPECT_EQ(Diagnose(mimic, "", "tool"), "joint 'j1' copies another one, which a chain cannot");
 
-  // A chain has a beginning, and one way to each link.
+  // A chain has a beginning, and one connection to each link.
   const auto joint = [](const std::string& name, const std::string& from, const std::string& to) {
     return "<joint name='" + name + "' type='continuous'><parent link='" + from + "'/><child link='" + to +
            "'/><axis xyz='0 0 1'/></joint>";

@@ -52,7 +52,7 @@ Joints Anywhere(Random& random) {
   return joints;
 }
 
-// GR-11: forward, Jacobian and its derivative beside KDL's own chain from another description of the same arm.
+// GR-11: forward, Jacobian and its derivative compared with KDL's own chain from another description of the same arm.
 TEST(SixAxis, PropertyAgreesWithKdl) {
   const KDL::Chain chain = PumaOfKdl();
   KDL::ChainFkSolverPos_recursive solver(chain);
@@ -90,7 +90,7 @@ TEST(SixAxis, AgreesWithAPoseByHand) {
   EXPECT_NEAR(tool.p.y(), 0, 1e-10);
   EXPECT_NEAR(tool.p.z(), 750, 1e-10);
   EXPECT_NEAR(tool.M.UnitZ().x(), 1, 1e-14);
-  // Its axis 1 counts from above in the sense of a clock.
+  // Its axis 1 counts clockwise, seen from above.
   const Frame turned = ForwardOrFail(k, {90, -90, 90, 0, 0, 0});
   EXPECT_NEAR(turned.p.y(), -470, 1e-10);
   // Stretched forwards: A2 = 0, A3 = 0.
@@ -117,7 +117,7 @@ TEST(SixAxis, ReachesAsFarAsTheDataSheetsSay) {
   }
 }
 
-// GR-11: all eight branches lead to the pose, all differ, and each is the one it says it is.
+// GR-11: all eight branches lead to the pose, all differ, and each is the one that it is called.
 TEST(SixAxis, PropertyHasEightBranches) {
   Random random(42);
   for (const char* name : {"Puma", "Agilus"}) {
@@ -155,7 +155,7 @@ TEST(SixAxis, PropertyHasEightBranches) {
   }
 }
 
-// GR-12: the three singular positions are told, and so is what lies just beside them.
+// GR-12: the three singular positions are reported, and so are positions just beside them.
 TEST(SixAxis, TellsItsSingularPositions) {
   const Kinematics k = FromYaml(kAgilus);
   Joints joints{};
@@ -184,7 +184,7 @@ TEST(SixAxis, TellsItsSingularPositions) {
   EXPECT_EQ(above(0.01), Reason::kNone);
 }
 
-// GR-12: nearer and nearer to the wrist's singular position the answers stay exact, then there is none.
+// GR-12: closer and closer to the wrist's singular position the solutions stay exact, then there is none.
 TEST(SixAxis, PropertyIsExactBesideSingularPositions) {
   Random random(43);
   const testing::Case& c = CaseOf("Agilus");

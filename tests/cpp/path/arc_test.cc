@@ -52,7 +52,7 @@ TEST(Arcs, QuarterCircle) {
   EXPECT_LT(Length(At(arc, arc.length).p.dv - KDL::Vector(0, -0.1, 0)), 1e-14);
 }
 
-// GR-20: the border point says which way round: the other side makes it three quarters.
+// GR-20: the border point determines the sense: on the other side the arc is three quarters.
 TEST(Arcs, BorderSaysWhichWay) {
   const Segment arc = Arc({}, Border({20, 0, 0}), testing::At(10, 10));
   EXPECT_NEAR(arc.length, 15 * kPi, 1e-12);
@@ -62,7 +62,7 @@ TEST(Arcs, BorderSaysWhichWay) {
   ExpectAt(more, 1, 10, 10, 0);
 }
 
-// GR-20: the arc goes through its border point exactly and ends where it shall, anywhere in space, of any size.
+// GR-20: the arc passes exactly through its border point and ends at its end, anywhere in space, of any size.
 TEST(Arcs, PropertyBorderIsMet) {
   Random random(41);
   for (int i = 0; i < Trials(1000); ++i) {
@@ -104,7 +104,7 @@ TEST(Arcs, CenterGoesEitherWay) {
   EXPECT_NEAR(Arc(testing::At(0, 10, 0), Center({0, 0, 0}, kCcw), testing::At(0, 0, 10)).length, 5 * kPi, 1e-12);
 }
 
-// GR-20: start, centre and end on a line: half a circle and a whole one lie level if they can.
+// GR-20: start, centre and end on a line: half a circle and a whole one lie level if possible.
 TEST(Arcs, CenterOnALine) {
   const Segment half = Arc(testing::At(10, 0, 5), Center({0, 0, 5}, kCw), testing::At(-10, 0, 5));
   EXPECT_NEAR(half.length, 10 * kPi, 1e-12);
@@ -151,7 +151,7 @@ TEST(Arcs, HelixLength) {
   ExpectAt(screw, 0.125, 0, -10, 0.75);
 }
 
-// GR-20: near a line: a radius of 10 km is no worse than one of 10 mm.
+// GR-20: nearly a line: a radius of 10 km is as accurate as one of 10 mm.
 TEST(Arcs, NearlyStraight) {
   const Segment arc = Arc({}, Border({50, 1.25e-4, 0}), testing::At(100, 0));
   EXPECT_NEAR(arc.length, 100 + 8.0 / 3 * 1.25e-4 * 1.25e-4 / 100, 1e-12);
@@ -159,7 +159,7 @@ TEST(Arcs, NearlyStraight) {
   ExpectAt(arc, 1, 100, 0, 0, 1e-11);
 }
 
-// GR-20: small errors of the centre are made up by moving it, those of the radius by growing; both ends are met.
+// GR-20: small errors of the centre are compensated by moving it, those of the radius by growing; both ends are met.
 TEST(Arcs, TakesSmallErrors) {
   const Point from = testing::At(10, 0), to = testing::At(0, 10);
   const Segment center = Arc(from, Center({0.006, 0, 0}, kCcw), to);
@@ -172,7 +172,7 @@ TEST(Arcs, TakesSmallErrors) {
   ExpectAt(radius, 1, 10, 0, 0);
 }
 
-// GR-21: orientation and auxiliary axes in step with the way.
+// GR-21: orientation and auxiliary axes in step with the arc length.
 TEST(Arcs, TakeOrientationsAlong) {
   const Segment arc =
       Arc({Frame({10, 0, 0}), {4}}, Center({0, 0, 0}, kCcw), {Frame(KDL::Rotation::RotX(1), {0, 10, 0}), {8}});
@@ -182,7 +182,7 @@ TEST(Arcs, TakeOrientationsAlong) {
   EXPECT_DOUBLE_EQ(AuxiliariesAt(arc, arc.length / 4).position[0], 5);
 }
 
-// GR-20: every kind of bad input has its reason and leaves the segment alone.
+// GR-20: every kind of bad input has its reason and leaves the segment unchanged.
 TEST(Arcs, Refuse) {
   const double nan = std::nan("");
   const Point o = testing::At(0, 0), a = testing::At(10, 0), b = testing::At(0, 10);
@@ -216,7 +216,8 @@ TEST(Arcs, Refuse) {
   refuse(testing::At(1e200, 0), Center({0, 0, 0}, kCcw), testing::At(0, 1e200), Problem::kNotOnCircle);
 }
 
-// GR-20: whatever is asked, the answer is a reason or a segment of finite numbers with both ends where they shall be.
+// GR-20: whatever is requested, the result is a reason or a segment of finite numbers with both ends where they have to
+// be.
 TEST(Arcs, PropertyAnswersEverything) {
   Random random(42);
   const std::vector<double> odd{0, -0.0, 1e-300, 1e300, -1e300, 1e18, std::nan(""), INFINITY};
@@ -242,7 +243,7 @@ TEST(Arcs, PropertyAnswersEverything) {
     ++made;
     ASSERT_TRUE(std::isfinite(out.length) && out.length > 0);
     ASSERT_TRUE(kinematics::Finite(At(out, out.length / 3)));
-    // An end that is all but the start counts as that.
+    // An end that nearly coincides with the start counts as the start.
     const double allowed = kSame + 1e-9 * (out.length + std::abs(to[0]) + std::abs(to[1]) + std::abs(to[2]));
     ASSERT_LT(Length(At(out, out.length).p.p - KDL::Vector(to[0], to[1], to[2])), allowed) << i;
   }

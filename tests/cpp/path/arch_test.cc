@@ -1,4 +1,4 @@
-// PP-11: half ellipses upright over two points.
+// PP-11: upright half ellipses over two points.
 #include "takt/path/arch.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ std::vector<Segment> Arch(const Point& begin, const Point& end, double height, c
   return pieces;
 }
 
-// Of an ellipse with these half axes: the larger of how far a point is off in its equation, as a length.
+// Distance of a point from an ellipse with these half axes: the larger error of its equation, as a length.
 double OffEllipse(double along, double above, double a, double b) {
   const double radius = std::hypot(along / a, above / b);
   return std::abs(radius - 1) * std::max(a, b);
@@ -58,7 +58,7 @@ TEST(Arches, LengthOfAnEllipse) {
   EXPECT_NEAR(length, 2 * 150 * std::comp_ellint_2(std::sqrt(1 - 25.0 * 25 / (150 * 150))), 150e-4);
 }
 
-// PP-11: a straight piece at the lower point, whichever that is.
+// PP-11: a straight piece at the lower point, whichever of the two it is.
 TEST(Arches, StraightPieceWhereHeightsDiffer) {
   const auto up = Arch(testing::At(0, 0, 0), testing::At(300, 0, 40), 60);
   ASSERT_EQ(up.size(), 5u);
@@ -73,8 +73,9 @@ TEST(Arches, StraightPieceWhereHeightsDiffer) {
   EXPECT_LT(Length(PointAt(down[2], 0).frame.p - KDL::Vector(150, 0, 100)), 1e-9);
 }
 
-// PP-11: properties of any arch: on its ellipse to 1e-4 of its size, upright in its plane, no jump of place, tangent,
-// orientation or auxiliaries; curvature jumps at no joint of the ellipse; half of the length, half of the turn.
+// PP-11: properties of any arch: on its ellipse to 1e-4 of its size, upright in its plane, no jump of position,
+// tangent, orientation or auxiliaries; curvature jumps at no joint of the ellipse; half of the length, half of the
+// turn.
 TEST(Arches, AnyArch) {
   Random random(11);
   for (int trial = 0; trial < Trials(300); ++trial) {
@@ -120,7 +121,7 @@ TEST(Arches, AnyArch) {
   }
 }
 
-// PP-11: what is no ellipse: flat over two points, or one above the other.
+// PP-11: no ellipse: flat over two points, or points one above the other.
 TEST(Arches, NoEllipse) {
   EXPECT_EQ(Arch(testing::At(0, 0), testing::At(100, 0), 0).size(), 1u);
   const auto beneath = Arch(testing::At(0, 0), testing::At(0, 0, 30), 10);

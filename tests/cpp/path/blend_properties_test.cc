@@ -1,4 +1,4 @@
-// GR-22: what must hold of a blend at every corner.
+// GR-22: properties of a blend at every corner.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ Blended BlendOf(const RandomCorner& c, double deviation) {
   return out;
 }
 
-// The distance from a point to a segment that lies near, by a fine scan.
+// The distance from a point to a nearby segment, by a fine scan.
 double DistanceTo(const Segment& segment, const KDL::Vector& p, double from, double to) {
   const auto at = [&](double s) { return Length(At(segment, s).p.p - p); };
   constexpr int kPlaces = 60;
@@ -70,7 +70,7 @@ double DistanceTo(const Segment& segment, const KDL::Vector& p, double from, dou
   return at((lower + upper) / 2);
 }
 
-// GR-22: the curvature goes on to 1e-6 of its maximum, and so does how the orientation turns; nothing else jumps.
+// GR-22: the curvature is continuous to 1e-6 of its maximum, and so is the rate of the orientation; nothing else jumps.
 TEST_P(Corners, PropertyNothingJumps) {
   Random random(21);
   for (int i = 0; i < Trials(60); ++i) {
@@ -103,7 +103,7 @@ TEST_P(Corners, PropertyNothingJumps) {
   }
 }
 
-// GR-22: the blend comes as near to the corner as is allowed, and is nowhere further from the path.
+// GR-22: the blend comes as close to the corner as is allowed, and is nowhere further from the path.
 TEST_P(Corners, PropertyStaysWithinTheDeviation) {
   Random random(22);
   for (int i = 0; i < Trials(30); ++i) {
@@ -125,8 +125,8 @@ TEST_P(Corners, PropertyStaysWithinTheDeviation) {
   }
 }
 
-// GR-22: no loop: the curve goes on, seen along the sum of the tangents of both segments, and turns by no more than it
-// must: the corner, and what the segments themselves turn on the way.
+// GR-22: no loop: the curve moves forward along the sum of the tangents of both segments, and turns by no more than it
+// has to: the corner, and the turns of the segments themselves.
 TEST_P(Corners, PropertyMakesNoLoop) {
   Random random(23);
   for (int i = 0; i < Trials(60); ++i) {

@@ -1,4 +1,4 @@
-// GR-22: blends around corners: closed forms, and what is refused.
+// GR-22: blends around corners: closed forms, and refusals.
 #include "takt/path/blend.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ TEST(Blend, RightAngleByHand) {
   EXPECT_NEAR(Deviation(lines.first, lines.second, blend), along * std::sqrt(2), 1e-9);
 }
 
-// The largest growth of the curvature vector along a blend, the third derivative of the place, 1/mm².
+// The largest growth of the curvature vector along a blend, the third derivative of the position [1/mm²].
 double PeakGrowth(const Segment& blend) {
   constexpr int kSteps = 4000;
   double most = 0;
@@ -92,7 +92,7 @@ TEST(Blend, BendsLittleWithDifferentDistances) {
   }
 }
 
-// GR-22: the bound is met, not only kept, where lines are long enough; else half of the shorter is taken.
+// GR-22: the bound is reached, not only kept, where lines are long enough; else half of the shorter one is taken.
 TEST(CornerDistances, UsesTheDeviation) {
   for (const double degrees : {0.1, 1.0, 10.0, 90.0, 170.0, 179.0}) {
     const Lines lines(degrees);
@@ -109,7 +109,7 @@ TEST(CornerDistances, UsesTheDeviation) {
   }
 }
 
-// GR-22: no more than there is room.
+// GR-22: no more than the available length.
 TEST(CornerDistances, KeepsToTheRoom) {
   const Lines lines(90);
   EXPECT_DOUBLE_EQ(CornerDistance(lines.first, lines.second, 10, {3, 40}), 3);
@@ -120,7 +120,7 @@ TEST(CornerDistances, KeepsToTheRoom) {
   EXPECT_EQ(CornerDistance(lines.first, lines.second, std::nan(""), {40, 40}), 0);
 }
 
-// GR-22: a path that goes on smoothly needs no blend; one that goes back has none.
+// GR-22: a path that continues smoothly needs no blend; one that reverses has none.
 TEST(CornerDistances, IsNothingWhereThereIsNothingToBlend) {
   const Segment a = Line(testing::At(0, 0), testing::At(100, 0));
   const Segment b = Line(testing::At(100, 0), testing::At(150, 0));
@@ -131,8 +131,8 @@ TEST(CornerDistances, IsNothingWhereThereIsNothingToBlend) {
   EXPECT_EQ(CornerDistance(a, back, 1, HalfOf(a, back)), 0);
 }
 
-// GR-21, GR-22: straight on, but turning about another axis from the middle on: the place stays on the line, the
-// angular velocity changes without a step.
+// GR-21, GR-22: straight on, but turning about another axis from the middle on: the position stays on the line, the
+// angular velocity is continuous.
 TEST(Blend, EasesTurnsOnAStraightWay) {
   const Lines lines(0, 60, 90);
   EXPECT_FALSE(Smooth(lines.first, lines.second));
@@ -172,7 +172,7 @@ TEST(Blend, JoinsTurnsAndAuxiliaries) {
   EXPECT_LT(StepBetween(moved, moved.length, e, f).auxiliary_rate, 1e-14);
 }
 
-// GR-22: a half turn used up whole goes the way the segment went.
+// GR-22: a half turn that is used up completely takes the sense of its segment.
 TEST(Blend, KeepsTheWayOfAHalfTurn) {
   const Segment a = Line({Frame(KDL::Rotation::RotZ(std::numbers::pi), {-100, 0, 0}), {}}, {});
   const Segment b = Line({}, {Frame({0, 100, 0}), {}});
@@ -181,7 +181,7 @@ TEST(Blend, KeepsTheWayOfAHalfTurn) {
   for (int i = 0; i < 100; ++i) EXPECT_GE(At(blend, blend.length * i / 100).M.w.z() * way, -1e-12) << i;
 }
 
-// GR-22: what is refused leaves the segment alone.
+// GR-22: refusals leave the segment unchanged.
 TEST(Blend, Refuses) {
   const Lines lines(90);
   Segment out;

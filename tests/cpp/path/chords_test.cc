@@ -19,7 +19,7 @@ using testing::PeakCurvature;
 using testing::Random;
 using testing::StepBetween;
 
-// From its middle to that of the next.
+// From its middle to the middle of the next one.
 Segment Round(const Segment& first, const Segment& second, const Bends& bends) {
   Segment out;
   EXPECT_EQ(Blend(first, first.length / 2, second, second.length / 2, bends, out), Problem::kNone);
@@ -32,7 +32,7 @@ Triple Bend(const Segment& before, const Segment& chord, const Segment& after) {
   return bend.value_or(Triple{});
 }
 
-// GR-24: of the sides of a regular polygon it makes the circle that touches them, whose radius is L / (2 tan(angle/2)).
+// GR-24: for the sides of a regular polygon it is the circle that touches them, whose radius is L / (2 tan(angle/2)).
 TEST(Chords, OfARegularPolygonGiveACircle) {
   for (const double degrees : {0.1, 1.0, 5.0, 20.0, 45.0, 72.0, 90.0}) {
     std::vector<Segment> sides;
@@ -54,7 +54,7 @@ TEST(Chords, OfARegularPolygonGiveACircle) {
   }
 }
 
-// No curve bends where the next chord goes straight on, or to the other side; a sharp corner belongs to no curve.
+// No curve bends where the next chord continues straight, or to the other side; a sharp corner belongs to no curve.
 TEST(Chords, BendOnlyWhereTheCurveDoes) {
   const auto line = [](double x0, double y0, double x1, double y1) {
     return Line(testing::At(x0, y0), testing::At(x1, y1));
@@ -69,8 +69,8 @@ TEST(Chords, BendOnlyWhereTheCurveDoes) {
   EXPECT_FALSE(BendBetween(before, chord, arc).has_value());
 }
 
-// GR-22: whatever the chords: from one blend to the next neither tangent nor curvature jumps, nor how the orientation
-// turns; none makes a loop; and none bends much more than a blend would that begins and ends without a curvature.
+// GR-22: whatever the chords: from one blend to the next neither tangent nor curvature jumps, nor the rate of the
+// orientation; none makes a loop; and none bends much more than a blend that begins and ends without a curvature.
 TEST(Chords, PropertyOfAnyPolyline) {
   Random random(31);
   double worst_peak = 0;

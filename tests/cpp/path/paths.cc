@@ -8,7 +8,7 @@
 namespace takt::path::testing {
 namespace {
 
-// Whatever may be added and scaled.
+// Any type that can be added and scaled.
 template <typename T, typename Values>
 std::pair<T, T> Derive(Values values, double h) {
   constexpr double kFirst[] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};

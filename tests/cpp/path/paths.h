@@ -1,4 +1,4 @@
-// Random paths, and what is measured on them.
+// Random paths, and measurements on them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
   double Between(double lower, double upper) { return std::uniform_real_distribution<>(lower, upper)(engine_); }
-  // Evenly in its logarithm.
+  // Uniform in its logarithm.
   double Size(double lower, double upper);
   bool Coin() { return engine_() % 2 == 0; }
   KDL::Vector Direction();
@@ -38,15 +38,16 @@ Segment Line(const Point& from, const Point& to);
 Segment Arc(const Point& from, const Circle& circle, const Point& to);
 Point At(double x, double y, double z = 0);
 
-// What a random segment is.
+// Kind of a random segment.
 enum class Kind { kLine, kArc, kHelix, kSpline };
 inline constexpr Kind kKinds[] = {Kind::kLine, Kind::kArc, Kind::kHelix, Kind::kSpline};
 
-// One of about this length that leaves a point in this direction; or, `backwards`, that comes from there to the point.
+// A segment of about this length that leaves a point in this direction; or, `backwards`, that arrives at the point from
+// there.
 Segment RandomSegment(Random& random, Kind kind, const Point& point, const KDL::Vector& direction, double length,
                       bool backwards);
 
-// Two of them that meet at a point, where the path turns by `angle` (rad).
+// Two segments that meet at a point, where the path turns by `angle` [rad].
 struct RandomCorner {
   Segment first;
   Segment second;
@@ -55,15 +56,15 @@ struct RandomCorner {
 };
 RandomCorner MakeCorner(Random& random, Kind first, Kind second, double angle, double length);
 
-// Derivatives by s as differences of places, orientations and auxiliaries around s; exact to the eighth order.
+// Derivatives by s as differences of positions, orientations and auxiliaries around s; exact to the eighth order.
 struct Differences {
   MovingFrame frame;
   AuxiliaryMotion auxiliaries;
 };
 Differences DifferencesAt(const Segment& segment, double s, double step);
 
-// What jumps from one segment to another: between places (mm), tangents, curvatures (1/mm), orientations (rad), how
-// they change (rad/mm, rad/mm²), auxiliaries and how they change.
+// Jumps from one segment to another: of positions (mm), tangents, curvatures (1/mm), orientations (rad), their rates
+// (rad/mm, rad/mm²), auxiliaries and their rates.
 struct Step {
   double place = 0, tangent = 0, curvature = 0;
   double orientation = 0, turning = 0, turning_change = 0;
@@ -71,10 +72,10 @@ struct Step {
 };
 Step StepBetween(const Segment& first, double s_first, const Segment& second, double s_second);
 
-// KDL takes small vectors for none.
+// KDL takes small vectors as zero.
 double Length(const KDL::Vector& v);
 
-// The largest of the curvature at so many places evenly along it.
+// The largest curvature at this many evenly spaced points.
 double PeakCurvature(const Segment& segment, int places = 400);
 
 }  // namespace testing

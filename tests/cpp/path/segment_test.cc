@@ -60,7 +60,7 @@ TEST(Lines, GoStraight) {
   EXPECT_LT(Length(At(line, 13).p.p - KDL::Vector(4, 6, 15)), 1e-14);
 }
 
-// GR-20: what lies outside of the segment, or is no number, is one of its ends.
+// GR-20: an s outside of the segment, or no number, is one of its ends.
 TEST(Lines, KeepToTheirEnds) {
   const Segment line = Line(testing::At(1, 2, 3), {Frame(KDL::Rotation::RotX(1), {4, 6, 15}), {5}});
   for (const double before : {-1.0, -1e308, std::nan("")}) {
@@ -74,7 +74,8 @@ TEST(Lines, KeepToTheirEnds) {
   }
 }
 
-// GR-21: the orientation after a share of the way is the start turned by that share of the whole angle about one axis.
+// GR-21: the orientation after a share of the length is the start turned by that share of the whole angle about one
+// axis.
 TEST(Lines, TurnAlongTheGreatArc) {
   const KDL::Rotation start = KDL::Rotation::RPY(0.3, -1, 2);
   const KDL::Vector axis(2 / 3.0, -1 / 3.0, 2 / 3.0);
@@ -87,7 +88,7 @@ TEST(Lines, TurnAlongTheGreatArc) {
   }
 }
 
-// GR-21: auxiliary axes in step with the way, in whatever place they stand.
+// GR-21: auxiliary axes in step with the arc length, at whatever index.
 TEST(Lines, TakeAuxiliariesAlong) {
   const Segment line = Line({Frame(), {1, 0, 7}}, {Frame({10, 0, 0}), {5, 0, 7, -2}});
   EXPECT_EQ(line.auxiliary_count, 4);
@@ -98,7 +99,8 @@ TEST(Lines, TakeAuxiliariesAlong) {
   EXPECT_EQ(PointAt(line, 2.5).auxiliaries, a.position);
 }
 
-// GR-20: what s counts when the tool stays where it is: degrees of its turn, or the largest way of the auxiliary axes.
+// GR-20: the unit of s if the tool does not move: degrees of its turn, or the largest displacement of the auxiliary
+// axes.
 TEST(Lines, CountTurnsAndAuxiliaries) {
   const Segment turn = Line({Frame({1, 2, 3}), {}}, {Frame(KDL::Rotation::RotY(1.5), {1, 2, 3}), {300}});
   EXPECT_EQ(turn.measure, Measure::kTurn);
@@ -111,7 +113,7 @@ TEST(Lines, CountTurnsAndAuxiliaries) {
   EXPECT_DOUBLE_EQ(AuxiliariesAt(moved, 15).position[0], 9);
 }
 
-// GR-20: bad input is refused with a reason and leaves the segment alone.
+// GR-20: bad input is refused with a reason and leaves the segment unchanged.
 TEST(Lines, Refuse) {
   const double nan = std::nan("");
   Segment out;
@@ -129,7 +131,8 @@ TEST(Lines, Refuse) {
   refuse({Frame(KDL::Rotation(-1, 0, 0, 0, 1, 0, 0, 0, 1)), {}}, testing::At(1, 2), Problem::kNotFinite);
 }
 
-// Compares what At says with differences, scaled to a path of length 1. `bend`: mm, on which it bends by about 1 rad.
+// Compares the result of At with differences, scaled to a path of length 1. `bend`: [mm] on which it bends by about 1
+// rad.
 void ExpectDerivatives(const Segment& segment, double bend) {
   const double l = segment.length;
   const double step = std::min(l / 200, bend / 40);
@@ -204,7 +207,7 @@ TEST(Segments, LengthIsTheSumOfChords) {
   }
 }
 
-// GR-20: s goes on, and so does the place: as small steps as numbers have, at joints of the table, too.
+// GR-20: s grows, and so does the position: in the smallest steps of numbers, at joints of the table, too.
 TEST(Segments, PlacesGoOnWithLength) {
   const Segment a = Line(testing::At(-10, 0), {}), b = Line({}, testing::At(0, 10));
   Segment blend;

@@ -26,7 +26,7 @@ std::vector<Segment> Spline(const std::vector<Point>& points, const SplineOption
   return pieces;
 }
 
-// GR-20: through two points it is a line, evenly.
+// GR-20: through two points it is a line with constant rates.
 TEST(Splines, LineThroughTwoPoints) {
   const Point from{Frame(KDL::Rotation::RotX(0.1), {1, 2, 3}), {5}},
       to{Frame(KDL::Rotation::RotX(1.1), {4, 6, 15}), {6}};
@@ -106,7 +106,7 @@ TEST(Splines, PropertyGoOnSmoothly) {
   }
 }
 
-// GR-20: bad input has its reason and leaves what was there.
+// GR-20: bad input has its reason and leaves the output unchanged.
 TEST(Splines, Refuse) {
   std::vector<Segment> out(3);
   const auto refuse = [&](const std::vector<Point>& points, const SplineOptions& options, Problem expected) {

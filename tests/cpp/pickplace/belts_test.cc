@@ -34,14 +34,14 @@ Configure Mode(TrackingMode mode) {
   return c;
 }
 
-// How far the tool is from a workpiece after the cycle that was stepped last.
+// Returns the distance of the tool from a workpiece after the last cycle stepped.
 double OffWorkpiece(const Cell& cell, std::size_t belt, const conveyor::Object& object) {
   const conveyor::State& s = cell.belt_states[belt];
   const auto pose = conveyor::PoseOf(cell.belts[belt].params, s, object).GetFrame();
   return (cell.tool() - pose.p).Norm();
 }
 
-// PP-42, PP-41: from a static place onto a workpiece that moves; it stays for the time set, lifts, and parks.
+// PP-42, PP-41: from a static place onto a moving workpiece; it stays for the time set, lifts, and parks.
 TEST(Belts, PickOne) {
   for (const double speed : {0.0, 50.0, 300.0, -100.0}) {
     SCOPED_TRACE(speed);
@@ -104,7 +104,7 @@ TEST(Belts, ExampleOfTheManual) {
   EXPECT_LT(cell.Off(190, 550, 110), 1e-6);
 }
 
-// PP-42: nothing in range: it parks and waits; what comes into range is fetched.
+// PP-42: nothing in range: it parks and waits; a workpiece that comes into range is picked.
 TEST(Belts, ParksAndWaits) {
   Cell cell(Quick(), {BeltAt("belt", {0, 200, -50, 0, 0, 0}, 100)});
   cell.Start();
@@ -118,7 +118,7 @@ TEST(Belts, ParksAndWaits) {
   EXPECT_GT(cell.belt_states[0].travel.position, 120);
 }
 
-// PP-44: a workpiece that could not be reached before it leaves the range is left alone.
+// PP-44: a workpiece that cannot be reached before it leaves the range is not approached.
 TEST(Belts, TooLateIsNotTried) {
   Cell cell(Quick(), {BeltAt("belt", {0, 200, -50, 0, 0, 0}, 400)});
   cell.Start();
@@ -192,7 +192,7 @@ TEST(Belts, AckGripper) {
   EXPECT_GT(cell.tool().z(), z + 0.01);
 }
 
-// PP-41: a time of 0 is one cycle.
+// PP-41: a time of 0 means one cycle.
 TEST(Belts, NoTimeIsOneCycle) {
   CellBelt belt = BeltAt("belt", {0, 200, -50, 0, 0, 0}, 50);
   belt.settings.sync_time = 0;
@@ -249,7 +249,7 @@ TEST(Belts, FromWorkpieceToWorkpiece) {
   EXPECT_TRUE(cell.out().in_park_position);
 }
 
-// PP-43: the modes, each for a while; the loop goes on until it is aborted, and ends behind the path in progress.
+// PP-43: the modes, each for a while; the loop continues until it is aborted, and ends after the path in progress.
 TEST(Modes, RoundAndRound) {
   for (const TrackingMode mode : {TrackingMode::kStaticToBelt1, TrackingMode::kBelt1ToStatic,
                                   TrackingMode::kBelt1ToBelt2, TrackingMode::kBelt2ToBelt1, TrackingMode::kFromTo}) {
@@ -269,7 +269,7 @@ TEST(Modes, RoundAndRound) {
         if (i % 900 == 0) cell.Put(belt, {60, 10, 0, 0, 0, 0});
       }
       cell.Step();
-      for (std::size_t belt = 0; belt < 2; ++belt) {  // as belts do
+      for (std::size_t belt = 0; belt < 2; ++belt) {  // as a belt's own cycle does
         for (const conveyor::Object& object : conveyor::ObjectsOf(cell.belt_states[belt])) {
           if (conveyor::PlaceOf(cell.belts[belt].params, cell.belt_states[belt], object) > 700 &&
               object.state == conveyor::ObjectState::kVisible) {
@@ -306,7 +306,7 @@ TEST(Modes, AbortedWhileWaiting) {
   EXPECT_TRUE(cell.RunTo(M::kReady, 0.1));
 }
 
-// PP-20: a group that somebody else stops has no path any more; the module lets go of it.
+// PP-20: if another command stops the group there is no path any more; the module drops it.
 TEST(Modes, StoppedBySomebodyElse) {
   Cell cell(Quick(), {BeltAt("belt", {0, 200, -50, 0, 0, 0}, 60)});
   cell.Start();
@@ -347,8 +347,8 @@ TEST(Modes, Changed) {
   EXPECT_EQ(cell.rig.lives[none].error_id, ErrorId::kUnknownTarget);
 }
 
-// PP-20: stopped at every instant of a pick from a belt and gone on with: it picks, or the workpiece has gone and it
-// waits for the next.
+// PP-20: stopped at every instant of a pick from a belt and continued: it picks, or the workpiece has left and it waits
+// for the next one.
 TEST(Belts, StoppedAtEveryInstantAndOn) {
   for (int instant = 0; instant < 700; instant += 23) {
     SCOPED_TRACE(instant);

@@ -43,9 +43,9 @@ inline Configure To(double x, double y, double z) {
   return c;
 }
 
-// How far the tool may be from its workpiece: where it holds it, and to its side on the way down and up, mm.
+// Largest distance of the tool from its workpiece: while it holds it, and sideways on the way down and up [mm].
 inline constexpr double kOnWorkpiece = 1e-6, kBeside = 0.01;
-inline constexpr double kHalfWidth = 60;  // mm, of a belt
+inline constexpr double kHalfWidth = 60;  // [mm] of a belt
 
 struct CellBelt {
   conveyor::BeltParams params;
@@ -78,7 +78,7 @@ class Cell {
   }
   Cell(const Cell&) = delete;
 
-  // At a place of the tool, on and READY.
+  // On and READY, with the tool at a place.
   void Start(const Pose& tool = {0, 0, 0, 0, 0, 0}) {
     rig.StartAt(tool);
     Do(Control{.enable = true, .regulator_on = true});
@@ -124,7 +124,7 @@ class Cell {
   template <typename Until>
   bool RunUntil(const Until& until, double seconds = 10) {
     for (auto n = std::llround(seconds / rig.cycle.period_s); n > 0; --n) {
-      if (!outs.empty() && until()) return true;  // nothing is published before the first cycle
+      if (!outs.empty() && until()) return true;  // outputs are published from the first cycle on
       Step();
     }
     return until();
@@ -139,7 +139,7 @@ class Cell {
   KDL::Vector tool() const { return {rig.out().x, rig.out().y, rig.out().z}; }
   double Off(double x, double y, double z) const { return (tool() - KDL::Vector(x, y, z)).Norm(); }
 
-  // A workpiece that lies there now, from the belt's origin.
+  // Puts a workpiece at this pose relative to the belt's origin.
   std::uint32_t Put(std::size_t belt, const Pose& pose) {
     conveyor::State& s = belt_states[belt];
     s.objects[s.count] = {++s.last_number, conveyor::ObjectState::kVisible, s.travel.position, pose, {}};

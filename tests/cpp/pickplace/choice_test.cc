@@ -1,4 +1,4 @@
-// PP-62, PP-63, PP-66, PP-11: what is taken, what stays as it was accepted, and what is said of it.
+// PP-62, PP-63, PP-66, PP-11: choice of workpieces, settings frozen at acceptance, and published attributes.
 #include "cell.h"
 
 namespace takt::pickplace {
@@ -15,7 +15,7 @@ CellBelt Slow(const std::string& name, double y) {
   return belt;
 }
 
-// PP-62: grip offsets are those of the belt when a profile was accepted: a gripper with two cups takes two, one after
+// PP-62: grip offsets are the belt's at the time a profile was accepted: a gripper with two cups picks two, one after
 // the other, and places them.
 TEST(Choice, GripOffsetsOfTwoCups) {
   Cell cell(Fast(), {Slow("in", 200)});
@@ -50,7 +50,7 @@ TEST(Choice, GripOffsetsOfTwoCups) {
   EXPECT_LT(cell.Off(60, -50, 0), 1e-6);
 }
 
-// PP-66: of the kind, the colour and the quality that are asked for, and no others; they go along to the place.
+// PP-66: only workpieces of the requested kind, colour and quality; the attributes follow to the place.
 TEST(Choice, ByAttributes) {
   const auto chosen = [](const ConfigureBelt& wanted) {
     Cell cell(Fast(), {Slow("in", 200)});
@@ -84,7 +84,7 @@ TEST(Choice, ByAttributes) {
   EXPECT_EQ(chosen({.kind = 7}), 0u);
 }
 
-// PP-66: a product that was seen twice is one, where both pictures had it; neighbours are not.
+// PP-66: a product that was detected twice is one, where both pictures show it; neighbours are not.
 TEST(Choice, SeenTwice) {
   Cell cell(Fast(), {Slow("in", 200)});
   cell.Start();
@@ -95,7 +95,7 @@ TEST(Choice, SeenTwice) {
   EXPECT_EQ(cell.belt_states[0].objects[0].number, 3u);
 }
 
-// PP-63: a belt that is full is a warning of the module, with its belt; what other belts lose is not missed.
+// PP-63: a full belt is a warning of the module, with its belt; workpieces lost by other belts are not missed.
 TEST(Choice, WarningsAndCountersOfBelts) {
   Settings s = Fast();
   s.tracking_mode = TrackingMode::kBelt2ToBelt1;
@@ -117,7 +117,7 @@ TEST(Choice, WarningsAndCountersOfBelts) {
   EXPECT_EQ(cell.out().missed_too_late, 1u);
 }
 
-// PP-11: an ellipse onto a belt that is tilted is refused when it is asked for.
+// PP-11: an ellipse onto a tilted belt is refused when it is requested.
 TEST(Choice, EllipsesOntoTiltedBelts) {
   for (const double a : {0.0, 12.0}) {
     Settings s = Fast();
@@ -136,7 +136,7 @@ TEST(Choice, EllipsesOntoTiltedBelts) {
   }
 }
 
-// PP-63: targets turned about A and B, as the manual has them, mean nothing to a mechanism that cannot tilt its tool.
+// PP-63: targets turned about A and B, as in the manual, are ignored by a mechanism that cannot tilt its tool.
 TEST(Choice, TiltsThatTheMechanismDoesNotHave) {
   Settings s = Fast();
   s.keep_orientation = false;

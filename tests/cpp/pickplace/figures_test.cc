@@ -1,5 +1,5 @@
-// PP-17, PP-51: the work of preparing a path, picks a minute beside the least time there is for them, and how exact
-// placing on a belt is that changes its speed.
+// PP-17, PP-51: the effort of preparing a path, picks per minute compared with the least possible time, and the
+// accuracy of placing on a belt that changes its speed.
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -28,11 +28,11 @@ Settings StandardCycle() {
 constexpr double kSide = 152.5;
 
 struct Known {
-  double length = 0;  // mm
-  double least = 0;   // s
+  double length = 0;  // [mm]
+  double least = 0;   // [s]
 };
 
-// This path, one way, with the same limits; found off line by tests/tools/path_mechanisms.py.
+// This path in one direction, with the same limits; found off line by tests/tools/path_mechanisms.py.
 Known OneWay() {
   std::ifstream file(std::string(TAKT_SOURCE_DIR) + "/tests/data/path_optimum_joints.json");
   for (const nlohmann::json& path : nlohmann::json::parse(file)) {
@@ -48,7 +48,7 @@ Known OneWay() {
   return {};
 }
 
-// PP-51, PP-65: there and back, over and over.
+// PP-51, PP-65: there and back, repeatedly.
 TEST(Figures, StandardCycle) {
   Cell cell(StandardCycle(), {}, group::DeltaRobot());
   cell.Start({0, -kSide, -850, 0, 0, 0});
@@ -61,7 +61,7 @@ TEST(Figures, StandardCycle) {
   }
   ASSERT_TRUE(cell.RunToEnd(tickets.back(), 10));
   group::ExpectSmooth(cell.rig);
-  // Not the first one, and nothing of the planning: from end to end.
+  // Without the first one and without the planning: from end to end.
   const double taken =
       static_cast<double>(cell.rig.lives[tickets.back()].final_cycle - cell.rig.lives[tickets.front()].final_cycle) *
       cell.rig.cycle.period_s / (kOrders - 1);
@@ -81,7 +81,7 @@ TEST(Figures, StandardCycle) {
   EXPECT_GE(60 / (2 * taken), 111);
 }
 
-// PP-17: no cycle makes more than a few nodes of the path, of which each takes some inverses; and the tool sets out
+// PP-17: no cycle makes more than a few nodes of the path, each of which takes a few inverses; and the tool starts
 // within a few cycles.
 TEST(Figures, PreparationIsSpreadOverCycles) {
   constexpr std::uint64_t kMostNodes = 20;
@@ -118,7 +118,7 @@ TEST(Figures, PreparationIsSpreadOverCycles) {
   }
 }
 
-// A belt whose speed changes by a tenth, and what its encoder, of 100 increments/mm, tells of it a while later.
+// A belt whose speed changes by a tenth, and its encoder of 100 increments/mm, which reports it with a delay.
 struct Measured {
   double speed = 1000, hertz = 1, dead_time_s = 0.002;
   conveyor::BeltParams params;
@@ -144,12 +144,12 @@ struct Measured {
   }
 };
 
-// PP-51: the tool on the belt, told where to be at the end of a cycle, beside where the belt truly is then.
+// PP-51: the commanded position of the tool on the belt at the end of a cycle, compared with the true one of the belt.
 TEST(Figures, PlacingOnABeltThatChangesItsSpeed) {
   struct Case {
-    double hertz, most;  // mm
+    double hertz, most;  // [mm]
   };
-  // What the filter of 5 ms leaves grows with acceleration; a shorter one lets more of the encoder's steps through.
+  // The error of the filter of 5 ms grows with acceleration; a shorter one lets more of the encoder's steps through.
   for (const auto& [hertz, most] : {Case{0.5, 0.06}, Case{1, 0.1}, Case{2, 0.15}}) {
     SCOPED_TRACE(hertz);
     kinematics::KinematicsParams gantry;
@@ -177,12 +177,12 @@ TEST(Figures, PlacingOnABeltThatChangesItsSpeed) {
     cell.Start({0, 0, 60, 0, 0, 0});
     cell.Steps(100);  // the filter finds the speed
     cell.Execute();
-    // Where the belt is when the axes are at the set points of the cycle that was stepped last.
+    // Position of the belt when the axes are at the set points of the last cycle stepped.
     const auto truth = [&] { return measured.TrueAt(static_cast<double>(cell.rig.cycle.count) * 0.001); };
     double worst = 0;
     int on = 0;
     for (int i = 0; i < 20000; ++i) {
-      if (i % 1000 == 0) {  // found where it truly is
+      if (i % 1000 == 0) {  // detected at its true position
         cell.Put(0, {0, 20, 0, 0, 0, 0});
         conveyor::State& state = cell.belt_states[0];
         state.objects[state.count - 1].latch = truth();

@@ -1,6 +1,6 @@
-// PP-44, PP-40: belts that do what nobody expected, and workpieces that vanish, at every instant of a pick. The tool is
-// low over a belt only within the work range and straight over its workpiece, also on the way up from a pick that was
-// given up; and it goes on with the next one.
+// PP-44, PP-40: belts with unexpected motions, and workpieces that vanish, at every instant of a pick. The tool is low
+// over a belt only within the work range and straight over its workpiece, also on the way up from a pick that was given
+// up; and it continues with the next one.
 #include <algorithm>
 
 #include "../core/trials.h"
@@ -13,9 +13,9 @@ namespace {
 using M = PickPlaceState;
 
 constexpr double kBeltY = 200, kBeltZ = -50;
-constexpr double kDistance = 25, kRadius = 10;  // mm, of the way down and its rounding
+constexpr double kDistance = 25, kRadius = 10;  // [mm] of the way down and its rounding
 
-// From one speed to another, from a time on, in so long a time: with no jerk that axes could not follow.
+// A change of speed that begins at a time and takes a duration: with no jerk that axes could not follow.
 std::function<KinematicState(double)> Changing(double before, double after, double from_s, double takes_s) {
   return [=](double t) -> KinematicState {
     const double change = after - before;
@@ -73,7 +73,7 @@ class Watched {
   void Steps(int n) {
     while (n-- > 0 && !testing::Test::HasFatalFailure()) Step();
   }
-  // Until that is true; false: it never was.
+  // Steps until the condition is true; returns false if it never was.
   template <typename Until>
   bool RunUntil(const Until& until, double seconds = 10) {
     for (int i = 0; i < seconds * 1000 && !testing::Test::HasFatalFailure(); ++i) {
@@ -93,9 +93,9 @@ class Watched {
   std::vector<conveyor::Object> objects_;
 };
 
-constexpr double kPick_s = 1.4;  // of one pick, and some time more
+constexpr double kPick_s = 1.4;  // duration of one pick, and some time more
 
-// The belt stops for ever at every instant of a pick: the workpiece is picked where it stands.
+// The belt stops for good at every instant of a pick: the workpiece is picked where it is.
 TEST(GiveUp, BeltStopsForEver) {
   for (double stop = 0; stop < kPick_s; stop += Stride(0.017)) {
     SCOPED_TRACE(stop);
@@ -111,8 +111,8 @@ TEST(GiveUp, BeltStopsForEver) {
   }
 }
 
-// PP-61: the tool waits straight over its workpiece, or all but, and the belt sets out at every instant of its way
-// down. It is in step before it is low.
+// PP-61: the tool waits straight over its workpiece, or nearly, and the belt starts at every instant of the way down.
+// The tool is in step before it is low.
 TEST(GiveUp, BeltSetsOutBelowTheTool) {
   for (const double beside : {0.0, 1e-7, 1e-4, 0.02, 0.5, 3.0}) {
     for (const double above : {0.0, 4.0}) {
@@ -130,8 +130,8 @@ TEST(GiveUp, BeltSetsOutBelowTheTool) {
   }
 }
 
-// PP-60: a halt at every instant of a pick, on which the tool rises where it is low; whoever asks for it in every
-// cycle jogs it as soon as it stands. Then a stop, or the end of enable, ends the jog as any other.
+// PP-60: a halt at every instant of a pick, on which the tool rises where it is low; a jog requested in every cycle
+// starts as soon as the tool is at rest. Then a stop, or the end of enable, ends the jog as any other.
 TEST(GiveUp, JogBehindARiseIsStopped) {
   int jogged = 0, rose = 0;
   for (const bool disable : {false, true}) {
@@ -161,7 +161,7 @@ TEST(GiveUp, JogBehindARiseIsStopped) {
   EXPECT_GT(rose, Trials(500, 1));
 }
 
-// It turns back at every instant: near the beginning of the range that is too early for some.
+// The belt turns back at every instant: near the beginning of the range that is too early for some.
 TEST(GiveUp, BeltTurnsBack) {
   int given_up = 0;
   for (double turn = 0; turn < kPick_s; turn += Stride(0.013)) {
@@ -178,8 +178,8 @@ TEST(GiveUp, BeltTurnsBack) {
   EXPECT_LT(given_up, Trials(100, 1));
 }
 
-// It becomes much faster at every instant, beyond what was said of it: in the end it is too late for some. Those go on
-// along the belt, to whoever else may reach them.
+// The belt becomes much faster at every instant, beyond its stated range: in the end it is too late for some. Those
+// workpieces continue along the belt, to other modules that may reach them.
 TEST(GiveUp, BeltBecomesMuchFaster) {
   int given_up = 0, low = 0;
   for (double change = 0; change < kPick_s + 0.5; change += Stride(0.009)) {
@@ -207,8 +207,8 @@ TEST(GiveUp, BeltBecomesMuchFaster) {
   EXPECT_GE(low, Trials(4, 1)) << "a test that cannot fail";
 }
 
-// The camera or the program takes the workpiece away while the tool goes to it: it goes up, straight and in step, and
-// parks; what comes next is picked. On the workpiece it stays as long as it should.
+// The camera or the program removes the workpiece while the tool approaches it: the tool goes up, straight and in step,
+// and parks; the next workpiece is picked. On the workpiece it stays as long as it should.
 TEST(GiveUp, WorkpieceIsRemoved) {
   int low = 0;
   for (int instant = 1; instant < 1400; instant += Stride(11)) {
@@ -233,8 +233,8 @@ TEST(GiveUp, WorkpieceIsRemoved) {
   EXPECT_GE(low, Trials(6, 1)) << "a test that cannot fail";
 }
 
-// What is said of the belt's speed counts from the choice of a workpiece on: how fast it may become, and how slow, or
-// whether it may turn back.
+// The stated range of the belt's speed counts from the choice of a workpiece on: how fast it may become, and how slow,
+// or whether it may turn back.
 TEST(GiveUp, ReckonsWithWhatTheBeltMayDo) {
   struct Case {
     double lowest, highest, x;
@@ -255,8 +255,8 @@ TEST(GiveUp, ReckonsWithWhatTheBeltMayDo) {
   }
 }
 
-// PP-20: stopped at every instant, by whatever stop, until the workpiece has left the range. Where the tool stands low
-// over the belt it goes straight up from there before anything else.
+// PP-20: stopped at every instant, by any stop, until the workpiece has left the range. If the tool is low over the
+// belt it goes straight up from there before anything else.
 TEST(GiveUp, StoppedUntilItHasLeft) {
   int low = 0;
   for (int instant = 1; instant < 1400; instant += Stride(17)) {
@@ -270,7 +270,7 @@ TEST(GiveUp, StoppedUntilItHasLeft) {
     run.cell.Do(Control{.path_stop = !all, .stop_all = all});
     const bool was_on_it = run.counters().picked > 0;  // a stop on the path ends the time on the workpiece
     run.cell.Steps(3000);
-    // PP-61: by a stop on the path it has risen in step with the belt.
+    // PP-61: after a stop on the path it has risen in step with the belt.
     const bool over_belt = std::abs(run.cell.tool().y() - kBeltY) < kHalfWidth;
     if (!all && over_belt) {
       ASSERT_GE(run.cell.tool().z(), kBeltZ + kDistance - kRadius - 0.5);
@@ -292,8 +292,8 @@ TEST(GiveUp, StoppedUntilItHasLeft) {
   EXPECT_GE(low, Trials(6, 1)) << "a test that cannot fail";
 }
 
-// From belt to belt: the place on the second one vanishes while the tool lifts from the first one. It goes on lifting,
-// over what it has picked.
+// From belt to belt: the place on the second one vanishes while the tool lifts from the first one. It continues
+// lifting, over its picked workpiece.
 TEST(GiveUp, PlaceIsRemovedWhileTheToolLifts) {
   int low = 0;
   for (int instant = 1; instant < 140; instant += 3) {

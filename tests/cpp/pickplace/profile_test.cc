@@ -115,8 +115,8 @@ TEST(Profiles, Ellipse) {
   ExpectAt(one.legs[0].to, 200, 0, 30);
 }
 
-// PP-11: refused where a place is in ACS, or a coordinate system is turned about A or B; about C it may be. Lines may
-// be refused in ACS alone.
+// PP-11: refused where a place is in ACS, or a coordinate system is turned about A or B; about C it may be turned.
+// Lines are refused in ACS only.
 TEST(Profiles, EllipseRefused) {
   const Shape shape{.mode = PathMode::kElliptical, .height = 60};
   const Place a = At({0, 0, 0, 0, 0, 0});
@@ -136,8 +136,8 @@ TEST(Profiles, EllipseRefused) {
   EXPECT_EQ(MakeProfile(acs, a, {}, kMcsOnly).error, ErrorId::kParameter);
 }
 
-// PP-13: to a parking position two straight legs whatever the mode; the point lies z_start_distance + z_elliptical
-// above the start, the rounding is z_elliptical + blending radius. From it the other way round.
+// PP-13: to a parking position two straight legs in either mode; the point lies z_start_distance + z_elliptical above
+// the start, the rounding is z_elliptical + blending radius. From it in reverse.
 TEST(Profiles, Parking) {
   Place park = At({-400, 500, 300, 0, 0, 0});
   park.parks = true;

@@ -1,7 +1,7 @@
-// PP-44, CV-43: products at random on belts that change their speed. The tool is never low over the belt but straight
-// over its workpiece and within the work range, and every product is accounted for. No pick is given up on its way down
-// where it was said how fast the belt may go; where that was not said some are, and the rest holds all the same.
-// TAKT_LONG in the environment: 10,000 products instead of 300.
+// PP-44, CV-43: products at random on belts that change their speed. The tool is never low over the belt except
+// straight over its workpiece and within the work range, and every product is accounted for. No pick is given up on its
+// way down if the range of the belt's speed was stated; where it was not, some are, and the rest still holds. TAKT_LONG
+// in the environment: 10,000 products instead of 300.
 #include <iostream>
 #include <random>
 
@@ -11,8 +11,8 @@
 namespace takt::pickplace {
 namespace {
 
-constexpr double kTop = 10;   // mm, of products above the belt
-constexpr double kRise = 25;  // mm, of the way down that is straight but for its rounding
+constexpr double kTop = 10;   // [mm] of products above the belt
+constexpr double kRise = 25;  // [mm] of the way down that is straight except for its rounding
 constexpr double kRounding = 10;
 
 struct Point {
@@ -71,7 +71,7 @@ Given AtRandom(bool says_how_fast, std::mt19937_64& random) {
                    .sync_time = std::round(Uniform(random, 0, 60)) * 0.001,
                    .lower_limit = 120,
                    .upper_limit = 480};
-  // Between a tenth and nearly twice of it.
+  // Uniform between a tenth and nearly twice of it.
   const double speed = Uniform(random, 30, delta ? 350 : 200);
   struct Swing {
     double share, pace, phase;
@@ -96,8 +96,8 @@ struct Figures {
   std::uint32_t products = 0, picked = 0, too_late = 0, interrupted = 0, refused = 0, there = 0;
   std::uint32_t given_up_low = 0;  // on the straight way down
   // With the tool low over the belt:
-  double furthest = 0;  // mm beyond the range
-  double beside = 0;    // mm to the side of its workpiece
+  double furthest = 0;  // [mm] beyond the range
+  double beside = 0;    // [mm] to the side of its workpiece
 };
 
 class RandomRun {
@@ -149,7 +149,7 @@ class RandomRun {
     const Order& order = cell_.state.orders[0];
     const std::uint32_t bound = cell_.state.order_count > 0 ? order.workpiece : 0;
     const double surface = cell_.belts[0].params.origin.z;
-    // From others, picked or given up, it has to go up first.
+    // From other workpieces, picked or given up, it has to go up first.
     const conveyor::Object* mine = bound != 0 ? conveyor::Find(belt(), bound) : nullptr;
     if (mine && !low_) last_ = *mine;
     const conveyor::Object& at = last_;
@@ -160,7 +160,7 @@ class RandomRun {
     const long stayed = on_;
     if (picks) lowers_ = false;
     const double height = tool.z() - surface - kTop;
-    // What is lower than the rounding is straight over its workpiece.
+    // Below the rounding it is straight over its workpiece.
     low_ = over && height < kRise - kRounding - 1e-3;
     if (low_) {
       ASSERT_GE(height, -kOnWorkpiece);
@@ -184,7 +184,7 @@ class RandomRun {
     Lose();
   }
 
-  // As belts do.
+  // Removes workpieces beyond the range as a belt's own cycle does.
   void Lose() {
     for (std::uint32_t i = belt().count; i-- > 0;) {
       const conveyor::Object& object = belt().objects[i];

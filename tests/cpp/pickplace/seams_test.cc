@@ -1,6 +1,6 @@
-// PP-60, PP-61: modules, belts and operators at random. Towards a limit switch that is on nothing moves; a tool that is
-// low over a belt is still against it, on its workpiece or on the way up, and within the range where it was said how
-// the belt may change its speed. TAKT_LONG in the environment: 2,000 runs instead of 40.
+// PP-60, PP-61: modules, belts and operators at random. Nothing moves towards a limit switch that is on; a tool that is
+// low over a belt is at rest relative to it, on its workpiece or on the way up, and within the range where the belt's
+// changes of speed were stated. TAKT_LONG in the environment: 2,000 runs instead of 40.
 #include <iostream>
 #include <optional>
 #include <random>
@@ -14,15 +14,15 @@ namespace {
 using M = PickPlaceState;
 
 constexpr double kSeamY = 200, kSeamZ = -50, kUpFrom = 25, kRound = 10;
-constexpr double kLower = 100, kUpper = 500;   // mm, of the range
-constexpr double kLow = kUpFrom - kRound - 1;  // mm over workpieces
-constexpr double kBeltChange = 3000;           // mm/s², at most
-// mm that a motion that turns towards a switch, as belts and interrupts make it, takes to be braked: its acceleration
-// is taken back within the jerk of its axis first.
+constexpr double kLower = 100, kUpper = 500;   // [mm] range
+constexpr double kLow = kUpFrom - kRound - 1;  // [mm] over workpieces
+constexpr double kBeltChange = 3000;           // [mm/s²] at most
+// [mm] Braking distance of a motion that turns towards a switch, as belts and interrupts cause it: its acceleration is
+// reduced within the jerk of its axis first.
 constexpr double kSlip = 3;
-constexpr double kStill = 3;  // mm/s against the belt
+constexpr double kStill = 3;  // [mm/s] relative to the belt
 
-// A belt that runs at one speed after the other, with ramps whose acceleration is a smooth hump.
+// A belt that runs at one speed after another, with ramps whose acceleration is a smooth hump.
 class Travel {
  public:
   explicit Travel(std::mt19937_64& random) {
@@ -56,8 +56,8 @@ class Travel {
 
 struct SeamFigures {
   long picked = 0, placed = 0, low = 0, stops_low = 0, refused = 0, closed = 0, errors = 0;
-  double fastest = 0;   // mm/s against the belt, low
-  double furthest = 0;  // mm beyond the range, low
+  double fastest = 0;   // [mm/s] relative to the belt, when low
+  double furthest = 0;  // [mm] beyond the range, when low
 };
 
 class SeamsRun {
@@ -125,7 +125,7 @@ class SeamsRun {
     }
   }
 
-  // What somebody at the panel, a switch or a drive does.
+  // Actions of an operator at the panel, of a switch or of a drive.
   void Operate() {
     if (cell_.state.state == M::kError && Chance(0.01)) {
       cell_.Give(Control{.reset_error = true});
@@ -193,7 +193,8 @@ class SeamsRun {
         std::optional<double>& place = rested_[2 * n + (sense > 0 ? 1 : 0)];
         if (!closed) place.reset();
         if (closed) ++figures_.closed;
-        // Once it does not go there it goes no further; what has an acceleration is not braked within no time.
+        // Once it no longer moves towards the switch it comes no closer; a motion with an acceleration cannot be braked
+        // at once.
         if (place) {
           place = std::min(*place, sense * set.position);
           ASSERT_LE(sense * set.position - *place, kSlip)
@@ -210,7 +211,7 @@ class SeamsRun {
     const bool over = std::abs(tool.y() - kSeamY) < kHalfWidth;
     const auto speed = [&](std::size_t k) { return cell_.rig.states[k].setpoint.velocity; };
     const bool jogs = cell_.state.state == M::kJogPos || cell_.state.state == M::kJogNeg;
-    if (jogs || cell_.state.state == M::kService) Excuse();  // by hand it goes anywhere
+    if (jogs || cell_.state.state == M::kService) Excuse();  // by hand it may move anywhere
     const group::GroupState state = cell_.rig.state.state;
     const bool alone = state == group::GroupState::kDisabled || state == group::GroupState::kErrorStop;
     if (alone) Excuse();  // each axis, or the group for a fault of one
@@ -220,7 +221,7 @@ class SeamsRun {
       return;
     }
     if (height > kLow) return;
-    // Jogged down beside the belt it comes from there: how wide belts are is not known.
+    // Jogged down beside the belt it comes from there: the width of belts is not known.
     if (!was_over_) Excuse();
     was_over_ = true;
     ++figures_.low;

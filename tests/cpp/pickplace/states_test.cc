@@ -15,7 +15,7 @@ Ticket Begin(Cell& cell) {
   return ticket;
 }
 
-// PP-02: the table has every state, no transition twice, and a way from each to INIT and out of it.
+// PP-02: the table has every state, no transition twice, and transitions from each state to INIT and out of it.
 TEST(StateTable, IsSound) {
   std::set<std::pair<M, M>> seen;
   std::set<M> from, to;
@@ -34,7 +34,7 @@ TEST(StateTable, IsSound) {
   EXPECT_FALSE(IsLegal(M::kStop, M::kMovePp));
 }
 
-// PP-02: what is asked for while the axes are off has to be asked for again.
+// PP-02: requests while the axes are off have to be repeated.
 TEST(States, EdgesWhileOffAreLost) {
   Cell cell;
   cell.Step();
@@ -53,7 +53,7 @@ TEST(States, EdgesWhileOffAreLost) {
   EXPECT_FALSE(cell.rig.lives[on].ended());
 }
 
-// PP-02: enable false: INIT, from everywhere; the path is forgotten.
+// PP-02: enable false: INIT, from every state; the path is dropped.
 TEST(States, Disable) {
   Cell cell;
   cell.Start();
@@ -67,7 +67,7 @@ TEST(States, Disable) {
   EXPECT_EQ(cell.state.state, M::kReady);
 }
 
-// PP-02: what the group does by itself, and internal control, is SERVICE; execute is refused there.
+// PP-02: motions of the group that are not the module's, and internal control, are SERVICE; execute is refused there.
 TEST(States, Service) {
   Cell cell;
   cell.Start();
@@ -86,7 +86,7 @@ TEST(States, Service) {
   EXPECT_EQ(cell.state.state, M::kReady);
 }
 
-// PP-20: path_stop and path_halt stop on the path; STOP until released; the next edge goes on from there.
+// PP-20: path_stop and path_halt stop on the path; STOP until released; the next edge continues from there.
 TEST(Stops, OnThePathAndOn) {
   for (const bool halt : {false, true}) {
     SCOPED_TRACE(halt);
@@ -99,7 +99,7 @@ TEST(Stops, OnThePathAndOn) {
     EXPECT_EQ(cell.state.state, M::kStop);
     ASSERT_TRUE(cell.RunUntil([&] { return cell.out().path_hold; }, 2));
     const KDL::Vector held = cell.tool();
-    EXPECT_GT(held.z(), 20);  // on the way across
+    EXPECT_GT(held.z(), 20);  // on the leg across
     EXPECT_LT(held.z(), 30);
     EXPECT_GT(held.x(), 10);
     EXPECT_LT(held.x(), 390);
@@ -141,7 +141,7 @@ TEST(Stops, NoPulseBehindAStop) {
   for (const Outputs& out : cell.outs) EXPECT_FALSE(out.pulse_gripper);
 }
 
-// PP-20, PP-30: path_interrupt in MOVE_PP alone; it goes on when released; the pulse comes at the end of the profile.
+// PP-20, PP-30: path_interrupt in MOVE_PP only; it continues when released; the pulse comes at the end of the profile.
 TEST(Stops, Interrupt) {
   Settings s = Fast();
   s.gripper_closing_time = 0.05;
@@ -166,7 +166,7 @@ TEST(Stops, Interrupt) {
   EXPECT_TRUE(cell.out().pulse_gripper);
 }
 
-// PP-20: stop_all: each axis by itself; the path begins again from the start of the profile, from where the tool is.
+// PP-20: stop_all: each axis by itself; the path begins again from the start of the profile, from the tool's position.
 TEST(Stops, StopAll) {
   Cell cell;
   cell.Start();
@@ -186,11 +186,11 @@ TEST(Stops, StopAll) {
   EXPECT_TRUE(cell.rig.lives[ticket].done);
   double highest = 0;
   for (const auto& sample : cell.rig.trace) highest = std::max(highest, sample.out.z);
-  EXPECT_GT(highest, stood.z() + 25);  // it lifted anew
+  EXPECT_GT(highest, stood.z() + 25);  // it lifted again
   EXPECT_LT(cell.Off(400, 0, 0), 1e-9);
 }
 
-// PP-20: abort at every instant of a cycle of stopping: on the way it is refused, at rest the path is forgotten.
+// PP-20: abort at every instant of a cycle of stopping: in motion it is refused, at rest the path is dropped.
 TEST(Stops, AbortAtEveryInstant) {
   for (int instant = 0; instant < 460; instant += 7) {
     SCOPED_TRACE(instant);
@@ -221,7 +221,7 @@ TEST(Stops, AbortAtEveryInstant) {
   }
 }
 
-// PP-20: stopped at every instant of a profile and gone on with: it always ends where it was to.
+// PP-20: stopped at every instant of a profile and continued: it always ends at its target.
 TEST(Stops, AtEveryInstantAndOn) {
   for (int instant = 0; instant < 620; instant += 13) {
     SCOPED_TRACE(instant);
@@ -278,7 +278,7 @@ TEST(Jogs, EachAxis) {
   }
 }
 
-// GR-48, PP-03: what the mechanism does not have is refused, and leaves nothing behind.
+// GR-48, PP-03: axes that the mechanism does not have are refused, without any effect.
 TEST(Jogs, AxesThatThereAreNot) {
   Cell cell;
   cell.Start();
@@ -382,8 +382,8 @@ TEST(Jogs, Lease) {
   EXPECT_TRUE(cell.rig.lives[jog].done);
 }
 
-// PP-03: away from a held path it is not gone on with; return_to_path moves back, then it is. From STOP, READY and
-// PATH_INTERRUPT, at many places of the profile.
+// PP-03: off its path a held path is not continued; return_to_path moves back, then it is. From STOP, READY and
+// PATH_INTERRUPT, at many points of the profile.
 TEST(Jogs, AwayFromThePathAndBack) {
   for (const M from : {M::kStop, M::kReady, M::kPathInterrupt}) {
     for (const int instant : {40, 70, 110, 180, 240, 280}) {
@@ -427,7 +427,7 @@ TEST(Jogs, AwayFromThePathAndBack) {
   }
 }
 
-// PP-04: in the order given; axes with the same number together; those without stay as they are. The switches come
+// PP-04: in the given order; axes with the same number together; axes without one stay as they are. The switches come
 // from outside.
 TEST(Homing, InOrder) {
   Settings s = Fast();
@@ -459,10 +459,10 @@ TEST(Homing, InOrder) {
   EXPECT_EQ(cell.state.state, M::kReady);
   EXPECT_FALSE(cell.rig.states[3].homing.homed);
   EXPECT_TRUE(cell.rig.states[0].homing.homed);
-  EXPECT_EQ(cell.rig.axes[0].homing.method, axis::HomingMethod::kDirect);  // the axis' own is as it was
+  EXPECT_EQ(cell.rig.axes[0].homing.method, axis::HomingMethod::kDirect);  // the axis' own parameters are restored
 }
 
-// PP-04, PP-20: a stop ends homing; axes that home at once are done in one cycle.
+// PP-04, PP-20: a stop ends homing; axes that home directly are done in one cycle.
 TEST(Homing, StopAndAtOnce) {
   Settings s = Fast();
   s.homing_order = {1, 1, 1, 0, 0, 0, 0};
@@ -529,7 +529,7 @@ TEST(Faults, OfAnAxis) {
   EXPECT_TRUE(cell.rig.lives[again].done);
 }
 
-// PP-01: a target is no longer reached once it is forgotten, or the tool moves away from it by whatever means.
+// PP-01: a target is no longer reached once it is dropped, or the tool moves away from it by any means.
 TEST(States, InTargetEnds) {
   const auto at_target = [](Cell& cell) {
     cell.Start();
@@ -562,7 +562,7 @@ TEST(States, WorkpieceSystemsAreDifferent) {
   EXPECT_NE(cell.state.settings.workpiece_pcs1, cell.state.settings.workpiece_pcs2);
 }
 
-// PP-01: power off ends what is going on.
+// PP-01: power off ends every activity.
 TEST(States, PowerOff) {
   Cell cell;
   cell.Start();

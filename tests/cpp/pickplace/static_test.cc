@@ -4,7 +4,7 @@
 namespace takt::pickplace {
 namespace {
 
-// First cycle of the trace from which on the set points stand at a place.
+// Returns the first cycle of the trace from which on the set points stay at a place.
 std::size_t ArrivalAt(const Cell& cell, double x, double y, double z) {
   std::size_t i = cell.rig.trace.size();
   const auto off = [&](std::size_t k) {
@@ -22,7 +22,7 @@ std::vector<std::size_t> PulsesOf(const Cell& cell) {
   return pulses;
 }
 
-// PP-10: over both points to the target; the ticket ends there.
+// PP-10: via both points to the target; the ticket ends there.
 TEST(Static, OneProfile) {
   Cell cell;
   cell.Start();
@@ -87,7 +87,7 @@ TEST(Static, Ellipse) {
   EXPECT_EQ(cell.rig.lives[turned].error_id, ErrorId::kTiltedEllipse);
 }
 
-// PP-20: stopped in the middle of an ellipse, jogged away and brought back: it goes on over the same height.
+// PP-20: stopped in the middle of an ellipse, jogged away and brought back: it continues over the same height.
 TEST(Static, EllipseGoneOnWith) {
   Settings s = Fast();
   s.path_mode = PathMode::kElliptical;
@@ -117,7 +117,7 @@ TEST(Static, EllipseGoneOnWith) {
   EXPECT_LT(cell.Off(400, 0, 0), 1e-9);
 }
 
-// PP-14: a target in a PCS that stands, from the MCS.
+// PP-14: a target in a PCS at rest, from the MCS.
 TEST(Static, TargetInAPcs) {
   Cell cell;
   cell.Start();
@@ -130,7 +130,7 @@ TEST(Static, TargetInAPcs) {
   EXPECT_LT(cell.Off(100, 250, 5), 1e-9);
 }
 
-// PP-16: profiles that wait are gone one behind the other, as they were accepted; the eighth fills the module.
+// PP-16: waiting profiles are executed in sequence, as they were accepted; the eighth fills the module.
 TEST(Static, ProfilesWait) {
   Cell cell;
   cell.Start();
@@ -154,7 +154,7 @@ TEST(Static, ProfilesWait) {
 }
 
 // PP-30: the pulse comes the time set before the profile ends, to the cycle, for one cycle; with blending and without,
-// for short and long times. The precalculated time is that taken (PP-15).
+// for short and long times. The precalculated time is the real one (PP-15).
 TEST(Static, PulseToTheCycle) {
   for (const double radius : {0.0, 10.0}) {
     for (const double time : {0.001, 0.02, 0.05, 0.15}) {
@@ -180,8 +180,8 @@ TEST(Static, PulseToTheCycle) {
   }
 }
 
-// PP-63, PP-15: the time of a profile that waited is known when the tool sets out, and is that taken; of one from rest
-// and of the last one it is known later.
+// PP-63, PP-15: the time of a profile that waited is known when the tool starts, and is the real one; for a profile
+// from rest and for the last one it is known later.
 TEST(Static, ProfileTimeIsKnownWhenTheToolSetsOut) {
   Cell cell(Fast());
   cell.Start();
@@ -299,7 +299,7 @@ TEST(Static, LimitsOfEachAxis) {
   EXPECT_NEAR(cell.rig.trace.back().set[3].position, 20, 1e-9);
 }
 
-// PP-15: what the profile passes is told by number.
+// PP-15: the points passed by the profile are published by number.
 TEST(Static, PointsPassed) {
   Settings s = Fast();
   s.blending_radius = 0;
@@ -316,7 +316,7 @@ TEST(Static, PointsPassed) {
   EXPECT_EQ(seen, (std::vector<std::uint32_t>{0, 1, 2, 3}));
 }
 
-// PP-10: no path there: the module is in ERROR with the group's reason, and takes the next profile after a reset.
+// PP-10: no path there: the module is in ERROR with the group's reason, and accepts the next profile after a reset.
 TEST(Static, OutOfReach) {
   group::Rig rig = group::Gantry();
   rig.axes[0].limits.upper = 400;

@@ -1,5 +1,5 @@
-// Coordinates over a way, as formulas, and motion along them with everything a group does with a window: what each test
-// of path timing needs.
+// Coordinates over an arc length, as formulas, and motion along them with everything a group does with a window: the
+// fixture of the tests of path timing.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace takt::trajectory::testing {
 
 inline constexpr double kPeriod = 0.001;
-// What a group leaves of the limits of its members.
+// Shares that a group leaves of the limits of its members.
 inline constexpr double kLimitShare = 0.98;
 
 // q(s) = slope s + sum of amplitude sin(frequency s + phase).
@@ -72,11 +72,11 @@ struct Course {
 inline double Uniform(std::mt19937_64& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
-inline double Between(std::mt19937_64& random, double low, double high) {  // each decade alike
+inline double Between(std::mt19937_64& random, double low, double high) {  // uniform in the logarithm
   return std::exp(Uniform(random, std::log(low), std::log(high)));
 }
 
-// Winding paths of drives as they are: speeds of 0.2 to 3 m/s, 2 to 30 m/s², accelerations built up in 5 to 60 ms.
+// Winding paths of realistic drives: speeds of 0.2 to 3 m/s, 2 to 30 m/s², accelerations built up in 5 to 60 ms.
 inline Course RandomCourse(std::mt19937_64& random) {
   Course course;
   course.length = Between(random, 30, 800);
@@ -99,8 +99,8 @@ inline Course RandomCourse(std::mt19937_64& random) {
   return course;
 }
 
-// The largest shares of limits that were used, by the way itself (along) and by coordinates; and steps of positions
-// that speeds and accelerations do not explain, mm.
+// The largest shares of limits that were used, along the path and by coordinates; and steps of positions [mm] that
+// speeds and accelerations do not explain.
 struct Worst {
   double velocity = 0, acceleration = 0, jerk = 0;
   double along_velocity = 0, along_acceleration = 0, along_jerk = 0;
@@ -123,7 +123,7 @@ inline KinematicState Of(const Formula& q, const KinematicState& way) {
           first * way.acceleration + q.Derivative(2, way.position) * way.velocity * way.velocity};
 }
 
-// What one cycle asks of the limits. Jerks are differences of accelerations over the cycle.
+// Use of the limits in one cycle. Jerks are differences of accelerations over the cycle.
 inline Worst UseOf(const Course& course, const KinematicState& before, const KinematicState& now) {
   Worst w;
   w.along_velocity = std::max(now.velocity, -1e6 * now.velocity) / course.along.velocity;  // never backwards
@@ -151,7 +151,7 @@ class Motion {
  public:
   explicit Motion(const Course& c) : course(c), window(4096, c.Shared(), kPeriod) {}
 
-  // T as a group finds it, from places all along.
+  // T as a group finds it, from samples of the whole path.
   void FindBuildUp(double length) {
     BuildUp build_up;
     const int places = std::clamp(static_cast<int>(std::ceil(length / 8)), 4, 64);
@@ -162,7 +162,7 @@ class Motion {
     last = course.At(sampled_to);
     window.Append(last);
   }
-  // One node more, `end` at most.
+  // Appends one more node, at `end` at most.
   void SampleNext(double end, bool stop_at_end = false) {
     const PathPoint before = last;
     NextPoint(
@@ -175,7 +175,7 @@ class Motion {
     window.Close();
     window.Sweep(1000000);
   }
-  // Everything, from rest to rest.
+  // Appends everything, from rest to rest.
   void Plan() {
     FindBuildUp(course.length);
     SampleBegin();
@@ -192,7 +192,7 @@ class Motion {
     worst.Take(UseOf(course, before, pace.now));
     ++cycles;
   }
-  // False: it does not come to rest.
+  // Returns false if it does not come to rest.
   bool ToRest(double wish, int most_cycles = 20000) {
     for (int i = 0; i < most_cycles; ++i) {
       if (Stands(pace) && (pace.raw_stands || wish == 0)) return true;

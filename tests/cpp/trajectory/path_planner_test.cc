@@ -1,4 +1,4 @@
-// Plans along paths: within all limits whatever is asked, beside the least times known.
+// Plans along paths: within all limits whatever is requested, compared with known least times.
 #include "takt/trajectory/path_planner.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using testing::Reference;
 using testing::Uniform;
 
 constexpr std::size_t kMost = 1500;  // intervals
-constexpr int kPlaces = 23;          // looked at within an interval: others than the planner looks at
+constexpr int kPlaces = 23;          // checked within an interval: others than the planner's samples
 
 // The largest share of a limit that a plan uses.
 double UseOf(const Reference& reference, const PathPlan& plan) {
@@ -51,7 +51,7 @@ bool IsPlan(PathPlanStatus status) {
   return status == PathPlanStatus::kPlanned || status == PathPlanStatus::kScaled;
 }
 
-// Evaluated over time, a plan goes through all of its knots and never back.
+// Evaluated over time, a plan passes through all of its knots and never moves back.
 void ExpectRuns(const Reference& reference, const PathPlan& plan) {
   double reference_s = 0;
   for (std::size_t k = 0; k < reference.lengths.size(); ++k) {
@@ -101,7 +101,7 @@ TEST(PathPlanner, KeepsLimitsOnRandomPolylinesAndTakesNoLongerThanStops) {
   EXPECT_LE(scaled, trials / 100);
 }
 
-// GR-40: the same on smooth courses, from rest and going on from a plan at any of its knots.
+// GR-40: the same on smooth courses, from rest and continuing from a plan at any of its knots.
 TEST(PathPlanner, KeepsLimitsOnRandomCourses) {
   std::mt19937_64 random(40);
   PathPlanner planner(kMost, 8);
@@ -132,7 +132,7 @@ TEST(PathPlanner, KeepsLimitsOnRandomCourses) {
     request.begin = plan.pace(knot);
     const PathPlanStatus again = planner.Plan(request, on);
     ++asked;
-    if (again == PathPlanStatus::kNoPlan) continue;  // the plan that there is goes on
+    if (again == PathPlanStatus::kNoPlan) continue;  // the present plan continues
     ASSERT_EQ(again, PathPlanStatus::kPlanned);
     ++went_on;
     EXPECT_EQ(on.pace(0).square, request.begin->square);
@@ -145,7 +145,7 @@ TEST(PathPlanner, KeepsLimitsOnRandomCourses) {
   EXPECT_GE(went_on, 90 * asked / 100);
 }
 
-// GR-23, GR-41: beside the least times of tests/tools/path_optimum.py.
+// GR-23, GR-41: compared with the least times of tests/tools/path_optimum.py.
 TEST(PathPlanner, TakesLittleLongerThanTheOptimum) {
   std::ifstream file(std::string(TAKT_SOURCE_DIR) + "/tests/data/path_optimum.json");
   PathPlanner planner(kMost, 8);
@@ -233,7 +233,7 @@ TEST(PathPlanner, RepeatsBitForBitAndAllocatesNothing) {
   }
 }
 
-// GR-22: how near the curve of an overlap comes to the corner.
+// GR-22: the deviation of the curve of an overlap from the corner.
 TEST(Overlap, ComesAsNearToTheCornerAsAsked) {
   std::mt19937_64 random(22);
   for (int trial = 0; trial < 500; ++trial) {

@@ -1,4 +1,4 @@
-// Motion along paths beside the least time possible, and within all limits all the time.
+// Motion along paths compared with the least possible time, and within all limits all the time.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -50,8 +50,8 @@ std::vector<Known> KnownOnes() {
   return all;
 }
 
-// How far above its limits a coordinate may come: at full speed, which is rehearsed, only by what the rounds of that
-// leave; where the motion is braked or let go in bends, more.
+// Largest excess of a coordinate over its limits: at full speed, which is rehearsed, only what the rounds of the
+// rehearsal leave; where the motion is braked or released in bends, more.
 struct Most {
   double velocity, acceleration, jerk;
 };
@@ -68,8 +68,8 @@ void ExpectWithinLimits(const Worst& w, const Most& most, const std::string& wha
   EXPECT_LE(w.step, 1e-3) << what;
 }
 
-// How much longer than the least time. What is bound by jerk nearly all the way (T would have to change on the way) or
-// bends within a fraction of T is not what drives are like: known, and bounded here.
+// Largest ratio to the least time. Paths limited by jerk nearly everywhere (T would have to change along the path) or
+// with bends within a fraction of T are not typical of drives: known, and bounded here.
 double MostRatio(const std::string& name) {
   const auto is = [&](const char* kind) { return name.starts_with(kind); };
   if (is("warped jerk")) return 2.0;
@@ -120,14 +120,15 @@ TEST(PathTiming, GoesStraightInSevenPhases) {
     ASSERT_TRUE(motion.ToRest(kFast));
     const double least = course.length / v + v / a + build_up;
     EXPECT_GE(motion.cycles * kPeriod, least - 1e-9);
-    EXPECT_LE(motion.cycles * kPeriod, least + 3 * kPeriod + 0.01 * v / a);  // 1 % of the deceleration is for landing
+    // 1 % of the deceleration is for stopping exactly
+    EXPECT_LE(motion.cycles * kPeriod, least + 3 * kPeriod + 0.01 * v / a);
     EXPECT_EQ(motion.pace.now.position, course.length);
     ExpectWithinLimits(motion.worst, kRehearsed, std::to_string(i));
   }
 }
 
-// GR-23: straight on, however short the way and wherever its nodes are: accelerations change no faster than they may
-// within a cycle either, where the raw motion's changes at a node.
+// GR-23: a straight line, however short and wherever its nodes are: accelerations change no faster than allowed within
+// a cycle either, where the raw motion's changes at a node.
 TEST(PathTiming, KeepsTheJerkOnLines) {
   std::mt19937_64 random(2);
   for (int i = 0; i < 1000; ++i) {
@@ -151,8 +152,8 @@ TEST(PathTiming, KeepsTheJerkOnLines) {
   }
 }
 
-// GR-23: whatever the path, and whatever is wanted in any cycle: within the limits, never backwards, to rest at its
-// end.
+// GR-23: whatever the path, and whatever speed is wanted in any cycle: within the limits, never backwards, to rest at
+// its end.
 TEST(PathTiming, KeepsLimitsWhateverIsWanted) {
   Worst full, changing;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
@@ -198,8 +199,8 @@ TEST(PathTiming, KeepsLimitsOfCoordinates) {
   EXPECT_GE(within, 275);
 }
 
-// GR-23: with nothing wanted it comes to rest on the path, from anywhere, and soon: after T, and the time that the
-// speed takes with the deceleration allowed.
+// GR-23: with a wanted speed of 0 it comes to rest on the path, from any state, and soon: after T, and the time that
+// the speed takes with the allowed deceleration.
 TEST(PathTiming, ComesToRestFromAnywhere) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     std::mt19937_64 random(seed);
@@ -213,13 +214,13 @@ TEST(PathTiming, ComesToRestFromAnywhere) {
     const double there = motion.pace.now.position;
     for (int i = 0; i < 10; ++i) motion.Cycle(0);
     EXPECT_EQ(motion.pace.now.position, there);
-    ASSERT_TRUE(motion.ToRest(kFast)) << seed;  // and goes on
+    ASSERT_TRUE(motion.ToRest(kFast)) << seed;  // and continues
     EXPECT_EQ(motion.pace.now.position, course.length) << seed;
   }
 }
 
-// GR-40: a path of which the end changes in every cycle, as where chords are joined one after another, is gone without
-// a stop: plans that do not reach that end stay. It is too long for one plan.
+// GR-40: a path whose end changes in every cycle, as where chords are joined one after another, is travelled without a
+// stop: plans that do not reach that end are kept. It is too long for one plan.
 TEST(PathTiming, KeepsPlansThatEndBeforeAChange) {
   Course course;
   course.length = 700;
@@ -254,8 +255,8 @@ TEST(PathTiming, KeepsPlansThatEndBeforeAChange) {
   EXPECT_GT(slowest, 50);
 }
 
-// GR-40: where plans reach only a little way, since the path winds, each serves for a share of its time: plans cost
-// processor time.
+// GR-40: where plans reach only a short distance, since the path winds, each is used for a share of its time: plans
+// cost processor time.
 TEST(PathTiming, MakesFewPlans) {
   Course course;
   course.length = 600;

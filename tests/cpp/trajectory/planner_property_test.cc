@@ -1,4 +1,4 @@
-// Random start states, targets and limits in several units: what must hold for every plan. A million of each:
+// Random start states, targets and limits in several units: properties of every plan. A million of each:
 // long_trajectory in cpp/bench.
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ void ExpectSound(const Profile& plan, const Problem& p) {
 
 class PlannerProperty : public ::testing::TestWithParam<Case> {
  protected:
-  // The next problem; underway to its target if the case says so.
+  // The next problem; already in motion to its target if the case says so.
   Problem Next(Problems& problems, Planner& planner) {
     Problem p = problems.Next();
     Profile plan;
@@ -109,7 +109,7 @@ TEST_P(PlannerProperty, StopEndsWhereStopPositionSays) {
   }
 }
 
-// Where acceleration and deceleration are equal, nothing is quicker. Ruckig is asked in metres, where it has fewest
+// Where acceleration and deceleration are equal, no motion is quicker. Ruckig is called in metres, where it has fewest
 // failures.
 class PlannerOptimum : public PlannerProperty {};
 
@@ -168,8 +168,8 @@ INSTANTIATE_TEST_SUITE_P(Symmetric, PlannerProperty, ::testing::ValuesIn(kSymmet
 INSTANTIATE_TEST_SUITE_P(Asymmetric, PlannerProperty, ::testing::ValuesIn(kAsymmetric), Name);
 INSTANTIATE_TEST_SUITE_P(Symmetric, PlannerOptimum, ::testing::ValuesIn(kSymmetric), Name);
 
-// The same problem in another unit has the same answer: the duration does not depend on whether an axis counts in µm or
-// m.
+// The same problem in another unit has the same solution: the duration does not depend on whether an axis counts in µm
+// or m.
 TEST(Planner, AnswerDoesNotDependOnTheUnit) {
   Problems problems(5, {});
   Planner planner;

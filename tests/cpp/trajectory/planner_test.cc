@@ -130,7 +130,7 @@ TEST(Planner, NoWayToGoTakesNoTime) {
   EXPECT_EQ(PlanTo({7, 0, 0}, 7, kSCurve).duration(), 0);
   EXPECT_EQ(PlanTo({7, 0, 0}, 7, kTrapezoid).duration(), 0);
   EXPECT_EQ(PlanTo({7, 100, 0}, 7, kSCurve, 100).duration(), 0);
-  // To the same place with another velocity is a way.
+  // To the same position with another velocity is a motion.
   EXPECT_GT(PlanTo({7, 0, 0}, 7, kSCurve, 100).duration(), 0);
   EXPECT_GT(PlanTo({7, 100, 0}, 7, kSCurve).duration(), 0);
   EXPECT_GT(PlanTo({7, 0, 100}, 7, kSCurve).duration(), 0);
@@ -141,7 +141,7 @@ TEST(Planner, WayOfOneRoundingIsPlanned) {
   EXPECT_LT(plan.duration(), 1e-5);
 }
 
-// AX-97: a limit lowered under way.
+// AX-97: a limit lowered in motion.
 TEST(Planner, AccelerationBeyondItsLimitFallsAtFullJerk) {
   Limits l = kSCurve;
   l.acceleration = l.deceleration = 500;
@@ -210,7 +210,7 @@ TEST(Planner, CallsDoNotAllocate) {
   EXPECT_TRUE(std::isfinite(sum));
 }
 
-// Every input replaced by every odd number in turn: a sound plan or a refusal that leaves `out` as it was, never a
+// Every input replaced by every odd number in turn: a valid plan or a refusal that leaves `out` unchanged, never a
 // hang.
 TEST(Planner, OddNumbersAreRefusedOrPlanned) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -286,7 +286,7 @@ TEST(Planner, RefusesWhatIsNoLimit) {
   EXPECT_EQ(planner.ToVelocity({}, -501, kSCurve, out), refused);
 }
 
-// Starts far beyond the velocity limit with slow brakes and a high jerk, the target just behind: found by the long run.
+// Starts far beyond the velocity limit with slow brakes and a high jerk, the target just beyond: found by the long run.
 TEST(Planner, SecondScaleSolvesWhatTheFirstDoesNot) {
   Planner planner;
   Profile plan;
@@ -298,7 +298,7 @@ TEST(Planner, SecondScaleSolvesWhatTheFirstDoesNot) {
   EXPECT_LE(testing::Audit(plan, slow).deceleration, 1e-9);
 }
 
-// What has no answer in doubles is counted and leaves the caller's plan alone.
+// A problem without a solution in doubles is counted and leaves the caller's plan unchanged.
 TEST(Planner, FailureIsCountedAndKeepsThePlanInHand) {
   Planner planner;
   Profile plan;

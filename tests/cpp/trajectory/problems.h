@@ -1,5 +1,4 @@
-// Random problems as drives meet them, and an exact look at what a plan makes of them. Also used by the long run in
-// cpp/bench.
+// Random problems typical of drives, and an exact check of their plans. Also used by the long run in cpp/bench.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +18,7 @@ struct Problem {
   Limits limits;
 };
 
-// What one millimetre (for axes that turn: 0.36 deg) is in the user's unit.
+// One millimetre (for rotary axes: 0.36 deg) in the user's unit.
 inline constexpr std::array<double, 4> kUnits{1000, 1, 0.001, 0.36};  // µm, mm, m, deg
 
 struct Mix {
@@ -27,7 +26,7 @@ struct Mix {
   bool start_within_limits = true;  // also the speed that the start's acceleration leads to
   bool asymmetric = false;          // deceleration differs from acceleration
   bool unlimited_jerk = false;      // in a quarter of the problems
-  double end_velocity_share = 0.3;  // of problems with one
+  double end_velocity_share = 0.3;  // in problems with one
   double spread = 1;                // 1: drive-like; larger: limits further apart, by powers of ten
 };
 
@@ -73,7 +72,7 @@ class Problems {
   Mix mix_;
 };
 
-// By how much a plan goes beyond what it may, as a share of the limit; 0: nothing.
+// Excess of a plan over its limits, as a share of the limit; 0: none.
 struct Excess {
   double velocity = 0;
   double acceleration = 0;
@@ -101,7 +100,7 @@ inline Excess Audit(const Profile& plan, const Limits& l) {
   Excess worst;
   const KinematicState& start = plan.start();
   const bool steps_allowed = l.jerk == 0;
-  // The speed that the acceleration at the start makes unavoidable.
+  // The speed that the initial acceleration makes unavoidable.
   const double taken = steps_allowed ? 0 : start.acceleration * start.acceleration / (2 * l.jerk);
   const double highest = std::max({l.velocity, start.velocity, start.acceleration > 0 ? start.velocity + taken : 0});
   const double lowest = std::min({-l.velocity, start.velocity, start.acceleration < 0 ? start.velocity - taken : 0});

@@ -83,7 +83,7 @@ TEST(Profile, AppendsAnother) {
   EXPECT_EQ(p.At(5.5), next.At(1.5));
 }
 
-// What is left of it is the same motion.
+// The rest is the same motion.
 TEST(Profile, SkipsItsBeginning) {
   const Profile whole = Ramp();
   for (const double t : {-1.0, 0.0, 0.4, 1.0, 2.2, 3.0, 3.9, 4.0, 7.0}) {
@@ -136,7 +136,7 @@ TEST(Profile, ExtremesLieBetweenTheEnds) {
   EXPECT_DOUBLE_EQ(thrown.PositionRange().max, 5);
   EXPECT_DOUBLE_EQ(thrown.PositionRange().min, -15);
   Profile swing(KinematicState{0, 3, -4});
-  swing.Append(4, 2);  // v = (t - 1)(t - 3): turns at 1 and 3
+  swing.Append(4, 2);  // v = (t - 1)(t - 3): reverses at 1 and 3
   EXPECT_DOUBLE_EQ(swing.PositionRange().max, 4.0 / 3);
   EXPECT_NEAR(swing.At(3).position, 0, 1e-15);
   EXPECT_DOUBLE_EQ(swing.VelocityRange().min, -1);

@@ -21,7 +21,7 @@ inline Profile RestToRest(double length, const Limits& limits) {
   return profile;
 }
 
-// Something planned: the request's spans point into it.
+// A planning problem: the request's spans point into it.
 class Reference {
  public:
   virtual ~Reference() = default;
@@ -51,7 +51,7 @@ class Reference {
       lengths.push_back((to - from) / count);
     }
   }
-  std::vector<double> begins;  // of the intervals, within what a piece counts from
+  std::vector<double> begins;  // of the intervals, relative to their piece
 };
 
 using Point = std::array<double, 3>;
@@ -191,7 +191,7 @@ inline std::vector<Point> RandomPoints(std::mt19937_64& random, double most_turn
   return points;
 }
 
-// A smooth course over one motion from rest to rest with limits that its places have in the mean.
+// A smooth course over one motion from rest to rest with the mean limits along it.
 class Smooth : public Reference {
  public:
   Smooth(const Course& course, int intervals) : course_(course) {

@@ -1,5 +1,5 @@
-// The quickest motion to a position found another way than the planner's: towards the velocity limit for some time,
-// then the quickest ramp to the end velocity, and the time found by halving. Slow and plain. For an end velocity of 0
+// The quickest motion to a position by another method than the planner's: towards the velocity limit for some time,
+// then the quickest ramp to the end velocity, and the time found by bisection. Slow and plain. For an end velocity of 0
 // it is the time-optimal motion.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace takt::trajectory::testing {
 
-// Duration in s.
+// Returns the duration [s].
 inline double ReferenceDuration(const Problem& p) {
   const Bounds bounds{p.limits.acceleration, p.limits.deceleration, p.limits.jerk};
   const double distance = p.position - p.from.position;

@@ -82,7 +82,8 @@ TEST(RuckigIssue, N106EndVelocities) {
                  {0, 0, 0, 0.6502926543734557, 0.9052946264340856, 10, 100, 100}});
 }
 
-// Braking at the limit of acceleration, so that the target is the place to stop to rounding. Jerk not given.
+// Braking at the limit of acceleration, so that the target is the stopping position except for rounding. Jerk not
+// given.
 TEST(RuckigIssue, N129BrakingAtTheLimit) {
   constexpr double kA = 4.363323129985824;
   for (const double j : {20.0, 43.63323129985824, 100.0, 1000.0}) {
@@ -103,7 +104,7 @@ TEST(RuckigIssue, N100BesideTheSwitchingCurve) {
   ExpectPlanned({{0.02853333333333339, 0.6800000000000006, 7.999999999999993, 0, 0, 1, 10, 100}});
 }
 
-// Already there, but for roundings of all three.
+// Already there, except for roundings of all three.
 TEST(RuckigIssue, N160AndN216AlreadyThereToRounding) {
   ExpectPlanned(
       {{-0.04895883258572608, 1.425883388427091e-14, -2.370282711878416e-12, -0.04895883258572691, 0, 5, 10, 150},

@@ -19,7 +19,7 @@ double Sine(double t, double hertz) {
   return std::sin(2 * std::numbers::pi * hertz * t);
 }
 
-// CV-20: whatever the time constant, a step dies away and is not seen again.
+// CV-20: whatever the time constant, a step decays and does not reappear.
 TEST(TrackingFilter, Settles) {
   for (const double filter_s : {0.0, 0.001, 0.002, 0.003, 0.004, 0.01, 0.1}) {
     TrackingFilterState state;
@@ -37,7 +37,7 @@ TEST(TrackingFilter, Settles) {
   }
 }
 
-// CV-20: a constant speed passes without lag, and rounding does not pile up.
+// CV-20: a constant speed passes without lag, and rounding does not accumulate.
 TEST(TrackingFilter, HasNoLagAtConstantSpeed) {
   for (const double filter_s : {0.0, 0.002, 0.01, 0.1}) {
     TrackingFilterState state;
@@ -68,7 +68,7 @@ TEST(TrackingFilter, HasNoLagAtConstantJerk) {
   }
 }
 
-// PP-64: what is missed of a sine is below the bound of the header.
+// PP-64: the error of a sine is below the bound of the header.
 TEST(TrackingFilter, MissesOfASineWhatIsPromised) {
   for (const double filter_s : {0.005, 0.009, 0.02}) {
     for (const double dead_time_s : {0.001, 0.005, 0.02}) {
@@ -89,7 +89,7 @@ TEST(TrackingFilter, MissesOfASineWhatIsPromised) {
   }
 }
 
-// PP-64: position, velocity and acceleration are of one motion, whatever is measured, with a dead time as well.
+// PP-64: position, velocity and acceleration are of one motion, whatever the measurement, with a dead time as well.
 TEST(TrackingFilter, IsOneMotion) {
   for (TrackingFilter filter : {Filter(0.009, 0), Filter(0.009, 0.02), Filter(0.015, 0.001)}) {
     if (filter.filter_s > 0.01) filter.fast_filter_s = 0.003, filter.band = 0.006;
@@ -109,7 +109,7 @@ TEST(TrackingFilter, IsOneMotion) {
   }
 }
 
-// Returns the largest acceleration that steps of an encoder make at a constant speed, whatever it is.
+// Returns the largest acceleration caused by steps of an encoder at any constant speed.
 double Shaken(const TrackingFilter& filter, double step) {
   double worst = 0;
   for (double speed = 0.05; speed < 2000; speed *= 1.13) {
@@ -123,7 +123,7 @@ double Shaken(const TrackingFilter& filter, double step) {
   return worst;
 }
 
-// PP-64: steps of an encoder shake it by less than the header says, at all speeds.
+// PP-64: steps of an encoder cause less acceleration than the header states, at all speeds.
 TEST(TrackingFilter, StepsShakeItByLessThanIsPromised) {
   constexpr double kStep = 0.01;
   for (const double filter_s : {0.005, 0.009, 0.02}) {
@@ -139,7 +139,7 @@ TEST(TrackingFilter, StepsShakeItByLessThanIsPromised) {
   }
 }
 
-// PP-64: with two estimates a speed that changes suddenly is followed more than three times as well as with the slow
+// PP-64: with two estimates a speed that changes suddenly is followed more than three times as closely as with the slow
 // one alone.
 TEST(TrackingFilter, TwoEstimatesAreFastWhereTheSpeedChanges) {
   constexpr double kStep = 0.01;
