@@ -15,7 +15,7 @@ namespace takt::cam {
 namespace {
 
 constexpr std::size_t kMaxErrors = 20;
-constexpr double kRounding = 1e-6;  // CheckJoints overlooks a millionth of its scale: so 1e-12 of what was rounded
+constexpr double kRounding = 1e-6;  // CheckJoints ignores a millionth of its scale: i.e. 1e-12 of the rounded values
 
 class Builder {
  public:
@@ -50,7 +50,7 @@ class Builder {
     if (!std::isfinite(value)) Error(path, "expected a finite number, found " + Text(value));
   }
 
-  // A path per row is made only where something is wrong: rows are many.
+  // The path of a row is only formatted if the row is wrong: there are many rows.
   void CheckPoints() {
     const std::vector<CamPoint>& points = params_.points;
     if (points.size() < kMinPoints || points.size() > kMaxPoints) {
@@ -83,15 +83,15 @@ class Builder {
     begins_.pop_back();
     curves_ = Interpolate(points, params_.interpolation, params_.cyclic);
     const bool linear = params_.interpolation == Interpolation::kLinear;
-    // What was interpolated otherwise has no jumps inside.
+    // Other interpolations have no jumps inside.
     for (std::size_t i = 1; linear && i < curves_.size(); ++i) {
       const JointSide before{{points[i].y, curves_[i - 1].c[1], 0, 0}, true, true};
       joints_.push_back({PathOf("points", i), begins_[i], before, {{points[i].y, curves_[i].c[1], 0, 0}, true, true}});
     }
     if (params_.cyclic) AddSeam(PathOf("points", points.size() - 1), {linear, linear}, {linear, linear});
     if (!params_.cyclic || linear) return;
-    // The curve's end is its beginning, but for the acceleration of a spline whose velocity was given there, and for
-    // what was given twice.
+    // The curve's end equals its beginning, except for the acceleration of a spline whose velocity was given there, and
+    // for values that were given twice.
     Value& end = joints_.back().before.value;
     const Value& beginning = joints_.back().behind.value;
     end.dy = points.back().v.value_or(beginning.dy);
@@ -185,8 +185,8 @@ class Builder {
     }
   }
 
-  // Numbers can be too far apart, or too near to one another, for what lies between them to be one. On the way it is
-  // seen how large things get.
+  // Values may be too far apart, or too close to one another, for the curve between them to be finite. Also collects
+  // the scale of the cam.
   void CheckNumbers() {
     const double length = end_ - begins_.front();
     if (!std::isfinite(length) || !std::isfinite(100 * static_cast<double>(begins_.size()) / length)) {
@@ -207,7 +207,7 @@ class Builder {
     }
   }
 
-  // What rounding leaves of y on a way of h counts as well.
+  // The rounding of y over the length h counts as well.
   void Include(const Value& value, double h) {
     const double from_y = kRounding * std::abs(value.y) / h;
     const double from_dy = std::max(kRounding * std::abs(value.dy), from_y) / h;
@@ -220,7 +220,7 @@ class Builder {
   std::vector<double> begins_;
   std::vector<Curve> curves_;
   double end_ = 0;
-  Value scale_;  // the largest of each
+  Value scale_;  // largest magnitude of each
   std::vector<Joint> joints_;
   Built built_;
 };

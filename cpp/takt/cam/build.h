@@ -1,4 +1,4 @@
-// From what was written down to a table, checked (CAM-03). Not for the cycle.
+// Builds a checked table from the description of a cam (CAM-03). Not for use within the cycle.
 #pragma once
 
 #include <optional>
@@ -10,19 +10,19 @@
 
 namespace takt::cam {
 
-// Something wrong, or worth knowing, about one value.
+// An error or a warning about one value.
 struct Finding {
-  std::string path;     // "points[3].x"; empty: the cam as a whole
+  std::string path;     // "points[3].x"; empty: the whole cam
   std::string message;  // "expected ..., found ..."
 };
 
 struct Built {
-  std::optional<Table> table;  // only without errors
+  std::optional<Table> table;  // set only if there are no errors
   std::vector<Finding> errors;
   std::vector<Finding> warnings;
 };
 
-// `params.file` must have been read already (csv.h).
+// Requires: `params.file` has been read already (csv.h).
 Built Build(const CamParams& params);
 
 }  // namespace takt::cam

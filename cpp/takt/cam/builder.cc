@@ -41,7 +41,7 @@ std::optional<BuildResult> BuildNext(BuildQueues& queues) {
   }
   auto table = std::make_unique<Table>(std::move(*built.table));
   result.built.good = queues.built.TryPush({request.number, table.get()});
-  if (result.built.good) static_cast<void>(table.release());  // the cycle has it
+  if (result.built.good) static_cast<void>(table.release());  // the cycle owns it now
   return result;
 }
 

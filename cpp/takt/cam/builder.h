@@ -1,6 +1,6 @@
 // Builds cams outside the cycle. The cycle hands over a draft; one thread outside checks it, builds the table and hands
-// that back; tables no longer used return to be freed. The result is a command of the journal (CamBuilt). A replay
-// builds the table once more: it depends on the draft alone.
+// it back; tables no longer used are returned to be freed. The result is a command of the journal (CamBuilt). A replay
+// builds the table again: it depends on the draft alone.
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,13 @@
 
 namespace takt::cam {
 
-// Cams that are sent or built at a time.
+// Maximum number of cams that are being sent or built.
 inline constexpr std::size_t kDrafts = 2;
 
 struct BuildRequest {
   std::uint64_t number = 0;  // of the draft
   Ticket ticket = 0;
-  const CamParams* draft = nullptr;  // does not change until the result is applied
+  const CamParams* draft = nullptr;  // constant until the result is applied
 };
 
 struct BuiltTable {
@@ -43,10 +43,11 @@ struct BuildQueues {
 struct BuildResult {
   Ticket ticket = 0;
   CamBuilt built;
-  std::string sentence;  // what is wrong, for people; empty: nothing
+  std::string sentence;  // what is wrong, for users; empty if nothing is
 };
 
-// Builds the next request; nothing: there is none. Frees retired tables. Outside the cycle, one thread.
+// Builds the next request and frees retired tables. Returns nothing if there is no request. Outside the cycle, from one
+// thread.
 std::optional<BuildResult> BuildNext(BuildQueues& queues);
 
 }  // namespace takt::cam

@@ -8,7 +8,7 @@ namespace takt::cam {
 
 namespace {
 
-// Of a code, which a double holds exactly: the problem, a number up to 2^17 and one up to 2^32.
+// Bits of a code, which a double holds exactly: the problem, a number up to 2^17 and one up to 2^32.
 constexpr std::uint64_t kOfProblem = 4, kOfExpected = 17, kOfFound = 32;
 
 std::uint64_t Bits(double code, std::uint64_t first, std::uint64_t count) {

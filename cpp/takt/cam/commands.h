@@ -1,5 +1,5 @@
-// Commands that make cams at run time (CAM-88). A cam is sent in pieces of a bounded size, in the terms of a machine
-// file, and then built outside the cycle (builder.h). It can be used from the cycle that takes the result on.
+// Commands that make cams at run time (CAM-88). A cam is sent in pieces of bounded size, in the terms of a machine
+// file, and then built outside the cycle (builder.h). It can be used from the cycle that accepts the result.
 #pragma once
 
 #include <cstdint>
@@ -31,29 +31,30 @@ struct AddCamPoints {
 };
 struct AddCamSegments {
   Name cam;
-  std::optional<std::uint32_t> first{};  // likewise of segments
+  std::optional<std::uint32_t> first{};  // number of segments in the draft before this command
   InlineVector<CamSegment, kSegmentsPerCommand> segments;
 };
 struct BuildCam {  // done when the cam can be used
   Name cam;
-  std::optional<std::uint32_t> count{};  // of points or segments in all
+  std::optional<std::uint32_t> count{};  // total number of points or segments
 };
-struct DropCam {  // made at run time
+struct DropCam {  // only cams made at run time
   Name cam;
 };
 
-struct ReadCam {                          // publishes a CamPiece; done with the number of points or segments in all
+// publishes a CamPiece; the feedback's value is the total number of points or segments
+struct ReadCam {
   Name cam{};                             // empty: by number
   std::optional<std::uint64_t> number{};  // of the cam
-  std::uint32_t first = 0;                // of its points or segments, from 0
+  std::uint32_t first = 0;                // index of the first point or segment, from 0
 };
-// Result of the builder, which works off the cycle; issued by the engine only, never by a client.
+// Result of the builder, which runs outside the cycle; issued by the engine only, never by a client.
 struct CamBuilt {
   std::uint64_t number = 0;  // of the draft
   bool good = false;
 };
 
-// A piece of what a cam was made from.
+// A piece of the source of a cam.
 struct CamPiece {
   static constexpr std::size_t kPoints = 100, kSegments = 20;
 
@@ -62,8 +63,8 @@ struct CamPiece {
   Name name, x_unit, y_unit;
   bool cyclic = false;
   Interpolation interpolation = Interpolation::kQuintic;
-  std::uint32_t total = 0;  // of points or segments
-  std::uint32_t first = 0;  // of these
+  std::uint32_t total = 0;  // total number of points or segments
+  std::uint32_t first = 0;  // index of the first one below
   InlineVector<CamPoint, kPoints> points;
   InlineVector<CamSegment, kSegments> segments;
 };
@@ -85,10 +86,11 @@ enum class MakingProblem : std::uint8_t {
   kUnknown,          // no cam has this name or number
   kBehindEnd,        // `first` is not below the number of points or segments
 };
-// What a refused command reports as its value: the problem, and what was expected and found where both are numbers.
+// Returns the value of the feedback for a refused command: the problem, and the expected and found numbers if there are
+// any.
 double CodeOf(MakingProblem problem, std::size_t expected = 0, std::size_t found = 0) noexcept;
 MakingProblem ProblemOf(double code) noexcept;
-// Returns the message for a user; empty for kNone. Not for the cycle.
+// Returns the message for users; empty for kNone. Not for use within the cycle.
 std::string MessageOf(double code);
 
 void describe(Description<BeginCam>&);

@@ -8,7 +8,7 @@ namespace takt::cam {
 
 namespace {
 
-// The sum of two sines of the same frequency.
+// Adds two sines of the same frequency.
 void Add(double a, double phase_a, double b, double phase_b, double& amplitude, double& phase) noexcept {
   if (a == 0 && b == 0) {
     amplitude = phase = 0;
@@ -63,7 +63,7 @@ Value ValueOf(const Curve& curve, double d) noexcept {
 }
 
 Curve Quintic(double h, const Value& begin, const Value& end) noexcept {
-  // What is left after the motion that begins with begin's velocity and acceleration.
+  // The remainder after the motion with the velocity and acceleration of `begin`.
   const double y = end.y - begin.y - (begin.dy + 0.5 * begin.ddy * h) * h;
   const double v = (end.dy - begin.dy - begin.ddy * h) * h;
   const double a = (end.ddy - begin.ddy) * h * h;

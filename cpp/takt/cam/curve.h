@@ -1,6 +1,5 @@
-// What a cam is between two joints: a polynomial of the eighth degree, a sine and one of twice its frequency, over the
-// distance d from the first joint. Every law of motion is made of such pieces; so derivatives, roots and extremes are
-// exact.
+// A cam between two joints: a polynomial of the eighth degree, a sine and one of twice its frequency, over the distance
+// d from the first joint. Every law of motion is made of such pieces, so derivatives, roots and extremes are exact.
 #pragma once
 
 #include <array>
@@ -10,7 +9,7 @@
 
 namespace takt::cam {
 
-// What a cam says at one x of its master; derivatives over x, in slave's units per master's unit.
+// The value of a cam at one x of its master; derivatives over x, in slave's units per master's unit.
 struct Value {
   double y = 0;
   double dy = 0;
@@ -25,10 +24,10 @@ inline constexpr std::size_t kCoefficients = 9;
 struct Curve {
   std::array<double, kCoefficients> c{};
   double amplitude = 0;
-  double frequency = 0;  // rad per master's unit
-  double phase = 0;      // rad
+  double frequency = 0;  // [rad per master's unit]
+  double phase = 0;      // [rad]
   double amplitude2 = 0;
-  double phase2 = 0;  // rad
+  double phase2 = 0;  // [rad]
 
   double At(double d) const noexcept {
     double sum = c[kCoefficients - 1];
@@ -40,14 +39,14 @@ struct Curve {
 };
 
 Curve Derivative(const Curve& curve) noexcept;
-// height * curve(d / length)
+// Returns height * curve(d / length).
 Curve Scaled(const Curve& curve, double length, double height) noexcept;
-// p * first + q * second. If both have sines, then of the same frequency.
+// Returns p * first + q * second. Requires: if both have sines, they have the same frequency.
 Curve Combined(double p, const Curve& first, double q, const Curve& second) noexcept;
-// y and its derivatives at d.
+// Returns y and its derivatives at d.
 Value ValueOf(const Curve& curve, double d) noexcept;
 
-// The polynomial of the fifth degree from (0, begin) to (h, end); dddy is not used.
+// Returns the polynomial of the fifth degree from (0, begin) to (h, end); dddy is not used.
 Curve Quintic(double h, const Value& begin, const Value& end) noexcept;
 
 }  // namespace takt::cam

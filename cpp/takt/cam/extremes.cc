@@ -14,14 +14,14 @@ double LengthOf(const Table& table, std::size_t i) {
   return table.EndOf(i) - table.BeginOf(i);
 }
 
-// The curve stays this near to its value at 0: cheap, and mostly enough to see that a piece has no extreme.
+// Returns a bound of |curve(d) - c[0]| in [0, h]: cheap, and mostly enough to exclude that a piece has an extreme.
 double ReachOf(const Curve& curve, double h) {
   double reach = std::abs(curve.c[kCoefficients - 1]);
   for (std::size_t k = kCoefficients - 1; k-- > 1;) reach = reach * h + std::abs(curve.c[k]);
   return reach * h + std::abs(curve.amplitude) + std::abs(curve.amplitude2);
 }
 
-// Not less than the largest |curve|.
+// Returns an upper bound of |curve|.
 double MostOf(const Curve& curve, double h) {
   return std::abs(curve.c[0]) + ReachOf(curve, h);
 }
@@ -36,7 +36,7 @@ void Include(const Curve& curve, double begin, double h, Bounds& bounds) {
   }
 }
 
-// The largest |curve|, times `factor`.
+// Merges the largest |curve|, times `factor`.
 void Include(const Curve& curve, double begin, double h, double factor, Extreme& largest) {
   if (factor * MostOf(curve, h) <= largest.value) return;
   for (const double d : ExtremePlaces(curve, h)) {
@@ -45,7 +45,7 @@ void Include(const Curve& curve, double begin, double h, double factor, Extreme&
   }
 }
 
-// Where a piece has this y.
+// Returns the positions at which a piece has this y.
 Roots Places(const Table& table, std::size_t i, double y) {
   Curve curve = table.CurveOf(i);
   const double h = LengthOf(table, i);
@@ -81,7 +81,7 @@ void Include(const Table& table, std::size_t i, double master_velocity, double m
   Include(dy, begin, h, master_velocity, peaks.velocity);
   const double v2 = master_velocity * master_velocity;
   if (v2 * MostOf(ddy, h) + master_acceleration * MostOf(dy, h) <= peaks.acceleration.value) return;
-  // The sum of two magnitudes is the greater one of the magnitudes of sum and difference.
+  // The sum of two magnitudes is the larger one of the magnitudes of sum and difference.
   for (const double a : {master_acceleration, -master_acceleration}) {
     Include(Combined(v2, ddy, a, dy), begin, h, 1, peaks.acceleration);
   }
@@ -107,7 +107,7 @@ std::vector<double> AllX(const Table& table, double y) {
 
 namespace {
 
-// The place nearest to `near` among those that `places(piece)` gives, no more than `most` pieces away.
+// Returns the x nearest to `near` among those that `places(piece)` returns, at most `most` pieces away.
 template <typename PlacesOf>
 std::optional<double> Nearest(const Table& table, double near, std::size_t most, const PlacesOf& places) {
   std::optional<double> nearest;
@@ -121,7 +121,7 @@ std::optional<double> Nearest(const Table& table, double near, std::size_t most,
   const std::size_t end = table.size() - middle > most ? middle + most + 1 : table.size();
   const std::size_t begin = middle > most ? middle - most : 0;
   look(middle);
-  // Outwards on both sides, as long as something nearer can come.
+  // Outwards on both sides, while a nearer one is possible.
   for (std::size_t i = middle + 1; i < end; ++i) {
     if (nearest && table.BeginOf(i) - near >= std::abs(*nearest - near)) break;
     look(i);

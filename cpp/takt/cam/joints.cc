@@ -11,7 +11,7 @@ namespace takt::cam {
 
 namespace {
 
-// Of the largest in the cam: what rounding and decimals in a file may leave.
+// Relative to the largest value in the cam: the residues of rounding and of decimals in a file.
 constexpr double kSamePosition = 1e-9;
 constexpr double kSameDerivative = 1e-6;
 
@@ -34,7 +34,7 @@ class Check {
  private:
   static bool Differ(double a, double b, double tolerance) { return std::abs(a - b) > tolerance; }
 
-  // With the digits that mean something.
+  // Formats the significant digits.
   static std::string Rounded(double value, double scale) {
     if (std::abs(value) < 1e-9 * scale) return "0";
     std::array<char, 32> digits{};

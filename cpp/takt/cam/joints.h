@@ -1,4 +1,4 @@
-// Where two pieces of a cam meet, or its end and its beginning: what must not jump there (CAM-03).
+// Checks the joints between two pieces of a cam, or between its end and its beginning (CAM-03).
 #pragma once
 
 #include <cstddef>
@@ -15,21 +15,22 @@ namespace takt::cam {
 struct JointSide {
   Value value;
   bool straight = false;  // a line or a dwell
-  bool jumps = false;     // a law whose acceleration jumps by nature
+  bool jumps = false;     // a law whose acceleration jumps by its nature
 };
 
 struct Joint {
-  std::string path;  // of what stands behind it
+  std::string path;  // of the piece after the joint
   double x = 0;
   JointSide before, behind;
   bool seam = false;  // of a cyclic cam: its end and its beginning
 };
 
-// Errors: a jump of position (not at the seam, where the stroke lies between) or velocity; at the seam also of
-// acceleration, unless a law beside it has that by nature. Warnings: velocity or position where straight lines meet,
-// in one sentence; acceleration elsewhere.
+// Errors: a jump of position (not at the seam, where the stroke lies in between) or velocity; at the seam also of
+// acceleration, unless a law beside it has that by its nature. Warnings: a jump of position between straight lines; the
+// jumps of velocity between straight lines, in one sentence; other jumps of acceleration, except inside the cam beside
+// a law that has them by its nature.
 //
-// `scale`: how large position, velocity and acceleration get in the cam; a difference far below is none.
+// `scale`: the largest position, velocity and acceleration in the cam; differences far below are ignored.
 void CheckJoints(std::span<const Joint> joints, const Value& scale, std::vector<Finding>& errors,
                  std::vector<Finding>& warnings);
 

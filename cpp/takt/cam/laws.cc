@@ -36,7 +36,7 @@ Shares SharesOf(Law law, double sine_share, double cosine_share) {
   }
 }
 
-// The motion with acceleration constant + amplitude sin(frequency d + phase) from position y and velocity v on.
+// Returns the motion with acceleration constant + amplitude sin(frequency d + phase) from position y and velocity v.
 Curve Integrated(double constant, const Curve& sine, double y, double v) {
   Curve curve;
   curve.c = {y, v, constant / 2};

@@ -1,10 +1,11 @@
 // Laws of motion (CAM-02), as curves from (0, 0) to (1, 1).
 //
 // Parabola, modified trapezoid, modified sine, cycloid and harmonic are members of one family: the acceleration rises
-// along a sine over half of the share b of the way, stays over half of 1 - b - d, falls along a cosine over the share d
-// to its opposite, and returns to 0 as it came. The sine-constant-cosine combination is that family with b and d free.
+// along a sine over half of the share b of the length, is constant over half of 1 - b - d, falls along a cosine over
+// the share d to its opposite, and returns to 0 symmetrically. The sine-constant-cosine combination is that family with
+// b and d free.
 //
-// Peak factors of each: docs/cams.md.
+// Peak factors of each law: docs/cams.md.
 #pragma once
 
 #include <array>
@@ -35,24 +36,24 @@ enum class Law : std::uint8_t {
   // Between any velocities and accelerations (tasks.h).
   kPolynomial8,
   kTask,               // the law that VDI 2143 recommends for the ends
-  kLeastAcceleration,  // of several laws the one with the least peak
+  kLeastAcceleration,  // of several laws the one with the smallest peak
   kLeastJerk,
 };
 
-// A piece of a law: from `begin` to the next piece, or 1.
+// A piece of a law: from `begin` to the next piece, or to 1.
 struct LawPiece {
   double begin = 0;
   Curve curve;  // over the distance from `begin`
 };
 
-// `sine_share` (b) and `cosine_share` (d) are for the sine-constant-cosine combination, both in [0, 1], b + d <= 1. Not
-// for kDwell; kQuintic is that without velocity and acceleration at the ends.
+// `sine_share` (b) and `cosine_share` (d) are for the sine-constant-cosine combination, both in [0, 1], b + d <= 1.
+// Requires: not kDwell. kQuintic is that without velocity and acceleration at the ends.
 std::vector<LawPiece> PiecesOf(Law law, double sine_share = 0, double cosine_share = 0);
 
-// Whether its acceleration jumps at the ends when a dwell is on either side.
+// Returns true if its acceleration jumps at the ends between dwells.
 bool JumpsInAcceleration(Law law, double sine_share) noexcept;
 
-// The largest |y'|, |y''|, |y'''| on the way; the jerk is infinite where the acceleration jumps.
+// Largest |y'|, |y''|, |y'''| over the length; the jerk is infinite if the acceleration jumps.
 struct PeakFactors {
   double velocity = 0;
   double acceleration = 0;

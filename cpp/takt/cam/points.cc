@@ -11,7 +11,7 @@ namespace takt::cam {
 
 namespace {
 
-// The free numbers of a point: velocity, and acceleration with N = 2.
+// The free values of a point: velocity, and acceleration with N = 2.
 template <std::size_t N>
 using Vector = std::array<double, N>;
 template <std::size_t N>
@@ -62,15 +62,15 @@ Matrix<1> Inverse(const Matrix<1>& m) {
 }
 
 Matrix<2> Inverse(const Matrix<2>& m) {
-  // By elimination: the determinant of a stiff matrix can leave the range of numbers.
+  // By elimination: the determinant of a stiff matrix can overflow.
   const double below = m[1][0] / m[0][0];
   const double left = m[1][1] - below * m[0][1];
   const double aside = m[0][1] / m[0][0];
   return {{{1 / m[0][0] + aside * below / left, -aside / left}, {-below / left, 1 / left}}};
 }
 
-// Least integral of the square of the (N + 1)th derivative of Hermite pieces: a symmetric, positive system in which
-// each point knows its neighbours only.
+// Minimises the integral of the square of the (N + 1)th derivative of Hermite pieces: a symmetric, positive definite
+// system in which each point is coupled to its neighbours only.
 template <std::size_t N>
 class Spline {
  public:
@@ -91,8 +91,8 @@ class Spline {
   const std::vector<Vector<N>>& solution() const { return right_; }
 
  private:
-  // d^(N+1) y / du^(N+1) at u in [0, 1] of a piece of length h, as a linear form of its numbers: the step in y, then
-  // those of the first and of the second point.
+  // Returns d^(N+1) y / du^(N+1) at u in [0, 1] of a piece of length h, as a linear form: coefficients of the step in
+  // y, then of the values of the first and of the second point.
   static std::array<double, 1 + 2 * N> Form(double h, double u) {
     if constexpr (N == 1) {
       return {6 - 12 * u, (-4 + 6 * u) * h, (-2 + 6 * u) * h};
@@ -141,7 +141,7 @@ class Spline {
     next_[0] = {};
   }
 
-  // Takes a number that is given out of the system.
+  // Eliminates a given value from the system.
   void Fix(std::size_t i, std::size_t k, const std::optional<double>& value) {
     if (!value) return;
     const std::size_t n = diagonal_.size();
@@ -160,8 +160,8 @@ class Spline {
     right_[i][k] = *value;
   }
 
-  // Block elimination from the second point on; the first comes last, since it is the one with two far neighbours
-  // in a cyclic cam.
+  // Block elimination from the second point on; the first point is last, since it alone has two distant neighbours in a
+  // cyclic cam.
   void Solve() {
     const std::size_t n = diagonal_.size();
     if (n == 1) {
@@ -169,7 +169,7 @@ class Spline {
       Close();
       return;
     }
-    // far[i]: how the first point enters the equations of point i.
+    // far[i]: coefficients of the first point in the equations of point i.
     std::vector<Matrix<N>> far(n);
     far[1] = Transposed(next_[0]);
     if (cyclic_) {
@@ -203,16 +203,17 @@ class Spline {
   std::span<const CamPoint> points_;
   bool cyclic_;
   std::vector<Matrix<N>> diagonal_;
-  std::vector<Matrix<N>> next_;   // of a point with the one behind it
-  std::vector<Vector<N>> right_;  // at the end the solution
+  std::vector<Matrix<N>> next_;   // coupling of a point with the next one
+  std::vector<Vector<N>> right_;  // finally the solution
 };
 
-// Slopes at the points such that no quintic between two of them, with accelerations 0 at both, leaves their range.
+// Returns slopes at the points for which no quintic between two of them, with accelerations 0 at both, leaves their
+// range.
 //
 // With m the slope of the straight line and v, w the slopes at both ends, all of one sign, the derivative of such a
 // quintic is v (1 - S) + w S + 30 (m - (v + w) / 2) u^2 (1 - u)^2, where S rises from 0 to 1. It is linear in v and w,
-// and nowhere negative (m > 0) for v and w each 0 or 2 m; so it is not for any v and w from 0 to 2 m. Inside that the
-// slopes are the weighted harmonic means of Fritsch and Butland; 0 where the points turn.
+// and nowhere negative (m > 0) for v and w each 0 or 2 m; hence neither for any v and w from 0 to 2 m. Within this
+// range the slopes are the weighted harmonic means of Fritsch and Butland; 0 where the points reverse.
 std::vector<double> MonotoneSlopes(std::span<const CamPoint> points, bool cyclic) {
   const std::size_t n = points.size();
   const auto length = [&](std::size_t i) { return points[i + 1].x - points[i].x; };

@@ -9,11 +9,11 @@
 
 namespace takt::cam {
 
-// One curve between each two points, x growing. Quintic and cubic splines choose the velocities and accelerations that
-// are not given such that the integral of y'''² (cubic: y''²) over the cam is least: then the fourth derivative (the
-// second) does not jump where the velocity is free, the third not where the acceleration is. Free ends have the third
-// and fourth derivative (the second) 0; those of a cyclic cam go over into one another. A quintic cam that is not
-// cyclic, of two points and nothing else given, is a straight line.
+// Returns one curve between each two points, x in ascending order. Quintic and cubic splines choose the velocities and
+// accelerations that are not given so that the integral of y'''² (cubic: y''²) over the cam is least: then the fourth
+// derivative (the second) does not jump where the velocity is free, the third not where the acceleration is. Free ends
+// have the third and fourth derivative (the second) 0; in a cyclic cam they are continuous across the seam. A quintic
+// cam that is not cyclic, of two points and nothing else given, is a straight line.
 std::vector<Curve> Interpolate(std::span<const CamPoint> points, Interpolation interpolation, bool cyclic);
 
 }  // namespace takt::cam

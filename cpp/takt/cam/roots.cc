@@ -25,14 +25,15 @@ void Append(double root, Roots& roots) {
   roots.at[roots.count++] = root;
 }
 
-// What is lost to rounding when the curve is evaluated in [0, h].
+// Returns the rounding error when the curve is evaluated in [0, h].
 double RoundingOf(const Curve& curve, double h) {
   double sum = 0;
   for (std::size_t i = curve.c.size(); i-- > 0;) sum = sum * h + std::abs(curve.c[i]);
   return 4 * std::numeric_limits<double>::epsilon() * (sum + std::abs(curve.amplitude) + std::abs(curve.amplitude2));
 }
 
-// The zero between low and high, where the curve has different signs: Newton, or halving where that leads away.
+// Returns the zero between low and high, where the curve has different signs: Newton's method, or bisection if that
+// leaves the interval.
 double Between(const Curve& curve, const Curve& slope, double low, double high) {
   const bool rises = curve.At(low) < 0;
   double x = 0.5 * (low + high);
@@ -60,13 +61,14 @@ Roots OfSine(const Curve& curve, double h) {
   return roots;
 }
 
-// Of p sin(w) + q sin(2w + delta) with w = frequency d + phase: with t = tan(w/2) a polynomial of the fourth degree,
-// for each turn of w from -pi to pi. Where t is infinite the pieces meet: a zero or not, it parts the curve there.
+// Returns the zeros of p sin(w) + q sin(2w + delta) with w = frequency d + phase: with t = tan(w/2) a polynomial of the
+// fourth degree, for each turn of w from -pi to pi. Where t is infinite two turns meet: that point is included, zero or
+// not, as it separates intervals of the curve.
 Roots OfSines(const Curve& curve, double h) {
   constexpr double kPi = std::numbers::pi;
   const double p = curve.amplitude, q = curve.amplitude2, delta = curve.phase2 - 2 * curve.phase;
   const double sine = q * maths::Sin(delta), cosine = q * maths::Cos(delta);
-  // In t from -1 to 1, and in 1/t beyond.
+  // Over t from -1 to 1, and over 1/t beyond.
   const Curve inner{.c = {sine, 2 * p + 4 * cosine, -6 * sine, 2 * p - 4 * cosine, sine}};
   const Curve outer{.c = {sine, 2 * p - 4 * cosine, -6 * sine, 2 * p + 4 * cosine, sine}};
   std::array<double, kMaxRoots + 2> angles{};  // in (-pi, pi]
@@ -107,7 +109,8 @@ Roots OfSines(const Curve& curve, double h) {
 }  // namespace
 
 Roots RootsOf(const Curve& curve, double h, double rounding_before) noexcept {
-  // The curve and its derivatives, down to the one whose zeros are known; each is monotonic between those of the next.
+  // The curve and its derivatives, up to the one whose zeros are known; each is monotonic between the zeros of the
+  // next.
   std::array<Curve, kCoefficients + 1> chain;
   chain[0] = curve;
   const bool sine = (curve.amplitude != 0 || curve.amplitude2 != 0) && curve.frequency > 0;
@@ -115,7 +118,7 @@ Roots RootsOf(const Curve& curve, double h, double rounding_before) noexcept {
   for (std::size_t i = 1; i <= std::max<std::size_t>(last, 1); ++i) chain[i] = Derivative(chain[i - 1]);
   Roots roots;
   if (sine) roots = curve.amplitude2 == 0 ? OfSine(chain[last], h) : OfSines(chain[last], h);
-  // A constant goes through the loop, too.
+  // A constant passes through the loop, too.
   for (std::size_t k = std::max<std::size_t>(last, 1); k-- > 0;) {
     const double rounding = RoundingOf(chain[k], h) + (k == 0 ? rounding_before : 0);
     Roots found;

@@ -1,4 +1,4 @@
-// Where a curve is zero: exact, by way of its derivatives, never by sampling. Fit for the cycle.
+// Zeros of a curve: exact, from the zeros of its derivatives, without sampling. Fit for the cycle.
 #pragma once
 
 #include <array>
@@ -8,25 +8,25 @@
 
 namespace takt::cam {
 
-// Enough for a polynomial of the eighth degree with a whole turn of a sine and two of the other.
+// Enough for a polynomial of the eighth degree with one period of a sine and two of the other.
 inline constexpr std::size_t kMaxRoots = 16;
 
 struct Roots {
-  std::array<double, kMaxRoots> at{};  // growing
+  std::array<double, kMaxRoots> at{};  // in ascending order
   std::size_t count = 0;
 
   const double* begin() const noexcept { return at.data(); }
   const double* end() const noexcept { return at.data() + count; }
 };
 
-// The zeros in [0, h], to the last digits. One where the curve only touches zero counts, within rounding; a curve that
-// is zero all over has 0 and h. `rounding`: what the caller's numbers have lost already.
+// Returns the zeros in [0, h], accurate to rounding. A point where the curve only touches zero counts, within rounding;
+// a curve that is zero everywhere has 0 and h. `rounding`: absolute error that the caller's values already have.
 Roots RootsOf(const Curve& curve, double h, double rounding = 0) noexcept;
 
-// Where the curve can have its extremes in [0, h]: both ends, and what lies between.
+// Returns the x at which the curve can have its extremes in [0, h]: both ends, and the zeros of the derivative.
 Roots ExtremePlaces(const Curve& curve, double h) noexcept;
 
-// Of |curve| in [0, h].
+// Returns the largest |curve| in [0, h].
 double LargestMagnitude(const Curve& curve, double h) noexcept;
 
 }  // namespace takt::cam

@@ -6,7 +6,7 @@ namespace takt::cam {
 
 namespace {
 
-// Velocity and acceleration that a segment has at an end; empty: free.
+// Velocity and acceleration of a segment at one end; unset: free.
 struct End {
   std::optional<double> v, a;
 };
@@ -20,7 +20,7 @@ Task TaskOf(const CamSegment& s) {
           .cosine_share = s.cosine_share};
 }
 
-// From rest to rest, with the inflection in the middle, laws are those of the textbooks.
+// From rest to rest, with the inflection in the middle, laws are those of the textbooks, and not tasks.
 bool IsTask(const CamSegment& s) {
   if (s.law == Law::kQuintic || s.law == Law::kPolynomial8) return true;
   const Task task = TaskOf(s);

@@ -9,15 +9,14 @@
 
 namespace takt::cam {
 
-// Segments with their beginnings and the velocities and accelerations at their ends filled in, and with the law that
-// they are made with.
+// Returns the segments with their beginnings, the velocities and accelerations at their ends, and their law filled in.
 std::vector<CamSegment> Completed(std::span<const CamSegment> segments, bool cyclic);
 
 struct SegmentPiece {
-  double begin = 0;  // x
-  Curve curve;       // over the distance from there
+  double begin = 0;  // [x]
+  Curve curve;       // over the distance from `begin`
 };
-// Of a completed segment.
+// Returns the pieces of a completed segment.
 std::vector<SegmentPiece> PiecesOf(const CamSegment& segment);
 
 }  // namespace takt::cam

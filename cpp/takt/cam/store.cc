@@ -30,7 +30,7 @@ void Finish(const Context& c, Ticket ticket) {
   Report(c, ticket, FeedbackState::kDone);
 }
 
-// The draft of this name that can still be changed.
+// Returns the draft of this name that can still be changed.
 std::optional<std::size_t> FindDraft(const Store& store, const Name& name) {
   for (std::size_t i = 0; i < kDrafts; ++i) {
     const Draft& draft = store.state.drafts[i];
@@ -45,7 +45,7 @@ void Clear(Store& store, std::size_t i) {
   store.drafts[i].segments.clear();
 }
 
-// The draft of this name, else a free one, else the oldest that is not being built.
+// Returns the draft of this name, else a free one, else the oldest that is not being built.
 std::optional<std::size_t> Choose(const Store& store, const Name& name) {
   if (const auto same = FindDraft(store, name)) return same;
   std::optional<std::size_t> oldest;
@@ -70,7 +70,7 @@ struct Kind<CamSegment> {
   static constexpr MakingProblem kTooMany = MakingProblem::kTooManySegments;
 };
 
-// The code of what is wrong; 0: nothing.
+// Returns the code of the problem; 0 if there is none.
 template <typename T, typename Other>
 double MayAdd(std::span<const T> more, std::optional<std::uint32_t> first, const std::vector<T>& list,
               const std::vector<Other>& others) {
@@ -110,7 +110,7 @@ std::optional<std::size_t> FreeIndex(const Context& c) {
   return std::nullopt;
 }
 
-// One for each cam that is being built, and one more.
+// Returns true if there is a free index for each cam that is being built, and one more.
 bool HasRoom(const Context& c) {
   std::size_t free = 0;
   for (std::size_t i = c.store.of_machine; i < c.store.tables.size(); ++i) free += IsFree(c, i) ? 1 : 0;
@@ -118,13 +118,13 @@ bool HasRoom(const Context& c) {
   return free > static_cast<std::size_t>(building);
 }
 
-// The cam made at run time that this name stands for.
+// Returns the index of the cam made at run time that this name refers to.
 std::optional<std::size_t> FindMade(const Store& store, std::string_view name) {
   const std::optional<std::uint32_t> index = Find(store.tables, name);
   return index && *index >= store.of_machine ? std::optional<std::size_t>(*index) : std::nullopt;
 }
 
-// The table built for this draft; tables of other drafts are retired.
+// Returns the table built for this draft; tables of other drafts are retired.
 Table* Fetch(BuildQueues& queues, std::uint64_t number) {
   for (BuiltTable built; queues.built.TryPop(built);) {
     if (built.number == number) return built.table;
@@ -133,10 +133,10 @@ Table* Fetch(BuildQueues& queues, std::uint64_t number) {
   return nullptr;
 }
 
-// Takes the table on under a free index, whose earlier table is retired.
+// Adds the table under a free index, whose earlier table is retired.
 void TakeOn(const Context& c, std::uint64_t number, Table* table) {
   Store& store = c.store;
-  const std::size_t index = FreeIndex(c).value_or(store.tables.size() - 1);  // HasRoom has seen to it
+  const std::size_t index = FreeIndex(c).value_or(store.tables.size() - 1);  // HasRoom has reserved one
   if (const auto earlier = FindMade(store, table->name())) store.tables[*earlier].Supersede();
   table->SetNumber(store.of_machine + number);
   std::swap(store.tables[index], *table);
@@ -218,7 +218,7 @@ void Apply(const Context& c, Ticket ticket, const ReadCam& command) noexcept {
                                                : !table.superseded() && table.name() == command.cam.view());
   });
   if (found == tables.end()) return Refuse(c, ticket, MakingProblem::kUnknown);
-  // A name may stand for a cam of the machine file and for one that hides it.
+  // A name may refer to a cam of the machine file and to one that hides it.
   const Table& table = command.number ? *found : tables[*Find(tables, command.cam.view())];
   const CamParams& source = table.source();
   const std::size_t total = source.points.size() + source.segments.size();  // one of them is empty

@@ -1,9 +1,9 @@
-// All cams of a machine: those of its file, and behind them those made at run time (CAM-88). Axes and modules refer to
-// a cam by its index, which never changes while they use it. Nothing here allocates, locks, throws or reads a clock,
-// except the construction.
+// All cams of a machine: first those of its file, then those made at run time (CAM-88). Axes and modules refer to a cam
+// by its index, which never changes while they use it. Nothing here allocates, locks, throws or reads a clock, except
+// the construction.
 //
-// A table is immutable: a new cam of the same name takes a free index, and the earlier one is superseded, which means
-// that it is no longer found by its name. Its index is free again when no axis and no module refers to it.
+// A table is immutable: a new cam of the same name gets a free index, and the earlier one is superseded, i.e. no longer
+// found by its name. Its index is free again when no axis and no module refers to it.
 #pragma once
 
 #include <array>
@@ -22,14 +22,14 @@
 
 namespace takt::cam {
 
-// Cams made at run time that exist at a time, superseded ones in use included.
+// Maximum number of cams made at run time, including superseded ones in use.
 inline constexpr std::size_t kMadeCams = 64;
 
 struct Draft {
-  std::uint64_t number = 0;  // 0: free
+  std::uint64_t number = 0;  // 0: unused
   Name name;
   Ticket ticket = 0;        // of BuildCam
-  std::uint32_t count = 0;  // points or segments
+  std::uint32_t count = 0;  // number of points or segments
   bool broken = false;      // a piece was refused
   bool building = false;
 };
@@ -50,19 +50,19 @@ struct Store {
   StoreState state;
   std::array<CamParams, kDrafts> drafts;  // of the state, with capacity for all points and segments
   BuildQueues queues;
-  SpscQueue<CamPiece> pieces{64};  // that were read; what does not fit is lost, and read again
+  SpscQueue<CamPiece> pieces{64};  // that were read; what does not fit is lost, and must be read again
 };
 
 struct Context {
   Store& store;
   std::uint64_t cycle;
   FeedbackSink& feedback;
-  // Whether an axis or a module refers to this index.
+  // Returns true if an axis or a module refers to this index.
   bool (*in_use)(const void* owner, std::uint32_t index) noexcept;
   const void* owner;
 };
 
-// command: carries it out or refuses it.
+// Stage Apply: carries the command out or refuses it.
 void Apply(const Context& c, Ticket ticket, const BeginCam& command) noexcept;
 void Apply(const Context& c, Ticket ticket, const AddCamPoints& command) noexcept;
 void Apply(const Context& c, Ticket ticket, const AddCamSegments& command) noexcept;

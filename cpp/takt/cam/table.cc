@@ -61,7 +61,7 @@ Table::Table(CamParams source, std::span<const double> begins, std::span<const C
 std::size_t Table::PieceAt(double x) const noexcept {
   if (!(x > begin_)) return 0;
   if (x >= end_) return pieces_.size() - 1;
-  // BucketOf never falls, so that pieces of earlier buckets begin before x and those of later ones behind it.
+  // BucketOf is monotonic: pieces of earlier buckets begin before x, those of later ones after it.
   const std::size_t bucket = BucketOf(x);
   std::size_t low = std::max<std::size_t>(before_[bucket], 1) - 1;
   std::size_t high = before_[bucket + 1] - 1;

@@ -1,4 +1,4 @@
-// A cam, ready to be looked up: immutable, swapped as a whole (CAM-05). Made by Build (build.h).
+// A cam for evaluation: immutable, replaced as a whole (CAM-05). Made by Build (build.h).
 #pragma once
 
 #include <cstddef>
@@ -16,33 +16,33 @@ namespace takt::cam {
 
 class Table {
  public:
-  // A place for a table: size() is 0, and no other query is allowed.
+  // An unused entry: size() is 0, and no other query is allowed.
   Table() = default;
-  // The pieces, `begins` growing, the last one up to `end`. Numbers must be finite; Build sees to it. The last y is
-  // that of the source, without rounding, so that the stroke adds up to no drift (CAM-21).
+  // Requires: `begins` in ascending order, the last piece up to `end`; finite numbers (Build checks them). The last y
+  // is that of the source, without rounding, so that the stroke does not accumulate a drift (CAM-21).
   Table(CamParams source, std::span<const double> begins, std::span<const Curve> curves, double end);
 
   const std::string& name() const noexcept { return source_.name; }
-  // As it was written down, points of a file included (CAM-71).
+  // The description from which it was built, points of a file included (CAM-71).
   const CamParams& source() const noexcept { return source_; }
   bool cyclic() const noexcept { return source_.cyclic; }
   // Unique in a machine: from 1 in the order of its file, then in the order in which cams are made at run time.
   std::uint64_t number() const noexcept { return number_; }
   void SetNumber(std::uint64_t number) noexcept { number_ = number; }
-  // Its name stands for another table, or for none; axes and modules that refer to it continue.
+  // Its name refers to another table, or to none; axes and modules that refer to it continue.
   bool superseded() const noexcept { return superseded_; }
   void Supersede() noexcept { superseded_ = true; }
 
-  double begin() const noexcept { return begin_; }               // x, master's unit
-  double end() const noexcept { return end_; }                   // x
-  double length() const noexcept { return end_ - begin_; }       // of a cycle, master's unit
-  double lowest() const noexcept { return lowest_; }             // y
-  double highest() const noexcept { return highest_; }           // y
-  double stroke() const noexcept { return last_.y - first_.y; }  // slave's unit, At(end()).y - At(begin()).y
+  double begin() const noexcept { return begin_; }               // [x]
+  double end() const noexcept { return end_; }                   // [x]
+  double length() const noexcept { return end_ - begin_; }       // [x] of a cycle
+  double lowest() const noexcept { return lowest_; }             // [y]
+  double highest() const noexcept { return highest_; }           // [y]
+  double stroke() const noexcept { return last_.y - first_.y; }  // [y] At(end()).y - At(begin()).y
 
-  // O(1): what it costs does not depend on the number of points, as long as they do not crowd together (CAM-04). No
-  // allocation. At a joint: the piece behind it; at the end: the last piece. Outside the cam: as at the near end,
-  // derivatives too (whoever holds the last position there must say so himself); NaN: as at begin().
+  // O(1): the cost does not depend on the number of points, unless they are clustered (CAM-04). Does not allocate. At a
+  // joint: the piece after it; at the end: the last piece. Outside the cam: the value at the near end, derivatives
+  // included (a caller that holds the end position must set them to 0); NaN: the value at begin().
   Value At(double x) const noexcept;
 
   // The pieces.
@@ -55,13 +55,13 @@ class Table {
  private:
   static constexpr std::uint32_t kPlain = 0xffffffff;
 
-  // One line of the processor's cache.
+  // One cache line.
   struct alignas(64) Piece {
     double x = 0;
     double c[6] = {};
     std::uint32_t more = kPlain;  // index into more_
   };
-  // What few laws need.
+  // Coefficients that only a few laws need.
   struct More {
     bool polynomial = false;  // of a degree above 5
     double c6 = 0, c7 = 0, c8 = 0;
@@ -78,15 +78,15 @@ class Table {
   double buckets_per_x_ = 0;
   Value first_, last_;
   std::vector<Piece> pieces_;
-  std::vector<std::uint32_t> before_;  // for each bucket: how many pieces begin in buckets before it
+  std::vector<std::uint32_t> before_;  // for each bucket: number of pieces that begin in buckets before it
   std::vector<More> more_;
   CamParams source_;
   std::uint64_t number_ = 0;
   bool superseded_ = false;
 };
 
-// Index of the table that a name stands for; nothing: there is none. The last one of several: a cam made at run time
-// hides one of the machine file.
+// Returns the index of the table that a name refers to; nothing if there is none. The last one of several: a cam made
+// at run time hides one of the machine file.
 std::optional<std::uint32_t> Find(std::span<const Table> tables, std::string_view name) noexcept;
 
 }  // namespace takt::cam

@@ -14,15 +14,15 @@ namespace {
 
 constexpr double kHalfTurn = std::numbers::pi;
 
-// A stretch of constant, linear and sine acceleration.
+// An interval of constant, linear and sine acceleration.
 struct Zone {
   double length = 0;
-  double pulse = 0;  // share of the pulse that is constant here ...
-  Curve sine{};      // ... or a sine
+  double pulse = 0;  // constant part of the pulse ...
+  Curve sine{};      // ... or its sine
   bool behind = false;
 };
 
-// Of the pulse over a width of 1: it rises along a sine over the share b, stays, falls along a cosine over d.
+// Returns the zones of the pulse: it rises along a sine over the share b, is constant, falls along a cosine over d.
 std::vector<Zone> ZonesOf(double inflection, double length, double b, double d) {
   const double c = std::max(0.0, 1 - b - d);
   const auto sine = [](double frequency, double phase) {
@@ -42,7 +42,7 @@ std::vector<Zone> ZonesOf(double inflection, double length, double b, double d) 
   return zones;
 }
 
-// The motion through all zones with these heights of the two pulses.
+// Returns the motion through all zones with these heights of the two pulses.
 std::vector<LawPiece> Integrated(const std::vector<Zone>& zones, const Task& task, const Value& begin, double end_ddy,
                                  const std::array<double, 2>& heights, Value& end) {
   const double first = task.inflection * task.length, second = task.length - first;
@@ -83,7 +83,7 @@ std::vector<LawPiece> WithPulses(const Task& task, double b, double d) {
   return Integrated(zones, task, task.begin, task.end.ddy, heights, end);
 }
 
-// Degree 7: position, velocity and acceleration at both ends, jerk 0 there.
+// Returns the polynomial of degree 7: position, velocity and acceleration at both ends, jerk 0 there.
 Curve Septic(const Task& task) {
   const double h = task.length;
   const Value& begin = task.begin;
@@ -95,7 +95,8 @@ Curve Septic(const Task& task) {
   return unit;
 }
 
-// Degree 8: what vanishes at both ends up to the jerk, u^4 (1 - u)^4, takes the acceleration at the inflection to 0.
+// Returns the polynomial of degree 8: u^4 (1 - u)^4, which vanishes at both ends up to the jerk, makes the acceleration
+// at the inflection 0.
 Curve Octic(const Task& task) {
   Curve unit = Septic(task);
   const Curve vanishing{.c = {0, 0, 0, 0, 1, -4, 6, -4, 1}};

@@ -5,10 +5,10 @@
 // degree 8 also acceleration 0 at the inflection.
 //
 // Laws with sines (modified sine, modified trapezoid, cycloid, sine-constant-cosine): their acceleration is a pulse
-// before the inflection and the mirrored pulse behind it, each of its own height, plus the accelerations at the ends,
-// which fall along straight lines to 0 at the inflection. The two heights follow from the velocity and the position at
-// the end, two linear equations. From rest to rest with the inflection in the middle that is the law of the textbooks.
-// Ours; the inflection makes it asymmetric.
+// before the inflection and the mirrored pulse after it, each with its own height, plus the accelerations at the ends,
+// which fall linearly to 0 at the inflection. The two heights follow from the velocity and the position at the end, two
+// linear equations. From rest to rest with the inflection in the middle this is the law of the textbooks. Ours; the
+// inflection makes it asymmetric.
 #pragma once
 
 #include <vector>
@@ -19,20 +19,21 @@
 namespace takt::cam {
 
 struct Task {
-  double length = 0;  // x
+  double length = 0;  // [x]
   Value begin, end;   // y, dy, ddy
   double inflection = 0.5;
   double sine_share = 0.25;  // sine-constant-cosine combination only
   double cosine_share = 0.5;
 };
 
-// Whether the law connects any velocities and accelerations.
+// Returns true if the law connects any velocities and accelerations.
 bool ConnectsAny(Law law) noexcept;
-// Whether it takes velocities and accelerations that are not given from the neighbours.
+// Returns true if it takes velocities and accelerations that are not given from the neighbours.
 bool HasFreeEnds(Law law) noexcept;
-// The law that a segment is made with: itself, or what it stands for (task, least_acceleration, least_jerk).
+// Returns the law that a segment is made with: itself, or the one that it selects (task, least_acceleration,
+// least_jerk).
 Law Resolved(Law law, const Task& task);
-// Pieces over the distance from the beginning. Requires: ConnectsAny(law), and Resolved.
+// Returns the pieces over the distance from the beginning. Requires: ConnectsAny(law), and a law from Resolved.
 std::vector<LawPiece> PiecesOf(Law law, const Task& task);
 
 }  // namespace takt::cam

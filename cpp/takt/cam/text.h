@@ -1,4 +1,4 @@
-// Numbers in sentences.
+// Numbers in messages.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace takt::cam {
 
-// As people write it: without ".0" behind a whole number; NaN and infinity, too.
+// Returns the number as users write it: without ".0" after a whole number; also NaN and infinity.
 inline std::string Text(double value) {
   if (!std::isfinite(value)) return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
   std::string text = FormatReal(value);

@@ -1,4 +1,4 @@
-// Commands as they arrive: objects come, are located, taken and deleted.
+// Commands to a belt: objects are detected, located, taken and deleted.
 #include "takt/conveyor/belt.h"
 #include "takt/core/describe.h"
 #include "takt/core/in_range.h"

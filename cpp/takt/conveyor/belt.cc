@@ -7,7 +7,7 @@ namespace takt::conveyor {
 
 namespace {
 
-// Of the axis, over all turns, in the belt's unit.
+// Returns the state of the axis, over all turns, in the belt's unit.
 KinematicState OfAxis(const Context& c) {
   const KinematicState& x = IsMeasured(c.params) ? c.axis.actual : c.axis.setpoint;
   const double ratio = c.params.ratio;
@@ -23,7 +23,7 @@ KinematicState Travelled(const Context& c, State& s) {
   const double period = c.cycle.period_s;
   const bool lost = IsMeasured(c.params) ? !axis::IsKnown(c.axis, c.params.source) : c.axis.encoder_error;
   if (lost && s.started) {
-    s.filter.running = false;  // what comes then may be anywhere
+    s.filter.running = false;  // the position may jump when it is known again
     return {s.travel.position + period * s.travel.velocity, s.travel.velocity, 0};
   }
   s.started = true;
@@ -37,7 +37,7 @@ KinematicState Travelled(const Context& c, State& s) {
           x.velocity + dead_time * x.acceleration, x.acceleration};
 }
 
-// What has left the range, or waits for its pose for too long.
+// Returns true if the object has left the range, or has waited for its pose for too long.
 bool IsGone(const BeltParams& p, const State& s, const Object& object) {
   switch (object.state) {
     case ObjectState::kDetected:
@@ -65,7 +65,7 @@ double TravelAt(const Context& c, const State& s, double position) noexcept {
   double there = position + c.axis.origin;
   if (const double turn = c.axis_params.turn(); turn > 0) {
     const double now = s.travel.position / ratio;
-    // What the belt has come further than it is known yet is no turn ago.
+    // The delay of the filtered travel must not count as a whole turn.
     const double ahead_s = Filter(c).filter_s + c.params.dead_time_s + 2 * c.cycle.period_s;
     const double slack = std::abs(s.travel.velocity / ratio) * ahead_s + 1e-9 * turn;
     const bool upwards = (s.sense > 0) == (ratio > 0);

@@ -13,7 +13,7 @@
 
 namespace takt::conveyor {
 
-// What every stage gets besides the belt itself.
+// The context of every stage.
 struct Context {
   const BeltParams& params;
   const axis::State& axis;
@@ -22,14 +22,14 @@ struct Context {
   FeedbackSink& feedback;
 };
 
-// command: carries it out or refuses it; reports either way. "Now" is the end of the cycle before.
+// Stage Apply: carries the command out or refuses it, and reports either. "Now" is the end of the previous cycle.
 void Apply(const Context& c, Ticket ticket, const Command& command, State& s) noexcept;
 
-// move: behind the axis if its set position counts, before all axes if the measured one does; before whoever rides on
-// the belt. Objects that have left the range are deleted.
+// Stage Move: after the axis if its set position is used, before all axes if the measured one is; before the groups
+// that ride on the belt. Objects that have left the range are deleted.
 void Step(const Context& c, State& s) noexcept;
 
-// The belt's travel when its axis shows this position [u]; of an axis with a modulus: the last time it did.
+// Returns the belt's travel at which its axis shows this position [u]; of an axis with a modulus: the most recent one.
 double TravelAt(const Context& c, const State& s, double position) noexcept;
 
 void Publish(const Context& c, const State& s, Outputs& out) noexcept;

@@ -1,4 +1,4 @@
-// What people and cameras tell a belt.
+// Commands to a belt, from users and cameras.
 #pragma once
 
 #include <cstdint>
@@ -9,38 +9,38 @@
 
 namespace takt::conveyor {
 
-// An object is there now (a photo sensor, the trigger of a camera), or was there. Its number is the command's value.
-// With any of x to c it is visible at once.
+// Adds an object that is there now (a photo sensor, the trigger of a camera), or was there. The value of the feedback
+// is its number. With any of x to c it is visible at once.
 struct Detect {
-  std::optional<double> recorded_position{};    // u of the axis, as a touch probe has it; unset: now
-  std::optional<std::uint32_t> latched_with{};  // together with that object: several on one picture
-  std::optional<double> x{}, y{}, z{};          // mm, as it lay then, from the belt's origin; the others are 0
-  std::optional<double> a{}, b{}, c{};          // deg
+  std::optional<double> recorded_position{};    // [u] of the axis, as latched by a touch probe; unset: now
+  std::optional<std::uint32_t> latched_with{};  // at the same time as that object: several in one image
+  std::optional<double> x{}, y{}, z{};          // [mm] at that time, relative to the belt's origin; unset ones are 0
+  std::optional<double> a{}, b{}, c{};          // [deg]
   std::uint32_t kind = 0;                       // attributes
   std::uint32_t colour = 0;
   double quality = 1;
 };
 
-// Where an object lay when it was detected, told later: what the belt has travelled in between is made good.
+// Gives the pose of an object at the time of its detection; the travel of the belt since then is compensated.
 struct Locate {
-  std::optional<std::uint32_t> number{};  // unset: of those without a pose the one detected first
-  double x = 0, y = 0, z = 0;             // mm, from the belt's origin
-  double a = 0, b = 0, c = 0;             // deg
-  std::optional<std::uint32_t> kind{};    // attributes; unset: as they were
+  std::optional<std::uint32_t> number{};  // unset: the first detected object that has no pose yet
+  double x = 0, y = 0, z = 0;             // [mm] relative to the belt's origin
+  double a = 0, b = 0, c = 0;             // [deg]
+  std::optional<std::uint32_t> kind{};    // attributes; unset: unchanged
   std::optional<std::uint32_t> colour{};
   std::optional<double> quality{};
 };
 
-struct TakeObject {  // it is visible, and nobody else may take it from now on
+struct TakeObject {  // reserves a visible object for the caller
   std::uint32_t number = 0;
 };
-struct GiveBackObject {  // others may take it again
+struct GiveBackObject {  // makes a taken object available again
   std::uint32_t number = 0;
 };
-struct RemoveObject {  // it is deleted
+struct RemoveObject {  // deletes an object
   std::uint32_t number = 0;
 };
-struct ClearObjects {  // all are deleted; lost ones they are not
+struct ClearObjects {  // deletes all objects, without counting them as lost
 };
 
 using Command = std::variant<Detect, Locate, TakeObject, GiveBackObject, RemoveObject, ClearObjects>;

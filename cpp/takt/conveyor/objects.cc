@@ -14,9 +14,9 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// On a table, from -180 to 180 if that is within the range, or if there is no upper limit; else, if the object lies
-// less than half a turn before the lower limit, there, even if a later turn is within the range; else in the last turn
-// that does not lie beyond the upper limit: the object reaches the range within a turn of positive travel.
+// On a table, from -180 to 180 if that is within the range, or if there is no upper limit; otherwise, if the object is
+// less than half a turn before the lower limit, at that angle, even if a later turn is within the range; otherwise in
+// the last turn that is not beyond the upper limit: the object reaches the range within a turn of positive travel.
 double InitialPlace(const BeltParams& p, const Object& object) {
   if (p.kind != BeltKind::kTurning) return object.pose.x;
   const double angle = maths::Atan2(object.pose.y, object.pose.x) / kDegree;

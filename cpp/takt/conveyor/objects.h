@@ -1,4 +1,4 @@
-// What lies on a belt: who looks for workpieces finds, takes and deletes them here. All of it is fit for the cycle.
+// The objects on a belt: users of workpieces find, take and delete them here. All functions are fit for the cycle.
 #pragma once
 
 #include <cstdint>
@@ -11,55 +11,56 @@
 
 namespace takt::conveyor {
 
-// A length of the belt as its carrier has it: mm, or rad.
+// Returns a length of the belt in the unit of its carrier: [mm], or [rad].
 double InCarrier(const BeltParams& params, double length) noexcept;
-// The belt as something that carries, as it is in this cycle.
+// Returns the belt as a carrier in this cycle.
 kinematics::Carrier CarrierOf(const BeltParams& params, const KinematicState& travel) noexcept;
 
-// All that lie on it, in the order of their numbers, those that are not visible yet, too.
+// Returns all objects in the order of their numbers, including those that are not visible yet.
 std::span<const Object> ObjectsOf(const State& state) noexcept;
-// Null: there is none of that number.
+// Return null if there is no object of that number.
 const Object* Find(const State& state, std::uint32_t number) noexcept;
 Object* Find(State& state, std::uint32_t number) noexcept;
 
-// Where an object is along the belt now, mm from the origin. On a table: the angle at which it lies, deg; it counts on
-// from turn to turn, so that each object passes the range once. Of no meaning before the object is visible.
+// Returns the present position of an object along the belt, [mm] from the origin. On a table: its angle [deg], which
+// counts on from turn to turn, so that each object passes the range once. Not valid before the object is visible.
 double PlaceOf(const BeltParams& params, const State& state, const Object& object) noexcept;
-// The object's pose with velocity and acceleration, in the world.
+// Returns the object's pose with velocity and acceleration, in the world.
 kinematics::MovingFrame PoseOf(const BeltParams& params, const State& state, const Object& object) noexcept;
 
-// The same for people, as it is published; nan before the object is visible.
+// Position and pose as they are published; nan before the object is visible.
 struct Seen {
-  double place = 0;       // mm or deg
+  double place = 0;       // [mm] or [deg]
   kinematics::Pose pose;  // in the world
   bool in_range = false;
 };
 Seen See(const BeltParams& params, const State& state, const Object& object) noexcept;
 
-// Whether this place is within the work range; limits belong to it.
+// Returns true if this position is within the work range, limits included.
 bool IsWithin(const BeltParams& params, double place) noexcept;
-// It is visible (or taken) and lies within the work range.
+// Returns true if the object is visible (or taken) and within the work range.
 bool InRange(const BeltParams& params, const State& state, const Object& object) noexcept;
-// InRange and not taken.
+// Returns true if the object is InRange and not taken.
 bool IsFree(const BeltParams& params, const State& state, const Object& object) noexcept;
-// Returns the object not taken that leaves the range first, by the direction of the belt's last motion; null: none.
+// Returns the free object that leaves the range first, by the direction of the belt's last motion; null if there is
+// none.
 const Object* FirstFree(const BeltParams& params, const State& state) noexcept;
 
-// s until the object is at place x if the belt goes on as fast as now; 0: it is there. NaN: never.
+// Returns the time [s] until the object is at position x, at the present belt speed; 0: it is there. NaN: never.
 double TimeTo(const BeltParams& params, const State& state, const Object& object, double x) noexcept;
-// Where it is a time later, likewise.
+// Returns its position after a time, at the present belt speed.
 double PlaceIn(const BeltParams& params, const State& state, const Object& object, double time_s) noexcept;
-// s until it leaves the work range, likewise. Infinite: the belt stands, or there is no limit on its way; 0: it is
-// outside already.
+// Returns the time [s] until it leaves the work range, at the present belt speed. Infinite: the belt is at rest, or has
+// no limit in this direction; 0: it is outside the range.
 double TimeLeft(const BeltParams& params, const State& state, const Object& object) noexcept;
 
-// A visible one becomes somebody's. kNoWorkpiece: there is none of that number that is visible and not taken.
+// Takes a visible object. kNoWorkpiece: no object of that number is visible and not taken.
 Status Take(std::uint32_t number, State& state) noexcept;
-// And anybody's again. kNoWorkpiece: it is not taken.
+// Makes a taken object available again. kNoWorkpiece: it is not taken.
 Status GiveBack(std::uint32_t number, State& state) noexcept;
-// Whatever its state. kNoWorkpiece: there is none.
+// Deletes an object in any state. kNoWorkpiece: no such object.
 Status Remove(std::uint32_t number, State& state) noexcept;
-// The same, and it counts as lost.
+// The same, and counts it as lost.
 Status Lose(std::uint32_t number, State& state) noexcept;
 
 }  // namespace takt::conveyor

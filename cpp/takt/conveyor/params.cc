@@ -9,22 +9,23 @@ namespace takt::conveyor {
 
 namespace {
 
-constexpr double kMeasuredFilter = 0.005;  // s
-constexpr double kShaking = 300;           // mm/s² or deg/s², that steps of an encoder may amount to
-constexpr double kBand = 0.6;              // steps by which estimates differ while the speed is kept
-constexpr double kFaster = 5;              // of the fast estimate
-constexpr double kOfDeadTime = 0.4;        // no shorter: it is taken forward by that
+constexpr double kMeasuredFilter = 0.005;  // [s]
+constexpr double kShaking = 300;           // [mm/s²] or [deg/s²], largest acceleration that encoder steps may cause
+constexpr double kBand = 0.6;              // in steps: largest difference of the estimates at constant velocity
+constexpr double kFaster = 5;              // ratio of the time constants
+// lower bound of the fast time constant, as the dead time is extrapolated with it
+constexpr double kOfDeadTime = 0.4;
 
 }  // namespace
 
 trajectory::TrackingFilter FilterOf(const BeltParams& params, double step, double period_s) noexcept {
-  // Measured is where the axis was when the cycle began.
+  // A measured position is that at the begin of the cycle.
   const double dead_time_s = params.dead_time_s + (IsMeasured(params) ? period_s : 0);
   if (params.filter_s || !IsMeasured(params) || !(step > 0)) {
     const double filter_s = params.filter_s.value_or(IsMeasured(params) ? kMeasuredFilter : 0);
     return {.filter_s = filter_s, .dead_time_s = dead_time_s};
   }
-  // Steps make accelerations of up to 7 step / f² (trajectory::Track).
+  // Steps cause accelerations of up to 7 step / f² (trajectory::Track).
   const double filter_s = std::max(kMeasuredFilter, std::sqrt(7 * step / kShaking));
   return {.filter_s = filter_s,
           .fast_filter_s = std::max(filter_s / kFaster, kOfDeadTime * dead_time_s),

@@ -1,5 +1,5 @@
-// What a machine file says about one belt: something with an axis that carries workpieces through the cell. A table
-// that turns is a belt, too.
+// Parameters of one belt from the machine file: an axis that carries workpieces through the cell. A rotary table is a
+// belt, too.
 #pragma once
 
 #include <cstdint>
@@ -18,28 +18,30 @@ enum class BeltKind : std::uint8_t {
   kTurning,   // about Z of its origin
 };
 
-// Lengths of a belt are mm along X of its origin; those of a table are deg about Z of it.
+// Lengths of a belt are [mm] along X of its origin; those of a table are [deg] about Z of it.
 struct BeltParams {
   std::string name;
   BeltKind kind = BeltKind::kStraight;
-  std::string axis;                                           // name of the axis; one with an encoder alone will do
-  axis::MasterSource source = axis::MasterSource::kSetValue;  // which position of it counts
-  double ratio = 1;                                           // mm or deg per u of the axis; < 0: against it
-  kinematics::Pose origin;  // in the world; X is the direction of travel; of a table: the axis is its Z
-  // The work range, seen from the origin; unset: none.
-  std::optional<double> lower_limit{};  // mm or deg
-  std::optional<double> upper_limit{};  // mm or deg; objects beyond it are lost
-  // s; unset: measured positions as their steps need, and fast where the speed changes; set positions 0, which is no
-  // filter. Measured positions always are filtered.
+  std::string axis;                                           // name of the axis; an axis with only an encoder suffices
+  axis::MasterSource source = axis::MasterSource::kSetValue;  // which position of the axis is used
+  // [mm] or [deg] per u of the axis; < 0: opposite direction
+  double ratio = 1;
+  kinematics::Pose origin;  // in the world; X is the direction of travel; of a table: Z is its axis
+  // The work range, relative to the origin; unset: no limit.
+  std::optional<double> lower_limit{};  // [mm] or [deg]
+  std::optional<double> upper_limit{};  // [mm] or [deg]; objects beyond it are lost
+  // [s]; unset: measured positions as their resolution requires, and faster while the velocity changes; set positions 0
+  // (no filter). Measured positions are always filtered.
   std::optional<double> filter_s{};
-  double dead_time_s = 0;                // s that what is measured is older than the cycle in which it comes
-  std::optional<double> forget_after{};  // mm or deg of travel without a pose after a latch; unset: never
+  // [s] age of the axis' position that is compensated, in addition to the regular cycle
+  double dead_time_s = 0;
+  std::optional<double> forget_after{};  // [mm] or [deg] of travel without a pose after the detection; unset: never
 };
 
 inline bool IsMeasured(const BeltParams& params) noexcept {
   return params.source == axis::MasterSource::kActualValue;
 }
-// For a position that is measured in steps of so many mm or deg (0: not known).
+// Returns the filter for a position that is measured in steps of this size [mm] or [deg] (0: not known).
 trajectory::TrackingFilter FilterOf(const BeltParams& params, double step, double period_s) noexcept;
 
 void describe(Enumeration<BeltKind>&);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Range kSpeeds = between(-1e9, 1e9);
 
-// s, at the end of this cycle.
+// Returns the age [s] at the end of this cycle.
 double AgeOf(const Cycle& cycle, const PoseState& s) {
   return s.last.age_s + static_cast<double>(cycle.count + 1 - s.cycle) * cycle.period_s;
 }

@@ -1,4 +1,4 @@
-// All memory of a belt: plain, so that it can be copied, compared, hashed and replayed.
+// The state of a belt: plain data, so that it can be copied, compared, hashed and replayed.
 #pragma once
 
 #include <array>
@@ -12,15 +12,15 @@
 
 namespace takt::conveyor {
 
-inline constexpr std::size_t kObjects = 30;  // a belt holds at most
+inline constexpr std::size_t kObjects = 30;  // maximum number of objects on a belt
 
 enum class ObjectState : std::uint8_t {
-  kDetected,  // it was latched; where it lies is not known yet
-  kVisible,   // it is known where it lies
-  kTaken,     // and somebody is to fetch it: nobody else may, and it is not lost
+  kDetected,  // detected; its pose is not known yet
+  kVisible,   // its pose is known
+  kTaken,     // reserved: it cannot be taken again, and is not lost
 };
 
-// What people know of an object, from its detection to where it is put. The numbers are theirs.
+// User data of an object, from its detection until it is placed. The meaning of the numbers is up to the user.
 struct Attributes {
   std::uint32_t kind = 0;
   std::uint32_t colour = 0;
@@ -30,16 +30,16 @@ struct Attributes {
 };
 
 struct Object {
-  std::uint32_t number = 0;  // from 1 in the order of their detection, never used again; 0: none
+  std::uint32_t number = 0;  // from 1 in the order of detection, never reused; 0: none
   ObjectState state = ObjectState::kDetected;
-  double latch = 0;       // mm or deg: the belt's travel when it was detected
-  kinematics::Pose pose;  // as it lay then, seen from the belt's origin
+  double latch = 0;       // [mm] or [deg] the belt's travel when it was detected
+  kinematics::Pose pose;  // at that time, relative to the belt's origin
   Attributes attributes;
 
   bool operator==(const Object&) const = default;
 };
 
-// What the belt has lost.
+// An object that the belt has lost.
 struct LostObject {
   std::uint32_t number = 0;
   Attributes attributes;
@@ -48,18 +48,18 @@ struct LostObject {
 };
 
 struct State {
-  // mm or deg from the origin's own place, over all turns: at the instant for which the axes get their set points.
+  // [mm] or [deg] relative to the origin, over all turns, at the instant for which the axes get their set points.
   KinematicState travel;
   trajectory::TrackingFilterState filter;
-  bool known = false;     // the axis says where it is; else the belt is taken to go on as it went
-  bool started = false;   // it has seen its axis
-  std::int8_t sense = 1;  // in which it moved last
+  bool known = false;     // the axis' position is known; otherwise the belt is assumed to continue at its last velocity
+  bool started = false;   // it has read its axis at least once
+  std::int8_t sense = 1;  // direction of the last motion
   std::array<Object, kObjects> objects;
-  std::uint32_t count = 0;  // so many of them, in the order of their numbers
+  std::uint32_t count = 0;  // number of objects, which are in the order of their numbers
   std::uint32_t last_number = 0;
-  std::uint32_t lost = 0;                      // left the range without being taken
-  std::array<LostObject, kObjects> last_lost;  // the n-th, from 0, is at n % kObjects
-  std::uint32_t refused = 0;                   // did not find room
+  std::uint32_t lost = 0;                      // objects that left the range without being taken
+  std::array<LostObject, kObjects> last_lost;  // the n-th lost object, from 0, is at n % kObjects
+  std::uint32_t refused = 0;                   // objects for which there was no room
 };
 
 void describe(Enumeration<ObjectState>&);

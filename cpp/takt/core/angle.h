@@ -1,10 +1,10 @@
-// Degrees, which people write and read, in radians, which mathematics wants.
+// Degrees, as users write and read them, in radians, as computations need them.
 #pragma once
 
 #include <numbers>
 
 namespace takt {
 
-inline constexpr double kDegree = std::numbers::pi / 180;  // rad
+inline constexpr double kDegree = std::numbers::pi / 180;  // [rad]
 
 }  // namespace takt

@@ -26,7 +26,7 @@ class FlowReader {
 
  private:
   char Peek() const { return at_ < text_.size() ? text_[at_] : '\0'; }
-  // Counting lines is left to the day there is a problem: until then the byte stands in the column.
+  // Lines are only counted when a problem is reported: until then `column` holds the byte offset.
   Place Here() const { return {0, static_cast<int>(at_)}; }
   void SkipBlanks() { at_ = std::min(text_.find_first_not_of(kBlank, at_), text_.size()); }
   std::string Rest() const { return at_ < text_.size() ? Quoted(text_.substr(at_)) : "the end"; }
@@ -99,7 +99,7 @@ class FlowReader {
     binder_.Scalar(place, word, false);
   }
 
-  // Ends at a bracket, a comma, or a colon with a blank or bracket behind.
+  // Ends at a bracket, a comma, or a colon followed by a blank or bracket.
   std::string_view PlainWord() {
     const std::size_t start = at_;
     while (at_ < text_.size()) {
@@ -150,7 +150,7 @@ class FlowReader {
     binder_.Scalar(place, value, true);
   }
 
-  // At a backslash. False: unknown, nothing taken.
+  // Reads an escape at a backslash. Returns false if it is unknown; nothing is consumed.
   bool Escape(std::string& value) {
     if (at_ + 1 >= text_.size()) return false;
     if (const std::optional<char32_t> pair = ReadSurrogatePair(text_.substr(at_))) {

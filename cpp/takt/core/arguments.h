@@ -11,10 +11,10 @@ namespace takt {
 
 inline constexpr std::size_t kMaxArgumentBytes = 16'384;
 
-// Reads YAML's flow form (JSON is one case of it) over `object`, which holds the defaults; same rules and messages as
-// the YAML reader. Empty text: no arguments. False: `problem` gets the first problem, with "arguments" for the file,
-// and the object is of no use. Allocates nothing on success, but for what strings and lists of the object need.
-// `most_bytes`: bound of the text.
+// Reads YAML's flow form (JSON is a subset of it) into `object`, which holds the defaults; rules and messages as those
+// of the YAML reader. An empty text has no arguments. Returns false on failure: `problem` receives the first problem,
+// with "arguments" as its file, and the object must not be used. On success it allocates only for strings and lists of
+// the object. `most_bytes`: maximum length of the text.
 bool ReadArguments(const Type& type, void* object, std::string_view text, Problem* problem,
                    std::size_t most_bytes = kMaxArgumentBytes);
 

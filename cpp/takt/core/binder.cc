@@ -35,7 +35,7 @@ std::string Listed(const std::vector<std::string_view>& words) {
   return text;
 }
 
-// The number at the start of a text, as in "500 mm/s" or "90deg"; empty when there is none or nothing follows.
+// Returns the number at the start of a text, as in "500 mm/s" or "90deg"; empty if there is none or nothing follows it.
 std::string_view LeadingNumber(std::string_view text) {
   double unused = 0;
   for (std::size_t length = text.size() - 1; length > 0; --length) {
@@ -45,7 +45,7 @@ std::string_view LeadingNumber(std::string_view text) {
   return {};
 }
 
-// "500 mm/s": a number, then something that begins like a unit.
+// Returns true for "500 mm/s": a number, followed by something like a unit.
 bool HasUnit(std::string_view text) {
   if (text.empty() || text.size() > 40 || text.starts_with("0x")) return false;
   const std::string_view number = LeadingNumber(text);
@@ -57,7 +57,7 @@ bool HasUnit(std::string_view text) {
   return std::isalpha(c) || c == '%' || c == '"' || c >= 0x80 || (c == '1' && rest.starts_with("1/"));
 }
 
-// Does the end of a key ("_mm_s", " [deg]") say a unit?
+// Returns true if the end of a key ("_mm_s", " [deg]") is a unit.
 bool IsUnitSuffix(std::string_view suffix) {
   if (suffix.empty() || std::string_view("_ [(/.").find(suffix.front()) == std::string_view::npos) return false;
   std::string letters;
@@ -152,7 +152,7 @@ bool Binder::Begin(Place place, bool map) {
     problems_.Add(place, Path(), std::string("expected a plain word as key, found ") + (map ? "a mapping" : "a list"));
     Top().field = nullptr;
     Top().has_key = true;
-    // The brackets of the key are one event too many: what is inside goes nowhere, then the value comes.
+    // The brackets of the key are one extra event: their content is skipped, then the value follows.
     skipped_ = 1;
     skipped_key_ = true;
     return true;
@@ -415,7 +415,7 @@ void Binder::BadNumber(Place place, const Slot& slot, std::string_view text, Num
 
 void Binder::CheckName(Place place, std::string_view name) {
   if (depth_ < 2 || frames_[depth_ - 2].type->kind != Kind::kVector) return;
-  if (name.empty()) return;  // none
+  if (name.empty()) return;  // unnamed
   auto& names = names_[depth_ - 2];
   if (!names) names = std::make_unique<Names>();
   const auto [first, is_new] = names->try_emplace(std::string(name), frames_[depth_ - 2].index);

@@ -1,5 +1,5 @@
-// Writes what a reader finds, event by event, straight into a described struct; says what is wrong in one voice for all
-// readers.
+// Writes the values that a reader finds, event by event, into a described struct, and reports problems in the same
+// words for all readers.
 #pragma once
 
 #include <array>
@@ -15,33 +15,33 @@
 
 namespace takt {
 
-// Mappings and lists inside one another.
+// Nesting depth of mappings and lists.
 inline constexpr int kMaxDepth = 24;
 
 class Binder {
  public:
-  // `places`, where given, learns where each value stands. All must outlive the binder.
+  // `places`, if given, records the position of each value in the text. All arguments must outlive the binder.
   Binder(const Type& type, void* object, ProblemList& problems, SourceMap* places = nullptr)
       : root_type_(type), root_object_(object), problems_(problems), places_(places) {}
   Binder(const Binder&) = delete;
   Binder& operator=(const Binder&) = delete;
 
-  // The events of a text. In a mapping keys and values come in turn. False: nested too deep, the problem is told, stop
-  // here.
+  // The events of a text. In a mapping keys and values alternate. Begin... return false if nested too deep: the problem
+  // is reported; stop.
   void Scalar(Place place, std::string_view text, bool quoted);
   void Null(Place place);
   [[nodiscard]] bool BeginMap(Place place);
   void EndMap();
   [[nodiscard]] bool BeginList(Place place);
   void EndList();
-  // A value that cannot be had, `message` says why.
+  // Reports a value that cannot be read; `message` says why.
   void Refuse(Place place, std::string message);
 
-  // Key path of the value that comes next: "axes[2].drive.mode".
+  // Returns the key path of the next value: "axes[2].drive.mode".
   std::string Path() const;
 
  private:
-  // A mapping or list that has begun and not ended.
+  // A mapping or list that has begun and not ended yet.
   struct Frame {
     const Type* type = nullptr;
     void* object = nullptr;
@@ -49,21 +49,21 @@ class Binder {
     std::size_t problems_before = 0;
     // Mappings.
     bool has_key = false;          // a key was read, its value comes next
-    const Field* field = nullptr;  // of that key; null: unknown
+    const Field* field = nullptr;  // of that key; null: unknown key
     std::array<std::uint64_t, kMaxFields / 64> given;
-    std::array<std::uint64_t, kMaxFields / 64> excused;  // most likely misspelt
+    std::array<std::uint64_t, kMaxFields / 64> excused;  // missing fields that are most likely misspelt; not reported
     std::array<Place, kMaxRules> rule_places;
     // Lists.
-    const Field* quantity = nullptr;  // gives unit and range of the elements
-    std::size_t index = 0;            // of the element that comes next
+    const Field* quantity = nullptr;  // field that gives unit and range of the elements
+    std::size_t index = 0;            // of the next element
   };
-  // Where the next value goes. No type: nowhere.
+  // The target of the next value. No type: the value is skipped.
   struct Slot {
     const Type* type = nullptr;
     void* object = nullptr;
     const Field* field = nullptr;  // gives unit and range; null at the root
   };
-  using Names = std::map<std::string, std::size_t, std::less<>>;  // element that has it
+  using Names = std::map<std::string, std::size_t, std::less<>>;  // index of the element with this name
 
   bool InMap() const { return depth_ > 0 && Top().type->kind == Kind::kStruct; }
   Frame& Top() { return frames_[depth_ - 1]; }
@@ -89,14 +89,14 @@ class Binder {
   ProblemList& problems_;
   SourceMap* places_;
   std::size_t depth_ = 0;
-  int skipped_ = 0;           // depth inside a value that goes nowhere
-  bool skipped_key_ = false;  // what goes nowhere is a key, not a value
+  int skipped_ = 0;           // depth inside a skipped value
+  bool skipped_key_ = false;  // the skipped value is a key
   bool root_done_ = false;
   std::array<Frame, kMaxDepth> frames_;
   std::array<std::unique_ptr<Names>, kMaxDepth> names_;  // of the elements of open lists
 };
 
-// What a value of a field must look like: "a number in mm/s above 0". `field` may be null.
+// Returns the form that a value of a field must have: "a number in mm/s above 0". `field` may be null.
 std::string Expectation(const Type& type, const Field* field);
 
 }  // namespace takt

@@ -11,7 +11,7 @@ bool IsNumber(const Type& type) {
          type.kind == Kind::kEnum;
 }
 
-// Of the fields of a struct that is described as one per second: how fast such quantities change.
+// Returns the unit of a rate: for the fields of a struct whose own unit is 1/s.
 Unit PerSecond(const Unit& quantity) {
   for (const auto& [of, rate] :
        {std::pair{unit::mm, unit::mm_s}, std::pair{unit::deg, unit::deg_s}, std::pair{unit::u, unit::u_s}}) {

@@ -1,4 +1,4 @@
-// Descriptions of the small types of this folder that every component shares.
+// Descriptions of the small types of this folder that all components share.
 #include "takt/core/describe.h"
 #include "takt/core/feedback.h"
 #include "takt/core/kinematic_state.h"

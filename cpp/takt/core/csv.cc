@@ -16,7 +16,7 @@ std::string_view Trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-// "x, y, z" and "x, y and z".
+// Returns "x, y, z" or "x, y and z".
 std::string Joined(std::span<const std::string_view> names, std::string_view last = ", ") {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -120,7 +120,7 @@ class Reader {
   ProblemList& problems_;
   const std::function<void(std::span<const CsvCell>)>& take_;
   std::vector<std::string_view> names_;
-  std::vector<std::size_t> columns_;  // of the file: which of the names
+  std::vector<std::size_t> columns_;  // of the file: index of the name
   std::vector<CsvCell> cells_;
   int line_ = 0;
   char separator_ = ',';
@@ -137,7 +137,7 @@ void ReadCsvTable(std::string_view text, const CsvFormat& format, ProblemList& p
 
 bool ReadCsvNumber(const CsvCell& cell, std::string_view column, ProblemList& problems, double& value) {
   if (ParseReal(cell.text, value) == NumberError::kNone) return true;
-  // "1.234,5" is refused: which of both is the decimal one differs from country to country.
+  // "1.234,5" is refused: which one is the decimal separator depends on the country.
   const std::size_t comma = cell.decimal_comma ? cell.text.find(',') : std::string_view::npos;
   if (comma != std::string_view::npos && cell.text.find('.') == std::string_view::npos) {
     std::string plain(cell.text);

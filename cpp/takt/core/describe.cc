@@ -41,7 +41,7 @@ std::string LongText(const Unit& unit) {
 namespace internal {
 namespace {
 
-// A wrong description is a mistake in the program: it ends at the first touch, which every test does.
+// A wrong description is a programming error: the program aborts at first use, which every test triggers.
 [[noreturn]] void Reject(std::string_view field, const char* why) {
   std::fprintf(stderr, "takt: description of %.*s: %s\n", static_cast<int>(field.size()), field.data(), why);
   std::abort();

@@ -1,5 +1,6 @@
-// Described once: a table for every struct that people configure, command or record, filled by one function beside the
-// struct. Readers, writers, the schema, the reference pages, equality and hash are plain code that walks the table.
+// Descriptions: a table for every struct that users configure, command or record, filled by one function beside the
+// struct. Readers, writers, the schema, the reference pages, equality and hash are plain code that iterates over the
+// table.
 //
 //   struct MoveAbsolute { double position = 0, velocity = 0; Direction direction = Direction::kCurrent; };  // header
 //   void describe(Description<MoveAbsolute>&);
@@ -52,7 +53,7 @@ enum class Kind : std::uint8_t {
 
 enum class Presence : std::uint8_t {
   kRequired,   // must be given
-  kDefaulted,  // may be given, else as the struct's own initialiser says
+  kDefaulted,  // may be given; otherwise the struct's own initialiser applies
   kInternal,   // state: hashed, compared and in the reference, never read from text
 };
 
@@ -60,7 +61,7 @@ struct Field {
   std::string_view name;
   std::string_view about;
   Presence presence = Presence::kDefaulted;
-  Unit unit;    // of the number, or of the numbers inside the list or optional
+  Unit unit;    // of the number, or of the numbers in the list or optional
   Range range;  // likewise, in written units
   std::size_t offset = 0;
   const Type* type = nullptr;
@@ -79,7 +80,7 @@ struct Rule {
   bool (*holds)(const void* object) = nullptr;
 };
 
-// A piece of an object for the hash: bytes without padding, or (`type` set) a value whose memory lies elsewhere.
+// A piece of an object for the hash: bytes without padding, or (`type` set) a value stored elsewhere.
 struct HashStep {
   std::size_t offset = 0;
   std::size_t bytes = 0;
@@ -90,68 +91,68 @@ struct Type {
   Kind kind = Kind::kStruct;
   std::string_view name;   // of the struct or enum, without namespace
   std::string_view about;  // of the struct or enum
-  std::size_t size = 0;    // bytes
-  bool is_signed = false;  // integers
+  std::size_t size = 0;    // [bytes]
+  bool is_signed = false;  // integers only
 
   // Structs.
   std::vector<Field> fields;
   std::vector<Rule> rules;
-  std::size_t arity = 0;           // members the struct has, described or not
-  const void* defaults = nullptr;  // an object as its initialisers make it
+  std::size_t arity = 0;           // number of members of the struct, described or not
+  const void* defaults = nullptr;  // a default-initialised object
 
   std::vector<Enumerator> enumerators;
 
   // Texts.
   std::string_view (*text)(const void* object) noexcept = nullptr;
-  bool (*set_text)(void* object, std::string_view text) = nullptr;  // false: too long
-  std::size_t longest = 0;                                          // bytes; 0: any length
+  bool (*set_text)(void* object, std::string_view text) = nullptr;  // returns false if the text is too long
+  std::size_t longest = 0;                                          // [bytes]; 0: any length
 
   // Arrays, vectors, optionals.
   const Type* element = nullptr;
-  std::size_t count = 0;  // arrays; of vectors: room, 0: any
-  // Vectors. Elements lie one behind the other, element->size bytes apart.
+  std::size_t count = 0;  // of arrays; of vectors: capacity, 0: unlimited
+  // Vectors. Elements are contiguous, element->size bytes apart.
   std::size_t (*vector_size)(const void* vector) noexcept = nullptr;
   const void* (*vector_data)(const void* vector) noexcept = nullptr;
   void (*vector_clear)(void* vector) = nullptr;
-  void* (*vector_append)(void* vector) = nullptr;  // a default-made element, its address; null: no room
+  void* (*vector_append)(void* vector) = nullptr;  // appends a default element and returns its address; null: no room
   // Optionals.
   const void* (*optional_value)(const void* optional) noexcept = nullptr;  // null: empty
   void (*optional_reset)(void* optional) = nullptr;
-  void* (*optional_emplace)(void* optional) = nullptr;  // a default-made value, its address
-  // Variants: of state only.
+  void* (*optional_emplace)(void* optional) = nullptr;  // makes a default value and returns its address
+  // Variants: in state only.
   std::vector<const Type*> alternatives;
   std::size_t (*variant_index)(const void* variant) noexcept = nullptr;
   const void* (*variant_value)(const void* variant) noexcept = nullptr;
 
   std::vector<HashStep> hash_steps;
 
-  // Null where there is none.
+  // Each returns null if there is none.
   const Field* FindField(std::string_view field_name) const noexcept;
   const Enumerator* FindEnumerator(std::string_view enumerator_name) const noexcept;
   const Enumerator* FindEnumerator(std::int64_t value) const noexcept;
 };
 
-// The table of a type, made at first use; that use allocates. Touch every type once at start, before the first cycle.
+// Returns the table of a type. It is made at first use, which allocates: touch every type once, before the first cycle.
 template <typename T>
 const Type& TypeOf();
 
-// Limits of a described struct, so that reading needs no memory of its own.
+// Limits of a described struct, so that reading needs no further memory.
 inline constexpr std::size_t kMaxFields = 256;
 inline constexpr std::size_t kMaxRules = 16;
 
-// Element `index` of an array or vector.
+// Returns the address of element `index` of an array or vector.
 inline const void* ElementAt(const Type& type, const void* list, std::size_t index) noexcept {
   const void* data = type.kind == Kind::kVector ? type.vector_data(list) : list;
   return static_cast<const std::byte*>(data) + index * type.element->size;
 }
-// How many elements an array or vector has.
+// Returns the number of elements of an array or vector.
 inline std::size_t ElementCount(const Type& type, const void* list) noexcept {
   return type.kind == Kind::kVector ? type.vector_size(list) : type.count;
 }
 inline const void* FieldAt(const Field& field, const void* object) noexcept {
   return static_cast<const std::byte*>(object) + field.offset;
 }
-// Value of a bool, integer or enum. Unsigned 64-bit values come as the same bits.
+// Returns the value of a bool, integer or enum; unsigned 64-bit values as the same bits.
 std::int64_t IntegerAt(const Type& type, const void* object) noexcept;
 
 namespace internal {
@@ -166,12 +167,12 @@ class Description {
   static_assert(std::is_aggregate_v<T>, "described structs are plain: no constructors, no private members");
 
  public:
-  // What the struct is for: one or more sentences.
+  // Purpose of the struct: one or more sentences.
   void about(std::string_view text) {
     type_.about = text;
     type_.arity = internal::Arity<T>();
   }
-  // What templates are called; other structs have their own name.
+  // Name of a template; other structs have their own name.
   void named(std::string_view name) { type_.name = name; }
   template <auto Member, typename... Details>
   void required(Details... details) {

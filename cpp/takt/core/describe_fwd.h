@@ -1,9 +1,9 @@
-// What a header needs to declare that its structs and enums are described:
+// Declarations that a header needs for the descriptions of its structs and enums:
 //
 //   void describe(Description<MoveAbsolute>&);
 //   void describe(Enumeration<Direction>&);
 //
-// The functions themselves stand in a .cc file that includes takt/core/describe.h.
+// The functions themselves are in a .cc file that includes takt/core/describe.h.
 #pragma once
 
 namespace takt {

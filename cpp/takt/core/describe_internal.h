@@ -1,4 +1,4 @@
-// The compile-time part of describe.h: names of members and types, and how many members an aggregate has.
+// The compile-time part of describe.h: names of members and types, and the number of members of an aggregate.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ struct MemberPointer<V C::*> {
   using Value = V;
 };
 
-// The last identifier of what the compiler says `parameter` stands for in the signature `pretty`.
+// Returns the last identifier of the argument for `parameter` in the signature `pretty`.
 constexpr std::string_view LastName(std::string_view pretty, std::string_view parameter) {
   pretty.remove_prefix(pretty.find(parameter) + parameter.size());
   pretty = pretty.substr(0, pretty.find_first_of(";]"));
@@ -38,8 +38,8 @@ constexpr std::string_view TypeName() {
   return LastName(__PRETTY_FUNCTION__, "Named = ");
 }
 
-// Converts to anything a member may be. An optional takes its value's type as well, which makes the conversion
-// ambiguous: it needs a placeholder of its own.
+// Convertible to the type of any member. An optional accepts its value's type as well, which would make the conversion
+// ambiguous: it has a placeholder of its own.
 struct Anything {
   template <typename T>
   operator T() const;
@@ -49,7 +49,7 @@ struct AnyOptional {
   operator std::optional<T>() const;
 };
 
-// Tries one placeholder more until the aggregate takes no more of them.
+// Adds placeholders until the aggregate accepts no more of them.
 template <typename T, typename... Placeholders>
 constexpr std::size_t Arity() {
   if constexpr (requires { T{Placeholders{}..., Anything{}}; }) {

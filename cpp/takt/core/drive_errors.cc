@@ -13,7 +13,7 @@ struct DriveText {
   std::string_view text;
 };
 
-// The codes that profiles of drives and CANopen share. Where a code is not here its group is: the last two digits 00,
+// The codes that drive profiles and CANopen share. If a code is not listed, its group is used: the last two digits 00,
 // then the last three.
 constexpr auto kDriveTexts = std::to_array<DriveText>({
     {0x0000, "no error"},

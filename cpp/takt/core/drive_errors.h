@@ -1,4 +1,4 @@
-// What the error code of a drive (CiA 402: 0x603F, and that of emergency messages of CANopen) means, in words.
+// Texts for the error codes of drives (CiA 402: 0x603F, and the codes of CANopen emergency messages).
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace takt {
 
-// "0x3210 (DC link overvoltage)". Of a code that is not known what its group is about; 0xFFxx is the maker's.
+// Returns "0x3210 (DC link overvoltage)"; for an unknown code the text of its group. 0xFFxx: manufacturer specific.
 std::string DriveErrorText(std::int32_t code);
 
 }  // namespace takt

@@ -6,7 +6,7 @@
 namespace takt {
 namespace {
 
-// A bound as people write it: without ".0" behind a whole number.
+// A bound as users write it: without ".0" after a whole number.
 std::string Bound(double value) {
   std::string text = FormatReal(value);
   if (text.ends_with(".0")) text.resize(text.size() - 2);

@@ -1,4 +1,4 @@
-// What becomes of a command: Busy -> Active -> Done | Aborted | Error, once.
+// The states of a command: Busy -> Active -> Done | Aborted | Error, each at most once.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,14 @@
 
 namespace takt {
 
-// Names one command given to an engine, from 1 on in the order they were accepted. 0: none (given by the engine
-// itself).
+// Identifies a command to an engine, from 1 in the order of acceptance. 0: none (given by the engine itself).
 using Ticket = std::uint64_t;
 
 enum class FeedbackState : std::uint8_t {
-  kBusy,     // accepted, waiting for its turn
-  kActive,   // in control of its component
-  kDone,     // final: reached what it was for
-  kAborted,  // final: another command or a fault took over
+  kBusy,     // accepted, waits for its turn
+  kActive,   // controls its component
+  kDone,     // final: completed
+  kAborted,  // final: ended by another command or a fault
   kError,    // final: refused or failed, see the error
 };
 
@@ -28,7 +27,7 @@ constexpr bool IsFinal(FeedbackState s) {
   return s >= FeedbackState::kDone;
 }
 
-// One step of a command's life. `reached` is set when a command that never ends by itself has what it was given for
+// One step of a command's life. `reached` is set when a command that never ends on its own has reached its goal
 // (MC_MoveVelocity's InVelocity): the state stays Active.
 struct FeedbackEvent {
   Ticket ticket = 0;
@@ -36,15 +35,15 @@ struct FeedbackEvent {
   FeedbackState state = FeedbackState::kBusy;
   bool reached = false;
   ErrorId error = ErrorId::kNone;
-  // What the command found out: done: what it was to read or capture, of movers' moves: s that it took; active: s its
-  // motion takes as planned (AX-96).
+  // Result of the command: when done, the value that it read or captured, for movers' moves their duration [s]; when
+  // active, the planned duration [s] of its motion (AX-96).
   double value = 0;
-  ObjectInfo object{};       // that is in the way; none where nothing is
-  std::uint64_t detail = 0;  // of the error, for its sentence (group/failures.h); 0: none
+  ObjectInfo object{};       // the object that is in the way; none: no object
+  std::uint64_t detail = 0;  // of the error, for its message (group/failures.h); 0: none
 };
 
-// Where components report during a cycle. Storage is given from outside and sized so that it cannot overflow in normal
-// use; what does not fit is counted, never written.
+// The events that components report during a cycle. The storage is external and sized so that it cannot overflow in
+// normal use; events that do not fit are counted and dropped.
 class FeedbackSink {
  public:
   explicit FeedbackSink(std::span<FeedbackEvent> storage) : storage_(storage) {}
@@ -63,7 +62,7 @@ class FeedbackSink {
   std::span<const FeedbackEvent> events() const noexcept { return storage_.first(size_); }
   std::uint64_t lost() const noexcept { return lost_; }
   void Clear() noexcept { size_ = 0; }
-  // Why the last command that the engine gave itself (ticket 0) was refused or failed; asking forgets it.
+  // Returns and clears the reason why the last command that the engine gave itself (ticket 0) was refused or failed.
   ErrorId TakeOwnError() noexcept { return std::exchange(own_error_, ErrorId::kNone); }
 
  private:

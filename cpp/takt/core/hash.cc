@@ -20,7 +20,7 @@ bool IsPlain(const Type& type) {
          type.kind == Kind::kEnum;
 }
 
-// Nothing but described bytes from the first to the last.
+// Returns true if the object consists of described bytes only, without padding.
 bool IsDense(const Type& type) {
   return type.hash_steps.size() == 1 && !type.hash_steps[0].type && type.hash_steps[0].bytes == type.size;
 }

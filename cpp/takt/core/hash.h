@@ -1,4 +1,4 @@
-// Equality and hash over the described fields of a struct, whatever its padding holds. For the cycle: no allocation.
+// Equality and hash over the described fields of a struct, independent of padding. Fit for the cycle: no allocation.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace takt {
 
-// Numbers count by their bits: a NaN hashes like itself, 0 and -0 differ. The same on every machine of the same byte
-// order.
+// Numbers are hashed by their bits: a NaN hashes like itself, 0 and -0 differ. The same on all machines of the same
+// byte order.
 std::uint64_t HashOf(const Type& type, const void* object, std::uint64_t seed = 0) noexcept;
 
 template <typename T>
@@ -16,7 +16,7 @@ std::uint64_t HashOf(const T& object, std::uint64_t seed = 0) noexcept {
   return HashOf(TypeOf<T>(), static_cast<const void*>(&object), seed);
 }
 
-// By the bits as well: an object equals its copy, NaN or not.
+// Compares by bits as well: an object equals its copy, NaN or not.
 bool Equal(const Type& type, const void* a, const void* b) noexcept;
 
 template <typename T>

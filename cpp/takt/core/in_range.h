@@ -1,13 +1,13 @@
-// Whether what a program gives is what the description allows: readers of text see to that themselves, but a struct
-// made in C++ may hold anything.
+// Checks values that a program gives against their description: readers of text check them themselves, but a struct
+// made in C++ may hold any value.
 #pragma once
 
 #include "takt/core/describe.h"
 
 namespace takt {
 
-// The first field of a flat struct whose number is not finite or not in its range, or whose enum is none of its values;
-// of optionals, where they hold something. Null: all is well. Fit for the cycle.
+// Returns the first field of a flat struct whose number is not finite or out of range, or whose enum value is unknown
+// (optionals: if they hold a value); null if there is none. Fit for the cycle.
 const Field* FirstOutOfRange(const Type& type, const void* object) noexcept;
 
 template <typename T>

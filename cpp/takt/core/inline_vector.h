@@ -1,5 +1,5 @@
-// A list of at most so many elements, where they stand: lists inside commands, which cross to the cycle without
-// allocating. Described as a list is.
+// A list of up to N elements without heap memory: for lists inside commands, which pass to the cycle without
+// allocation. Described like a list.
 #pragma once
 
 #include <array>
@@ -15,11 +15,11 @@ template <typename T, std::size_t N>
 struct InlineVector {
   static constexpr std::size_t kCapacity = N;
 
-  std::array<T, N> items{};  // as they are made behind `count`
+  std::array<T, N> items{};  // default values from index `count` on
   std::uint32_t count = 0;
 
   std::span<const T> all() const noexcept { return {items.data(), count}; }
-  // False: it is full.
+  // Returns false if the list is full.
   bool Add(const T& item) noexcept {
     if (count == N) return false;
     items[count++] = item;

@@ -1,4 +1,4 @@
-// The one currency of motion: between commands, masters and followers, generators and loops.
+// The common representation of motion: between commands, masters and followers, generators and loops.
 #pragma once
 
 #include "takt/core/describe_fwd.h"
@@ -6,9 +6,9 @@
 namespace takt {
 
 struct KinematicState {
-  double position = 0;      // u
-  double velocity = 0;      // u/s
-  double acceleration = 0;  // u/s²
+  double position = 0;      // [u]
+  double velocity = 0;      // [u/s]
+  double acceleration = 0;  // [u/s²]
 
   constexpr bool operator==(const KinematicState&) const = default;
 };

@@ -1,5 +1,5 @@
-// The methods are the textbooks' (Muller, Elementary Functions): the argument is reduced exactly or in two doubles, the
-// rest is a short polynomial whose value is small beside the exact leading term, so that its rounding hardly counts.
+// Textbook methods (Muller, Elementary Functions): the argument is reduced exactly or in two doubles, the rest is a
+// short polynomial whose value is small compared with the exact leading term, so that its rounding hardly matters.
 #include "takt/core/maths.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ __extension__ typedef unsigned __int128 Wide;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kToInteger = 0x1.8p52;  // added and taken away again it rounds to an integer
+constexpr double kToInteger = 0x1.8p52;  // adding and subtracting it rounds to an integer
 
 std::uint64_t Bits(double x) {
   return std::bit_cast<std::uint64_t>(x);
@@ -26,14 +26,14 @@ std::uint64_t Bits(double x) {
 double Scale(int exponent) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
 }
-// 2^exponent times x, also where 2^exponent is no double.
+// Returns 2^exponent x, even if 2^exponent is not representable.
 double Scaled(double x, int exponent) {
   if (exponent > 1000) return x * 0x1p1000 * Scale(exponent - 1000);
   if (exponent < -1000) return x * Scale(exponent + 1000) * 0x1p-1000;
   return x * Scale(exponent);
 }
 
-// a + b exactly, where |a| >= |b| or a is 0.
+// Returns a + b exactly. Requires: |a| >= |b|, or a is 0.
 Pair FastSum(double a, double b) {
   const double sum = a + b;
   return {sum, b - (sum - a)};
@@ -44,7 +44,7 @@ Pair Sum(double a, double b) {
   return {sum, (a - (sum - of_b)) + (b - of_b)};
 }
 
-// a * a exactly, for |a| between 2^-450 and 2^500 (Veltkamp, Dekker).
+// Returns a * a exactly, for |a| between 2^-450 and 2^500 (Veltkamp, Dekker).
 Pair Square(double a) {
   const double split = 0x1.0000002p27 * a;
   const double high = split - (split - a), low = a - high;
@@ -54,19 +54,19 @@ Pair Square(double a) {
 
 // --- Sine and cosine ---
 
-// x = quadrant * pi/2 + high + low, |high| <= pi/4 and a hair.
+// x = quadrant * pi/2 + high + low, |high| <= pi/4 within rounding.
 struct Reduced {
   double high;
   double low;
   unsigned quadrant;
 };
 
-// Payne and Hanek: of 2/pi times a double only the bits behind the point and two before it count.
+// Payne and Hanek: of 2/pi times a double only the bits after the point and two before it are needed.
 Reduced ReduceLarge(double x) {
   const std::uint64_t bits = Bits(x);
   const int exponent = static_cast<int>(bits >> 52 & 0x7ff) - 1075;  // |x| = mantissa * 2^exponent
   const std::uint64_t mantissa = (bits & ((std::uint64_t{1} << 52) - 1)) | std::uint64_t{1} << 52;
-  // A window of 192 bits from two bits before the product's point on. What lies before it counts whole turns.
+  // A window of 192 bits, from two bits before the product's point. The bits before it are whole turns.
   const auto begin = static_cast<unsigned>(exponent + 62);
   const unsigned word = begin / 64, shift = begin % 64;
   const auto window = [&](unsigned i) {
@@ -125,7 +125,7 @@ double Cosine(const Reduced& r) {
 
 // --- Arc tangent ---
 
-// atan((n + n_low) / (d + d_low)), 0 <= n <= d: near a step c the angle is atan(c) + atan((n - c d) / (d + c n)).
+// Returns atan((n + n_low) / (d + d_low)), 0 <= n <= d: near a step c it is atan(c) + atan((n - c d) / (d + c n)).
 Pair Angle(double n, double n_low, double d, double d_low) {
   const double quotient = n / d;
   if (quotient < 0.125) {
@@ -143,7 +143,8 @@ Pair Angle(double n, double n_low, double d, double d_low) {
   return {kArcTangents[k].high, t + (rest + kArcTangents[k].low)};
 }
 
-// The angle of (x, y) with x = x_high + x_low and so on, none of them nan, of moderate size and not both 0.
+// Returns the angle of (x, y) with x = x_high + x_low and so on, none of them nan, of moderate magnitude and not both
+// 0.
 double AngleOf(Pair y, Pair x) {
   const bool behind = std::signbit(x.high), below = std::signbit(y.high);
   if (behind) x = {-x.high, -x.low};
@@ -159,7 +160,7 @@ double AngleOf(Pair y, Pair x) {
   return below ? -angle : angle;
 }
 
-// sqrt(1 - x^2) for |x| < 1, in two doubles.
+// Returns sqrt(1 - x^2) for |x| < 1, in two doubles.
 Pair OtherLeg(double x) {
   const Pair square = std::abs(x) > 0x1p-400 ? Square(x) : Pair{0, 0};
   const Pair rest = FastSum(1, -square.high);
@@ -189,8 +190,8 @@ Exponential ExponentialOf(double x) {
   return {power, root.high, root.low + root.high * p};
 }
 
-// log(2^k (1 + f + low)), with 1 + f from sqrt(1/2) to sqrt(2). With s = f / (2 + f): log(1 + f) = f - (f^2/2 - s
-// (f^2/2 + z R)).
+// Returns log(2^k (1 + f + low)), with 1 + f from sqrt(1/2) to sqrt(2). With s = f / (2 + f): log(1 + f) = f - (f^2/2 -
+// s (f^2/2 + z R)).
 double LogarithmOf(int k, double f, double low) {
   const double s = f / (2 + f), z = s * s, half = 0.5 * f * f;
   double rest = kLogarithm[6];
@@ -200,7 +201,7 @@ double LogarithmOf(int k, double f, double low) {
   return sum.high + (sum.low - (half - (s * (half + z * rest) + (n * kLn2Low + low))));
 }
 
-// Positive, finite: exponent and what is left of 1, 1 + f from sqrt(1/2) to sqrt(2).
+// For positive, finite x: returns the exponent and f, with x = 2^exponent (1 + f), 1 + f from sqrt(1/2) to sqrt(2).
 std::pair<int, double> Split(double x) {
   int exponent = 0;
   if (x < 0x1p-1000) {
@@ -220,7 +221,7 @@ std::pair<int, double> Split(double x) {
 }  // namespace
 
 SineCosine SinCos(double x) noexcept {
-  if (x == 0) return {x, 1};  // most poses are not turned about all axes
+  if (x == 0) return {x, 1};  // most poses are not rotated about all axes
   const Reduced r = Reduce(x);
   const double s = Sine(r), c = Cosine(r);
   switch (r.quadrant & 3) {
@@ -355,7 +356,7 @@ double Cbrt(double x) noexcept {
   double root = kCubeRoot[6];
   for (int i = 6; i-- > 0;) root = kCubeRoot[i] + m * root;
   const double radicand = m * Scale(rest);
-  // Of 26 bits, whose square is exact; then Halley's step, which leaves the cube of an error of 1e-6.
+  // Rounded to 26 bits, whose square is exact; then Halley's step, which leaves the cube of an error of 1e-6.
   const double near = std::bit_cast<double>(Bits(root * kCubeRoots[rest]) & ~((std::uint64_t{1} << 27) - 1));
   const double other = radicand / (near * near);
   const double step = near * ((other - near) / (2 * near + other));

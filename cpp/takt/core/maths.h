@@ -1,10 +1,10 @@
-// Elementary functions whose results are the same bits on every processor. The C library chooses among several
-// implementations by the processor's features, and their last bits differ; these are made of additions,
-// multiplications, divisions and square roots only, which IEEE 754 rounds in one way, and are compiled without fused
+// Elementary functions whose results have the same bits on every processor. The C library chooses among several
+// implementations by the processor's features, and their last bits differ; these functions use only additions,
+// multiplications, divisions and square roots, whose rounding IEEE 754 defines, and are compiled without fused
 // operations. The engine and Ruckig use no others (tests/python/test_processors.py).
 //
 // Errors are below 1.1 ulp unless a function says more (tests/cpp/core/maths_test.cc). Special values are those of C.
-// What rounds exactly in any library stays std::: sqrt, abs, floor, ceil, round, trunc, fmod, remainder, ldexp.
+// Functions that round exactly in any library stay std::: sqrt, abs, floor, ceil, round, trunc, fmod, remainder, ldexp.
 #pragma once
 
 namespace takt::maths {
@@ -14,13 +14,13 @@ struct SineCosine {
   double cosine;
 };
 
-[[gnu::const]] double Sin(double x) noexcept;         // x in rad, of any size
-[[gnu::const]] double Cos(double x) noexcept;         // x in rad, of any size
+[[gnu::const]] double Sin(double x) noexcept;         // x in [rad], of any size
+[[gnu::const]] double Cos(double x) noexcept;         // x in [rad], of any size
 [[gnu::const]] SineCosine SinCos(double x) noexcept;  // the same bits as Sin and Cos; one reduction of x
 [[gnu::const]] double Tan(double x) noexcept;         // below 2 ulp
-[[gnu::const]] double Asin(double x) noexcept;        // rad; nan beyond [-1, 1]
-[[gnu::const]] double Acos(double x) noexcept;        // rad; nan beyond [-1, 1]
-[[gnu::const]] double Atan(double x) noexcept;        // rad
+[[gnu::const]] double Asin(double x) noexcept;        // [rad]; nan beyond [-1, 1]
+[[gnu::const]] double Acos(double x) noexcept;        // [rad]; nan beyond [-1, 1]
+[[gnu::const]] double Atan(double x) noexcept;        // [rad]
 [[gnu::const]] double Atan2(double y, double x) noexcept;
 [[gnu::const]] double Exp(double x) noexcept;
 [[gnu::const]] double Expm1(double x) noexcept;  // exp(x) - 1

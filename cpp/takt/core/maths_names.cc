@@ -1,5 +1,5 @@
-// The names under which Ruckig's archive calls these functions instead of the C library's (cmake/TaktDependencies.cmake
-// renames what it imports). Signatures are C's.
+// The names by which Ruckig's archive calls these functions instead of the C library's (cmake/TaktDependencies.cmake
+// renames its imports). Signatures are those of C.
 #include "takt/core/maths.h"
 
 extern "C" {

@@ -1,4 +1,4 @@
-// A short text that lives where it stands: names inside commands, which cross to the cycle without allocating.
+// A short text without heap memory: for names inside commands, which pass to the cycle without allocation.
 #pragma once
 
 #include <algorithm>
@@ -8,11 +8,11 @@
 
 namespace takt {
 
-// Up to 40 bytes; what is longer is cut by the constructor function and refused where people write it.
+// Up to 40 bytes; longer texts are truncated by Of() and refused in text that users write.
 struct Name {
   static constexpr std::size_t kCapacity = 40;
 
-  std::array<char, kCapacity> bytes{};  // zero behind `size`
+  std::array<char, kCapacity> bytes{};  // zero from index `size` on
   std::uint8_t size = 0;
 
   static constexpr Name Of(std::string_view text) noexcept {

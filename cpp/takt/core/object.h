@@ -1,4 +1,4 @@
-// What somebody is told about another component of a machine: which one is in the way.
+// Identifies another component of the machine in feedback: the one that is in the way.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace takt {
 
-// The numbers stay: they are part of messages.
+// The numbers must not change: they are part of messages.
 enum class ObjectKind : std::uint8_t {
   kNone = 0,
   kMover = 1,
@@ -28,7 +28,7 @@ struct ObjectInfo {
   explicit operator bool() const { return kind != ObjectKind::kNone; }
 };
 
-// That with this index, from 0, in the lists of its kind.
+// Returns the object with this index, from 0, in the list of its kind.
 inline ObjectInfo ObjectAt(ObjectKind kind, std::size_t index) noexcept {
   return {kind, static_cast<std::uint32_t>(index + 1)};
 }

@@ -1,5 +1,5 @@
-// Changing some members of a struct at run time: a second struct has the same members as optionals, and what is given
-// there replaces what is here. Both come from one template, so that they are described once:
+// Changes some members of a struct at run time: a second struct has the same members as optionals, and those that are
+// set replace the values of the first. Both come from one template, so that they are described once:
 //
 //   template <template <typename> class Of>
 //   struct SettingsOf { Of<double> jerk = Preset<Of>(100.0); ... };
@@ -17,7 +17,7 @@ namespace takt {
 template <typename T>
 using Plain = T;
 
-// The initial value of a plain member; optionals begin empty.
+// Returns the initial value of a plain member; optionals begin empty.
 template <template <typename> class Of, typename T>
 constexpr Of<T> Preset(T value) {
   if constexpr (std::is_same_v<Of<T>, T>) {
@@ -30,7 +30,7 @@ constexpr Of<T> Preset(T value) {
 template <typename T>
 const Type& TypeOf();
 
-// `given` and `whole` describe the same members in the same order. Fit for the cycle.
+// Requires: `given` and `whole` describe the same members in the same order. Fit for the cycle.
 void ApplyPatch(const Type& given_type, const void* given, const Type& whole_type, void* whole) noexcept;
 
 template <template <template <typename> class> class StructOf>

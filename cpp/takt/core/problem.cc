@@ -16,7 +16,7 @@ char Lower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-// Edits to make one word of the other; two neighbours changing places count as one.
+// Returns the number of edits from one word to the other; swapping two neighbours counts as one.
 std::size_t Distance(std::string_view a, std::string_view b) {
   std::array<std::array<std::size_t, kLongestWord + 1>, 3> rows{};
   std::iota(rows[0].begin(), rows[0].end(), std::size_t{0});
@@ -40,7 +40,7 @@ struct CodePoint {
   std::size_t bytes = 0;
 };
 
-// The UTF-8 character at the start of `text`; nothing if it is broken.
+// Returns the UTF-8 character at the start of `text`; nothing if it is malformed.
 std::optional<CodePoint> Decode(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
   const std::uint8_t first = byte(0);

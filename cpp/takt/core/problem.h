@@ -1,4 +1,4 @@
-// What is wrong in a text somebody wrote, and where.
+// Problems in a text written by a user, and their positions in it.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace takt {
 
-// 1-based. Columns count characters, not bytes.
+// A position in a text, 1-based. Columns count characters, not bytes.
 struct Place {
   int line = 1;
   int column = 1;
@@ -19,14 +19,14 @@ struct Place {
 struct Problem {
   std::string source;  // file name, or "arguments"
   Place place;
-  std::string path;     // axes[2].drive.mode; empty: the text as a whole
+  std::string path;     // axes[2].drive.mode; empty: the whole text
   std::string message;  // expected ..., found ...; did you mean ...?
 
-  // "machine.yaml:6:36: axes[0].direction: expected ..."
+  // Returns "machine.yaml:6:36: axes[0].direction: expected ...".
   std::string Text() const;
 };
 
-// Collects problems up to a number; what comes later is dropped.
+// Collects up to `cap` problems; later ones are dropped.
 class ProblemList {
  public:
   // `source` must outlive the list.
@@ -43,15 +43,16 @@ class ProblemList {
   std::vector<Problem> problems_;
 };
 
-// Where each key path of a text that was read stands, for checks that come after reading.
+// The position of each key path in a text that was read, for checks after reading.
 class SourceMap {
  public:
   explicit SourceMap(std::string_view file = {}) : file_(file) {}
 
   void Add(std::string path, Place place) { places_.insert_or_assign(std::move(path), place); }
-  // Place of the value at `path` ("axes[2].drive.mode"); of the nearest enclosing one where that was not written.
+  // Returns the position of the value at `path` ("axes[2].drive.mode"), or of the nearest enclosing one if it was not
+  // written.
   Place PlaceOf(std::string_view path) const;
-  // A problem in the same form as the reader's own.
+  // Returns a problem in the same form as the reader's own.
   Problem ProblemAt(std::string_view path, std::string_view message) const;
   const std::string& file() const noexcept { return file_; }
 
@@ -60,20 +61,20 @@ class SourceMap {
   std::map<std::string, Place, std::less<>> places_;
 };
 
-// The candidate a misspelt word most likely meant; empty when none is near.
+// Returns the candidate that a misspelt word most likely meant; empty if none is near.
 std::string_view Nearest(std::string_view word, std::span<const std::string_view> candidates);
 
-// "; did you mean position?", or empty.
+// Returns "; did you mean position?", or an empty text.
 std::string DidYouMean(std::string_view word, std::span<const std::string_view> candidates);
 
-// The words of a text in quotes, cut to a readable length, without line breaks.
+// Returns the text in quotes, without line breaks, cut to a readable length.
 std::string Quoted(std::string_view text);
 
-// The first byte that no text file should hold (control characters, broken UTF-8). False, and problems gets it, if
-// there is one.
+// Looks for bytes that no text file should hold (control characters, broken UTF-8). Returns false, and adds a problem
+// for the first one, if there are any.
 bool CheckBytes(std::string_view text, ProblemList& problems);
 
-// Line and column of byte `offset` of a text.
+// Returns line and column of byte `offset` of a text.
 Place PlaceAt(std::string_view text, std::size_t offset);
 
 }  // namespace takt

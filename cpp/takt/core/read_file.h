@@ -1,4 +1,4 @@
-// Files that a machine file names.
+// Reads files that a machine file names.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace takt {
 
-// The text of a regular file, at most `most` bytes of it; nothing and a sentence why in `why` if there is none or it
-// cannot be read. Devices and pipes, which may never end, are none.
+// Returns the text of a regular file, at most its first `most` bytes; nothing, and a sentence in `why`, if it does not
+// exist or cannot be read. Devices and pipes, which may never end, are refused.
 std::optional<std::string> ReadFile(const std::string& path, std::size_t most, std::string& why);
 
 }  // namespace takt

@@ -1,4 +1,4 @@
-// Numbers and words in YAML text: one strict reading and one writing for all faces.
+// Numbers and words in YAML text: one strict reading and one writing for all interfaces.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@ enum class NumberError : std::uint8_t {
   kNone,
   kNotANumber,
   kNotFinite,    // nan, inf
-  kNotWhole,     // 3.0 where an integer is wanted
+  kNotWhole,     // 3.0 where an integer is expected
   kLeadingZero,  // 010
   kTooLarge,     // more than the type can hold
 };
 
-// 12, -0.5, .5, 1e3, +2. On an error `value` is untouched. No allocation.
+// Reads 12, -0.5, .5, 1e3, +2. On an error `value` is unchanged. Does not allocate.
 NumberError ParseReal(std::string_view text, double& value) noexcept;
 
 // Sign and digits. The value is (negative ? -magnitude : magnitude).
@@ -26,15 +26,16 @@ struct Integer {
 };
 NumberError ParseInteger(std::string_view text, Integer& value) noexcept;
 
-// Would a YAML reader, of version 1.1 or 1.2, take this plain word for something else than text (5, true, on, ~, 1:30,
-// 2026-01-01)? Not y and n: an axis may be called so, and hardly any reader takes them for yes and no.
+// Returns true if a YAML reader, of version 1.1 or 1.2, would read this plain word as something other than text (5,
+// true, on, ~, 1:30, 2026-01-01). Except y and n: an axis may have such a name, and hardly any reader takes them for
+// yes and no.
 bool NeedsQuotes(std::string_view word) noexcept;
 
-// The shortest text that reads back as the same number, always one that every YAML reader takes for a real:
-// 100.0, 1.0e-05.
+// Returns the shortest text that reads back as the same number and that every YAML reader takes for a real: 100.0,
+// 1.0e-05.
 std::string FormatReal(double value);
 
-// Held value -> written value: the one with the fewest digits that gives back the very same held value.
+// Returns the written value of a held value: the one with the fewest digits that gives back the identical held value.
 double Written(double held, double scale) noexcept;
 
 }  // namespace takt

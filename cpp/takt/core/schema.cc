@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A bound as a whole number where it is one: 0, not 0.0.
+// Returns a bound as a whole number if it is one: 0, not 0.0.
 Json BoundOf(double value) {
   if (value == std::floor(value) && std::abs(value) < 1e15) return static_cast<std::int64_t>(value);
   return value;
@@ -28,7 +28,7 @@ class SchemaMaker {
   }
 
  private:
-  // `where`: the field that holds it, "Axis.limits".
+  // `where`: the field that contains the value, "Axis.limits".
   Json Value(const Type& type, const Field& field, const std::string& where) {
     switch (type.kind) {
       case Kind::kBool:
@@ -66,8 +66,8 @@ class SchemaMaker {
     return number;
   }
 
-  // Types are told apart by themselves, since two of different namespaces may share their name: the second one is
-  // called after the field that holds it.
+  // Types are distinguished by identity, since two of different namespaces may share their name: the second one is
+  // named after the field that contains it.
   Json Reference(const Type& type, const std::string& where) {
     auto known = names_.find(&type);
     if (known == names_.end()) {

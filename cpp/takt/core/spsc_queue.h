@@ -9,8 +9,8 @@
 
 namespace takt {
 
-// Lamport's ring. Each side keeps the other's index as it saw it last, so that an uncontended operation touches no
-// shared cache line.
+// Lamport's ring. Each side caches the other's index as last read, so that an uncontended operation touches no shared
+// cache line.
 template <typename T>
 class SpscQueue {
   static_assert(std::is_trivially_copyable_v<T>, "elements are copied on the cycle thread");
@@ -20,7 +20,7 @@ class SpscQueue {
   explicit SpscQueue(std::size_t capacity)
       : slots_(std::bit_ceil(capacity < 2 ? std::size_t{2} : capacity)), mask_(slots_.size() - 1) {}
 
-  // Writing thread only. False: full, nothing written.
+  // Writing thread only. Returns false, and writes nothing, if the queue is full.
   bool TryPush(const T& value) noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
     if (tail - head_seen_ > mask_) {
@@ -32,7 +32,7 @@ class SpscQueue {
     return true;
   }
 
-  // Reading thread only. False: empty, `value` untouched.
+  // Reading thread only. Returns false, and leaves `value` unchanged, if the queue is empty.
   bool TryPop(T& value) noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     if (head == tail_seen_) {
@@ -45,7 +45,7 @@ class SpscQueue {
   }
 
   std::size_t capacity() const noexcept { return slots_.size(); }
-  // Exact only while neither side works.
+  // Exact only while neither thread uses the queue.
   std::size_t size() const noexcept {
     return tail_.load(std::memory_order_acquire) - head_.load(std::memory_order_acquire);
   }

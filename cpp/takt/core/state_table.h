@@ -1,4 +1,4 @@
-// State machines as tables: every legal transition stands in one constexpr array beside the enum of the states.
+// State machines as tables: every legal transition is in one constexpr array beside the enum of the states.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace takt {
 template <typename State>
 struct Transition {
   State from, to;
-  const char* by;  // the commands or events that make it
+  const char* by;  // the commands or events that cause it
 };
 
 // Staying in a state is always legal.

@@ -5,9 +5,9 @@
 namespace takt {
 namespace {
 
-constexpr char kMask = '\xC0';  // instead of the backslashes of a pair: no byte of UTF-8
+constexpr char kMask = '\xC0';  // replaces the backslashes of a pair: never a byte of UTF-8
 
-// Returns the code of a surrogate from four hexadecimal digits behind `mark` and 'u'; 0 if there is none.
+// Returns the code of a surrogate from four hexadecimal digits after `mark` and 'u'; 0 if there is none.
 std::uint32_t ReadSurrogate(std::string_view text, char mark) {
   constexpr std::size_t kBytes = kSurrogatePairBytes / 2;
   if (text.size() < kBytes || text[0] != mark || text[1] != 'u') return 0;
@@ -57,7 +57,7 @@ void MaskSurrogatePairs(std::string& text) {
       text[at] = text[at + kSurrogatePairBytes / 2] = kMask;
       at += kSurrogatePairBytes;
     } else {
-      at += 2;  // an escaped backslash begins no pair
+      at += 2;  // an escaped backslash does not begin a pair
     }
   }
 }

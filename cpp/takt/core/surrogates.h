@@ -1,4 +1,4 @@
-// Characters above U+FFFF as JSON escapes them: a pair of surrogates, \uD83D\uDE00 (RFC 8259, section 7).
+// Characters above U+FFFF as escaped by JSON: a pair of surrogates, \uD83D\uDE00 (RFC 8259, section 7).
 #pragma once
 
 #include <cstddef>
@@ -16,12 +16,12 @@ std::optional<char32_t> ReadSurrogatePair(std::string_view text);
 
 void AppendUtf8(std::string& text, char32_t c);
 
-// yaml-cpp refuses escaped surrogates. Masked pairs pass through it as text of the same length, so that places stay.
-// Masks the pairs of `text`, which must be UTF-8.
+// Masks the pairs of `text`, which must be UTF-8: yaml-cpp refuses escaped surrogates, but masked pairs pass through it
+// as text of the same length, so that positions are preserved.
 void MaskSurrogatePairs(std::string& text);
 
 // Returns a scalar of a masked text: each pair as its character if `escapes` (the scalar is in double quotes), else as
-// it was written.
+// written.
 std::string UnmaskSurrogatePairs(std::string_view scalar, bool escapes);
 
 }  // namespace takt

@@ -1,4 +1,4 @@
-// Units of described fields, as people write them, and ranges of their values.
+// Units of described fields, as users write them, and ranges of their values.
 #pragma once
 
 #include <limits>
@@ -10,7 +10,7 @@ namespace takt {
 
 struct Unit {
   std::string_view text;     // "mm/s"; empty: a plain number
-  std::string_view meaning;  // said behind the text where it does not speak for itself
+  std::string_view meaning;  // added to the text where the text is not self-explanatory
   double scale = 1;          // held value = written value * scale
 };
 
@@ -18,7 +18,7 @@ namespace unit {
 
 inline constexpr Unit none{"", ""};
 inline constexpr Unit one{"1", "a factor"};
-// The axis' own unit: mm, deg, ..., whatever its description says.
+// The axis' own unit: mm, deg, ..., as its description says.
 inline constexpr Unit u{"u", "the axis' own unit"};
 inline constexpr Unit u_s{"u/s", "the axis' unit per second"};
 inline constexpr Unit u_s2{"u/s2", "the axis' unit per second squared"};
@@ -68,14 +68,14 @@ inline constexpr Unit nm_s{"Nm s", "torque per speed in rad/s"};
 
 }  // namespace unit
 
-// "u/s (the axis' unit per second)"; empty for a plain number.
+// Returns "u/s (the axis' unit per second)"; empty for a plain number.
 std::string LongText(const Unit& unit);
 
-// Which values are legal, in written units. Whatever the range, a number is finite.
+// The legal values, in written units. Numbers must be finite in any range.
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  bool without_min = false;  // min itself is outside
+  bool without_min = false;  // min itself is excluded
 
   constexpr bool Holds(double x) const { return (without_min ? x > min : x >= min) && x <= max; }
   constexpr bool bounded_below() const { return min > -std::numeric_limits<double>::infinity(); }
@@ -96,7 +96,7 @@ constexpr Range between(double min, double max) {
   return {.min = min, .max = max};
 }
 
-// "above 0", "at least 0", "from -360 to 360"; empty for any_value.
+// Returns "above 0", "at least 0", "from -360 to 360"; empty for any_value.
 std::string Text(const Range& range);
 
 }  // namespace takt

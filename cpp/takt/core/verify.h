@@ -1,5 +1,5 @@
-// Finds what is forgotten or wrong in a description. For tests: each described type, or the root that holds them, goes
-// through it.
+// Finds omissions and mistakes in descriptions. For tests: call it for each described type, or for the root that
+// contains them.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace takt {
 
-// One sentence for each fault, of the type and all types inside it: members that are not described, missing texts,
-// defaults out of range or not finite (state fields may be NaN), enum names that YAML reads as something else or that
-// come twice.
+// Returns one sentence for each mistake in the type and all types inside it: members that are not described, missing
+// texts, defaults out of range or not finite (state fields may be NaN), enum names that YAML reads as something else or
+// that occur twice.
 std::vector<std::string> Verify(const Type& type);
 
 }  // namespace takt

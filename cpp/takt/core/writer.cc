@@ -36,7 +36,7 @@ std::string QuotedText(std::string_view text) {
 bool IsPlainWord(std::string_view text) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
   const auto allowed = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '.' || c == '/'; };
-  if (text == "y" || text == "Y" || text == "n" || text == "N") return false;  // yes and no, to the letter of YAML 1.1
+  if (text == "y" || text == "Y" || text == "n" || text == "N") return false;  // yes and no in YAML 1.1
   return !text.empty() && letter(text.front()) && std::all_of(text.begin(), text.end(), allowed) && !NeedsQuotes(text);
 }
 
@@ -44,7 +44,7 @@ std::string TextOf(std::string_view text) {
   return IsPlainWord(text) ? std::string(text) : QuotedText(text);
 }
 
-// The value inside an optional, the value itself elsewhere; null: empty.
+// Returns the value inside an optional, otherwise the value itself; null if it is empty.
 const void* Inner(const Type*& type, const void* object) {
   while (object && type->kind == Kind::kOptional) {
     object = type->optional_value(object);
@@ -72,7 +72,7 @@ std::string ScalarText(const Type& type, const void* object, const Field* field)
   }
 }
 
-// Calls with each field that is written, the type and address of its value.
+// Calls the function with each field that is written, and the type and address of its value.
 template <typename Function>
 void ForEachWritten(const Type& type, const void* object, Function function) {
   for (const Field& field : type.fields) {
@@ -108,7 +108,7 @@ bool HasWritten(const Type& type, const void* object) {
   return any;
 }
 
-// Goes on lines of its own: a mapping with keys, a list of mappings.
+// Returns true if the value is written on its own lines: a mapping with keys, a list of mappings.
 bool IsBlock(const Type& type, const void* object) {
   if (type.kind == Kind::kStruct) return HasWritten(type, object);
   const bool list = type.kind == Kind::kArray || type.kind == Kind::kVector;
@@ -156,7 +156,7 @@ class BlockWriter {
   }
 
   Comments comments_;
-  bool at_dash_ = false;  // the first key of a list's element stands behind its dash
+  bool at_dash_ = false;  // the first key of a list element follows its dash
   std::string text_;
 };
 

@@ -1,4 +1,4 @@
-// Writes a described struct as YAML that reads back as the very same object. Not for the cycle.
+// Writes a described struct as YAML that reads back as the identical object. Not for use within the cycle.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@ namespace takt {
 
 enum class Comments : std::uint8_t { kNone, kUnits };
 
-// A machine file: one key a line, with its unit behind it where asked for. Internal fields and empty optionals are left
-// out.
+// Writes a machine file: one key a line, followed by its unit if requested. Internal fields and empty optionals are
+// omitted.
 std::string WriteYaml(const Type& type, const void* object, Comments comments = Comments::kNone);
-// One line: {position: 100.0, velocity: 50.0}.
+// Writes one line: {position: 100.0, velocity: 50.0}.
 std::string WriteFlow(const Type& type, const void* object);
 
 template <typename T>

@@ -18,10 +18,10 @@
 namespace takt {
 namespace {
 
-// Ends the parser's walk; the problem is in the list already.
+// Ends the parsing; the problem is already in the list.
 struct Stop {};
 
-// From yaml-cpp's marks (0-based, counting bytes) to places and bytes of the text.
+// Converts yaml-cpp's marks (0-based, counting bytes) to positions and byte offsets of the text.
 class Lines {
  public:
   explicit Lines(std::string_view text) : text_(text) {
@@ -40,7 +40,7 @@ class Lines {
     const std::size_t start = starts_[std::min(static_cast<std::size_t>(std::max(mark.line, 0)), starts_.size() - 1)];
     return {mark.line + 1, PlaceAt(text_.substr(start, Offset(mark) - start), Offset(mark) - start).column};
   }
-  // Does the quoted text that begins here end before the file does?
+  // Returns true if the quoted text that begins here ends before the file does.
   bool IsClosed(const YAML::Mark& mark) const {
     const char quote = Byte(mark);
     if (quote != '"' && quote != '\'') return true;  // a block of text
@@ -108,7 +108,7 @@ class Handler : public YAML::EventHandler {
     binder_.EndMap();
     Check();
   }
-  // The parser takes the end of the file for a closing quote.
+  // yaml-cpp takes the end of the file for a closing quote.
   void CheckLastQuote() {
     if (!last_quoted_.is_null() && !lines_.IsClosed(last_quoted_)) {
       problems_.Add(lines_.At(last_quoted_), {}, "expected a closing quote, found the end of the file");
@@ -119,7 +119,7 @@ class Handler : public YAML::EventHandler {
   static constexpr const char* kNoAnchor = "expected a value, found an anchor (&); anchors are not read";
   static constexpr const char* kNoTag = "expected a value, found a tag (!); tags are not read";
 
-  // Quoted text comes with the tag "!", as does a plain word behind a lonely "!".
+  // Quoted text has the tag "!", as does a plain word after a single "!".
   bool IsTag(const YAML::Mark& mark, const std::string& tag) const {
     return tag == "!" ? lines_.Byte(mark) == '!' : !tag.empty() && tag != "?";
   }
@@ -131,7 +131,8 @@ class Handler : public YAML::EventHandler {
     binder_.Refuse(lines_.At(mark), kNoTag);
     Check();
   }
-  // Mappings and lists are read on behind the complaint, so that problems inside show in the same run.
+  // Reading continues inside mappings and lists with a problem, so that problems inside them are reported in the same
+  // run.
   void Tell(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
     if (anchor) problems_.Add(lines_.At(mark), binder_.Path(), kNoAnchor);
     if (!anchor && !tag.empty() && tag != "?") problems_.Add(lines_.At(mark), binder_.Path(), kNoTag);
@@ -146,7 +147,7 @@ class Handler : public YAML::EventHandler {
   YAML::Mark last_quoted_ = YAML::Mark::null_mark();
 };
 
-// Whatever comes behind the first document.
+// Anything after the first document.
 class SecondDocument : public YAML::EventHandler {
  public:
   SecondDocument(const Lines& lines, ProblemList& problems) : lines_(lines), problems_(problems) {}
@@ -184,7 +185,7 @@ void Parse(const Type& type, void* object, std::string_view text, ProblemList& p
       return;
     }
     handler.CheckLastQuote();
-    // A first call may end at the marker between documents without a word: ask once more.
+    // A first call may end at the marker between documents without an event: call it once more.
     parser.HandleNextDocument(second);
     parser.HandleNextDocument(second);
   } catch (const Stop&) {

@@ -1,4 +1,5 @@
-// Reads a described struct from YAML text, strictly, with every problem and its place. Not for the cycle.
+// Reads a described struct from YAML text, strictly, and reports every problem with its position. Not for use within
+// the cycle.
 #pragma once
 
 #include <cstddef>
@@ -17,20 +18,20 @@ inline constexpr std::size_t kMaxProblems = 200;
 
 template <typename T>
 struct ReadResult {
-  std::optional<T> value;         // only without problems
-  std::vector<Problem> problems;  // in the order of the text; at most kMaxProblems and one that says so
+  std::optional<T> value;         // set only if there are no problems
+  std::vector<Problem> problems;  // in the order of the text; at most kMaxProblems and a final one that says so
   SourceMap source;
 
   bool ok() const { return value.has_value(); }
 };
 
-// Reads `text` over `object`, which holds the defaults. The object is of use only if no problem comes back.
+// Reads `text` into `object`, which holds the defaults. The object must only be used if no problem is returned.
 std::vector<Problem> ReadYaml(const Type& type, void* object, std::string_view text, std::string_view file_name,
                               SourceMap& source);
 
-// One document, one root mapping. Refused: unknown and repeated keys, values of another type or out of range, missing
-// required keys, anchors, aliases, tags, merge keys, a second document, control characters, broken UTF-8, more than
-// kMaxYamlBytes.
+// Reads one document with one root mapping. Refused: unknown and repeated keys, values of another type or out of range,
+// missing required keys, anchors, aliases, tags, merge keys, a second document, control characters, broken UTF-8, more
+// than kMaxYamlBytes.
 template <typename T>
 ReadResult<T> ReadYaml(std::string_view text, std::string_view file_name) {
   ReadResult<T> result{.value = T{}, .problems = {}, .source = SourceMap(file_name)};
@@ -39,7 +40,8 @@ ReadResult<T> ReadYaml(std::string_view text, std::string_view file_name) {
   return result;
 }
 
-// The text of a file, or nothing and a sentence why in `why`. Stops one byte behind kMaxYamlBytes.
+// Returns the text of a file, at most one byte more than kMaxYamlBytes; nothing, and a sentence in `why`, if it cannot
+// be read.
 std::optional<std::string> LoadText(const std::string& path, std::string& why);
 
 template <typename T>

@@ -28,7 +28,7 @@ std::uint32_t FindCarrier(void* owner, std::string_view name) noexcept {
   return 0;
 }
 
-// The tool as it is commanded.
+// Returns the commanded pose of the tool of a group as a carrier; kNone if it has none.
 kinematics::Carrier ToolOf(const World& w, std::size_t index) {
   const AxesGroup& group = w.groups[index];
   const group::State& s = w.group_states[index];

@@ -1,4 +1,4 @@
-// What can carry something in a machine: its belts, then the tools of its groups, then poses.
+// Everything in a machine that can carry a workpiece: belts, then the tools of groups, then poses.
 #pragma once
 
 #include "takt/engine/world.h"
@@ -6,12 +6,13 @@
 
 namespace takt::engine {
 
-// As this group sees them; `rider` must live on. Belts are numbered from 1, groups and poses go on from there.
+// Returns the carriers as this group sees them; `rider` must outlive them. Numbers: belts from 1, then groups, then
+// poses.
 group::Carriers CarriersFor(Rider& rider) noexcept;
 
-// A command of a group after which its tool is nowhere, or elsewhere by a jump.
+// Returns true if the tool of the group has no pose after this command, or jumps by it.
 bool TakesToolAway(const group::Command& command) noexcept;
-// Whether another group rides on the tool of this one.
+// Returns true if another group rides, or has a queued motion, on the tool of this group.
 bool IsRidden(const World& w, std::size_t group) noexcept;
 
 }  // namespace takt::engine

@@ -1,4 +1,4 @@
-// What knows whether the paths of groups are free.
+// Collision checkers for the paths of groups.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace takt::engine {
 
-// One for each group of a machine; none: it has no workspace.
+// One entry for each group of a machine; empty if the group has no workspace.
 using Checkers = std::vector<std::optional<workspace::Checker>>;
 
 }  // namespace takt::engine

@@ -29,8 +29,9 @@ constexpr std::string_view kPlanarGroup = "planar_group";
 constexpr std::string_view kEnvironment = "environment";
 constexpr std::string_view kPart = "part";
 
-// Which commands stop something, release it or switch it off, with these arguments (EN-32): the one list. All others do
-// not, nor does one that asks for power or motion besides: it grows old, and an emergency stop refuses it.
+// Returns true if the command, with these arguments, stops something, releases it or switches it off (EN-32): the one
+// list. All other commands return false, including those that also request power or motion: they expire, and an
+// emergency stop refuses them.
 template <typename T>
 bool Releases(const T&) noexcept {
   return false;
@@ -148,7 +149,7 @@ bool Releases(const part::ForceDisable&) noexcept {
   return true;
 }
 
-// A verb together with how its struct gets in and out of a command.
+// A verb and the conversions of its struct.
 struct Entry {
   Verb verb;
   bool (*read)(std::string_view text, CommandBody& body, Problem& problem);
@@ -172,14 +173,14 @@ Entry Make(std::string_view target_kind, std::string_view name, bool level_sensi
           [](const void* arguments) noexcept { return Releases(*static_cast<const T*>(arguments)); }};
 }
 
-// What the engine alone gives.
+// Returns true for verbs that only the engine gives.
 bool IsInternal(const Verb& verb) {
   return verb.arguments == &TypeOf<group::PathChecked>() || verb.arguments == &TypeOf<group::PathPlanned>() ||
          verb.arguments == &TypeOf<track::TrackMade>() || verb.arguments == &TypeOf<environment::BoundaryMade>() ||
          verb.arguments == &TypeOf<cam::CamBuilt>();
 }
 
-// Every command there is: the one list.
+// All commands: the one list.
 const std::vector<Entry>& Entries() {
   static const std::vector<Entry> entries = {
       Make<MachineCommand, StopAll>(kMachine, "stop_all"),
@@ -398,7 +399,7 @@ std::string_view NameOf(const Machine& machine, std::uint32_t target) {
   return kind->name_of(machine, index);
 }
 
-// "an axis", "the machine".
+// Returns "an axis", "the machine".
 std::string_view PhraseOf(std::string_view target_kind) {
   for (const ComponentKind& kind : ComponentKinds()) {
     if (kind.name == target_kind) return kind.one;
@@ -406,7 +407,7 @@ std::string_view PhraseOf(std::string_view target_kind) {
   return "the machine";
 }
 
-// What is wrong with a list of cam switches that this axis is to have. An unknown one is found in the cycle.
+// Returns what is wrong with a list of cam switches for this axis. An unknown list is found in the cycle.
 std::string CannotSwitch(const Machine& machine, const axis::DigitalCamSwitch& command, const axis::AxisParams& axis) {
   for (const axis::CamSwitches& list : machine.cam_switches) {
     if (list.name != command.switches.view()) continue;
@@ -437,7 +438,7 @@ std::vector<std::string_view> BeltsOf(const Machine& machine, conveyor::BeltKind
   return names;
 }
 
-// What can carry the tool of a group: no group itself.
+// Returns the names of all carriers for the tool of a group: all but the group itself.
 std::vector<std::string_view> CarriersOf(const Machine& machine, std::string_view group) {
   std::vector<std::string_view> names = NamesOf(machine.belts);
   std::ranges::copy(NamesOf(machine.groups), std::back_inserter(names));
@@ -446,7 +447,7 @@ std::vector<std::string_view> CarriersOf(const Machine& machine, std::string_vie
   return names;
 }
 
-// What is wrong with a name in a command; empty: nothing.
+// Returns what is wrong with a name in a command; empty if nothing is.
 std::string WhyNotNamed(const char* field, const Name& name, const std::vector<std::string_view>& names,
                         const char* what) {
   if (std::ranges::find(names, name.view()) != names.end()) return {};
@@ -481,19 +482,19 @@ std::string Diagnose(const Machine& machine, const group::Command& command, std:
   return why;
 }
 
-// Of what comes into a group of movers.
+// The same for the name of a group of movers.
 std::string WhyNotGroup(const Machine& machine, const Name& group) {
   return WhyNotNamed("group", group, NamesOf(machine.planar_groups), "a group of movers");
 }
 
-// Places have to say what they are seen from: there are several coordinate systems, or parts that move.
+// Returns true if positions need a reference: there are several coordinate systems, or parts that move.
 bool NeedsReference(const Machine& machine) {
   const auto moves = [](const part::PartParams& part) { return part.positions.size() > 1; };
   return machine.coordinate_systems.size() > 1 || std::ranges::any_of(machine.parts, moves);
 }
 
-// A command that lacks the reference that it needs. Set points from outside that are relative need none: those are
-// judged in the cycle.
+// Returns true if the command lacks a required reference. Relative external set points need none: those are checked in
+// the cycle.
 template <typename Command>
 bool LacksReference(const Machine& machine, const Command& command) {
   return std::visit(
@@ -517,7 +518,7 @@ std::string WhyNotReference(const Machine& machine, const Name& reference, bool 
          all + ")";
 }
 
-// Of a command that has one.
+// Returns what is wrong with the reference of a command; empty if nothing is, or the command has none.
 template <typename Command>
 std::string WhyNotReferenceOf(const Machine& machine, const Command& command) {
   return std::visit(
@@ -530,7 +531,7 @@ std::string WhyNotReferenceOf(const Machine& machine, const Command& command) {
       command);
 }
 
-// Of a part that has no such position.
+// Returns what is wrong with the index of a part's position; empty if nothing is.
 std::string WhyNotPosition(const Machine& machine, std::string_view part, std::uint32_t index) {
   const auto found = std::ranges::find(machine.parts, part, &part::PartParams::name);
   if (found == machine.parts.end() || index <= found->positions.size()) return {};
@@ -552,7 +553,7 @@ std::string Diagnose(const Machine& machine, const track::Command& command, std:
   return WhyNotReferenceOf(machine, command);
 }
 
-// Its names; how its tracks lie is found in the cycle.
+// Checks the names only; the geometry of the tracks is checked in the cycle.
 template <typename Gear>
 std::string WhyNotGear(const Machine& machine, const Gear& gear, std::string_view target) {
   std::string why;
@@ -597,7 +598,7 @@ std::string Diagnose(const Machine& machine, const mover::Command& command, std:
   return move && !move->track.empty() ? check(move->track) : WhyNotReferenceOf(machine, command);
 }
 
-// Belts and ranges; rules that depend on settings at run time are left to the cycle.
+// Checks belts and ranges; rules that depend on settings at run time are checked in the cycle.
 std::string Diagnose(const Machine& machine, const pickplace::Command& command, std::string_view target) {
   const auto module = std::ranges::find(machine.pick_and_place, target, &pickplace::PickPlaceParams::name);
   if (module == machine.pick_and_place.end()) return {};
@@ -632,7 +633,7 @@ std::string Diagnose(const Machine& machine, const pickplace::Command& command, 
   return why.empty() ? named("leave", pickplace::WhyNotLeave(range, *found)) : why;
 }
 
-// Why this component cannot do it, as far as its description tells; empty: it can.
+// Returns why this component cannot carry out the command, as far as the machine file tells; empty if it can.
 std::string Diagnose(const Machine& machine, const Command& command) {
   if (const auto* body = std::get_if<axis::Command>(&command.body)) {
     return Diagnose(machine, *body, machine.axes[command.target - 1]);
@@ -661,7 +662,7 @@ std::string Diagnose(const Machine& machine, const Command& command) {
   return {};
 }
 
-// Of a command that this component cannot do.
+// Returns the error number for a command that this component cannot carry out.
 ErrorId ErrorOf(const Machine& machine, const Command& command) {
   const auto* mover = std::get_if<mover::Command>(&command.body);
   const auto* track = std::get_if<track::Command>(&command.body);

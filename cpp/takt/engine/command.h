@@ -1,5 +1,4 @@
-// A command on its way to the cycle, and its text form (target, verb, arguments), which LCM, Python and the journal
-// share.
+// Commands to the cycle, and their text form (target, verb, arguments), which LCM, Python and the journal share.
 #pragma once
 
 #include <cstdint>
@@ -27,20 +26,20 @@
 namespace takt::engine {
 
 // Commands of the engine itself; their target is "machine".
-struct StopAll {            // every axis stops along its ramp
+struct StopAll {            // stops every axis along its ramp
   bool open_loops = false;  // and then opens its loop
 };
-struct EmergencyStop {  // GT_EStop: every drive off and every brake on at once
-  bool hold = false;    // until it is released; else for the cycle
+struct EmergencyStop {  // GT_EStop: disables every drive and applies every brake at once
+  bool hold = false;    // until it is released; otherwise for one cycle
 };
-struct ReleaseEmergencyStop {  // whoever holds it
+struct ReleaseEmergencyStop {  // releases the emergency stop of all its holders
 };
-struct FailAllAxes {  // every axis brakes and goes to ErrorStop with error 3007 (overruns)
+struct FailAllAxes {  // every axis brakes and enters ErrorStop with error 3007 (overruns)
 };
-struct Release {  // lets go of a level-sensitive command (jog, stop with hold): Execute falls
+struct Release {  // ends a level-sensitive command (jog, stop with hold): its Execute falls
   Ticket ticket = 0;
 };
-struct Renew {  // a heartbeat: extends the lease of a level-sensitive command
+struct Renew {  // heartbeat: extends the lease of a level-sensitive command
   Ticket ticket = 0;
 };
 
@@ -54,55 +53,56 @@ void describe(Description<Renew>&);
 using MachineCommand = std::variant<StopAll, EmergencyStop, ReleaseEmergencyStop, FailAllAxes, Release, Renew,
                                     cam::BeginCam, cam::AddCamPoints, cam::AddCamSegments, cam::BuildCam, cam::DropCam,
                                     cam::ReadCam, cam::CamBuilt, mover::StartRoutes, mover::HoldRoutes>;
-// Behind those of the machine itself, in the order of ComponentKinds().
+// After the commands of the machine, in the order of ComponentKinds().
 using CommandBody = std::variant<MachineCommand, axis::Command, flexcam::Command, group::Command, conveyor::Command,
                                  conveyor::PoseCommand, pickplace::Command, mover::Command, track::Command,
                                  planargroup::Command, environment::Command, part::Command>;
 
-// Component i (components.h) is target i + 1.
+// Component i (components.h) has target i + 1.
 inline constexpr std::uint32_t kMachineTarget = 0;
 
 struct Command {
   Ticket ticket = 0;
   std::uint32_t target = kMachineTarget;
-  double lease_s = 0;  // > 0: a level-sensitive command releases itself so long after its last renewal
+  double lease_s = 0;  // [s] > 0: a level-sensitive command releases itself this long after its last renewal
   CommandBody body{};
-  // ns on the monotonic clock: a cycle that begins later refuses the command, unless it lets go (EN-33); 0: never.
+  // [ns] on the monotonic clock: cycles that begin later refuse the command, unless LetsGo() is true for it (EN-33); 0:
+  // never.
   std::int64_t expires_ns = 0;
 };
 
-// Stops something, releases it or switches it off: such a command is always taken (EN-32).
+// Returns true if the command stops, releases or switches off something: such commands are always accepted (EN-32).
 bool LetsGo(const Command& command) noexcept;
-// The same of a command in its text form; false where it cannot be read.
+// The same for a command in its text form; returns false if the text cannot be parsed.
 bool LetsGo(std::string_view target_kind, std::string_view verb, std::string_view arguments);
 
-// One verb a kind of component understands; `arguments` describes its struct.
+// One verb that a kind of component understands; `arguments` describes its struct.
 struct Verb {
   std::string_view target_kind;  // "machine", or the name of a ComponentKind
   std::string_view name;         // "move_absolute"
   const Type* arguments;
   bool level_sensitive;  // needs a heartbeat over LCM
 };
-// Without those that the engine alone gives.
+// Returns all verbs that users may give, without those that only the engine gives.
 std::span<const Verb> Verbs();
 
 struct ParsedCommand {
-  Command command;  // ticket not set yet
+  Command command;  // its ticket is not set yet
   ErrorId error = ErrorId::kNone;
   bool level_sensitive = false;
-  std::string sentence;  // what is wrong, where, what was expected; empty when error is kNone
+  std::string sentence;  // what is wrong, where, and what was expected; empty if error is kNone
 };
-// Who gives a command: a journal also holds what the engine gave to itself.
+// Origin of a command text: a journal also holds commands that the engine gave to itself.
 enum class Giver : std::uint8_t { kUser, kJournal };
 
-// `arguments` as in "{position: 100, velocity: 50}" or empty.
+// Parses a command for a component of `machine`; `arguments` as in "{position: 100, velocity: 50}" or empty.
 ParsedCommand ParseCommand(const Machine& machine, std::string_view target, std::string_view verb,
                            std::string_view arguments, Giver giver = Giver::kUser);
 
 struct CommandText {
   std::string target, verb, arguments;
 };
-// The inverse: parsing it again gives the identical command.
+// The inverse of ParseCommand: parsing the text again gives the identical command.
 CommandText ToText(const Machine& machine, const Command& command);
 
 }  // namespace takt::engine

@@ -1,4 +1,4 @@
-// The kinds of components a machine is made of: one list, by which they are named, described, recorded and told apart
+// The kinds of components of a machine: the one list from which they are named, described, recorded and distinguished
 // in commands.
 #pragma once
 
@@ -17,22 +17,25 @@ namespace takt::engine {
 struct ComponentKind {
   std::string_view name;     // as in Verb::target_kind; states are published on takt/NAME/...
   std::string_view section;  // of the machine file
-  std::string_view one;      // for people: "an axis" ...
+  std::string_view one;      // in messages for users: "an axis" ...
   std::string_view many;     // ... "axes"
-  const Type* outputs;       // what each publishes every cycle
+  const Type* outputs;       // type that each component publishes every cycle
   std::size_t (*count)(const Machine& machine);
   std::string_view (*name_of)(const Machine& machine, std::size_t index);
 };
-// In the order of their numbers. The first call takes memory.
+// Returns the kinds in the order of their numbers. The first call allocates.
 std::span<const ComponentKind> ComponentKinds();
 
-// Components are numbered through: those of the first kind in the order of the machine file, then those of the next.
+// Components are numbered consecutively: first those of the first kind in the order of the machine file, then those of
+// the next kind.
 struct ComponentPlace {
-  const ComponentKind* kind = nullptr;  // null: there is no such component
-  std::size_t index = 0;                // among those of its kind
+  const ComponentKind* kind = nullptr;  // null: no such component
+  std::size_t index = 0;                // within its kind
+  // Returns the kind of a component and its index within that kind.
 };
 ComponentPlace PlaceOf(const Machine& machine, std::size_t component);
-// Of each kind the number of its first component; behind them all how many there are.
+// Returns the number of the first component of each kind, and the total count as last entry.
+// Returns the number of the component of this name; nothing if there is none.
 std::vector<std::uint32_t> FirstNumbers(const Machine& machine);
 std::optional<std::uint32_t> FindComponent(const Machine& machine, std::string_view name);
 std::vector<std::string_view> ComponentNames(const Machine& machine);

@@ -78,7 +78,7 @@ cam::Context CamContext(World& w) {
   return {w.cams, w.cycle.count, w.feedback, UsesCam, &w};
 }
 
-// The tracks as movers see them.
+// Updates the views of tracks for movers.
 void RefreshStreets(World& w) {
   for (std::size_t i = 0; i < w.tracks_now.size(); ++i) {
     const track::TrackParams& params = w.tracks.params[i];
@@ -118,7 +118,7 @@ void RefreshStreets(World& w) {
   }
 }
 
-// What movers do on each track, for the commands of the next cycle, and the modes of tracks.
+// Updates the use of each track by movers, for the commands of the next cycle, and the modes of tracks.
 void UseTracks(World& w) {
   std::ranges::fill(w.streets.uses, mover::TrackUse{});
   const auto use = [&w](std::uint32_t track, std::uint32_t mover) -> mover::TrackUse& {
@@ -157,7 +157,7 @@ void FailMovers(World& w, ErrorId error) {
   for (std::size_t i = 0; i < w.movers.size(); ++i) mover::Fail(MoverContext(w, i), error, w.mover_states[i]);
 }
 
-// AX-82: after an internal fault nothing may move on: all loops open, all outputs are zero. Movers brake.
+// AX-82: after an internal fault nothing may continue to move: all loops open, all outputs are zero. Movers brake.
 void OpenAllLoops(World& w) {
   FailMovers(w, ErrorId::kInternal);
   for (std::size_t i = 0; i < w.axis_states.size(); ++i) {
@@ -166,27 +166,28 @@ void OpenAllLoops(World& w) {
   }
 }
 
-// A master does not go on without a follower that has failed (AX-55). A coupling made at run time is over once its
-// follower has failed, so it is told once; one made at load holds.
+// A master stops if a follower has failed (AX-55). A coupling made at run time ends with the failure of its follower,
+// so this happens once; one of the machine file remains.
 void StopMasters(World& w, std::uint32_t follower) {
   axis::State& s = w.axis_states[follower];
   const auto stop = [&](std::uint32_t master) {
     axis::State& its = w.axis_states[master];
     const bool moves = !axis::AtRest(its) || its.active.kind != axis::RequestKind::kNone || its.superimposed;
     if (!moves || its.plc == axis::PlcState::kErrorStop) return;
-    // Of a chain of followers the one whose own fault it is.
+    // In a chain of followers, the axis whose own fault it is.
     its.fault_of = s.error == ErrorId::kAxisFault && s.fault_of != axis::kNoAxis ? s.fault_of : follower;
     axis::Fail(ContextOf(w, master), ErrorId::kAxisFault, false, its);
   };
   if (w.axis_masters[follower]) stop(*w.axis_masters[follower]);
   for (axis::CouplingTerm& term : s.coupling.law.terms) {
-    if (term.master < w.axis_states.size()) stop(term.master);  // movers go on
+    if (term.master < w.axis_states.size()) stop(term.master);  // movers are not stopped
     term.master = axis::kNoAxis;
   }
 }
 
-// What a member of an enabled group is told by itself: what moves nothing and changes neither its limits nor its
-// numbers, on which the path of the group is planned; and to be switched on or off, or reset.
+// Returns true for commands that a member of an enabled group accepts itself: those that cause no motion and change
+// neither its limits nor its positions, on which the path of the group is planned; and those that switch it on or off,
+// or reset it.
 bool IsForMembers(const axis::Command& command) {
   return std::visit(
       []<typename T>(const T&) {
@@ -203,13 +204,13 @@ bool IsOwned(const World& w, std::size_t axis) {
   return w.group_of[axis] != 0 && group::Owns(w.group_states[w.group_of[axis] - 1]);
 }
 
-// The axis that all members of a gantry follow.
+// Returns the axis that all members of a gantry follow.
 std::size_t LeaderOf(const World& w, std::size_t axis) {
   while (w.axis_masters[axis]) axis = *w.axis_masters[axis];
   return axis;
 }
 
-// What stops one member of a gantry stops all, along the ramp of the one that leads (AX-101).
+// A command that stops one member of a gantry stops all, along the ramp of the leader (AX-101).
 void ApplyToMember(World& w, std::size_t i, const Command& command, const axis::Command& body) {
   const auto apply = [&](std::size_t to, Ticket ticket) {
     axis::Apply(ContextOf(w, to), ticket, command.lease_s, body, w.axis_states[to]);
@@ -218,7 +219,7 @@ void ApplyToMember(World& w, std::size_t i, const Command& command, const axis::
   if (alone) return apply(i, command.ticket);
   const std::size_t leader = LeaderOf(w, i);
   if (std::holds_alternative<axis::Stop>(body) || std::holds_alternative<axis::Halt>(body)) {
-    for (std::size_t k = 0; k < w.axis_states.size(); ++k) {  // the leader stands where a follower is straightened
+    for (std::size_t k = 0; k < w.axis_states.size(); ++k) {  // the leader is at rest while a follower is straightened
       if (w.axis_states[k].skew.straightens && LeaderOf(w, k) == leader) apply(k, 0);
     }
     return apply(leader, command.ticket);
@@ -245,7 +246,7 @@ struct MachineApplier {
                            why.error, why.value, why.object});
   }
   void operator()(const StopAll& c) const {
-    // A group takes its members to rest.
+    // A group stops its members.
     for (std::size_t i = 0; i < world.groups.size(); ++i) {
       group::State& state = world.group_states[i];
       if (!group::Owns(state)) continue;
@@ -271,7 +272,8 @@ struct MachineApplier {
     }
     Report(FeedbackState::kDone);
   }
-  // Groups first, as long as they can tell what they were about; modules, which know by themselves, last.
+  // Groups first, while their members still show what they were doing; modules last, which keep that in their own
+  // state.
   void operator()(const EmergencyStop& c) const {
     for (std::size_t i = 0; i < world.groups.size(); ++i) {
       group::EmergencyStop(ContextOf(world, world.groups[i]), world.group_states[i]);
@@ -330,7 +332,7 @@ struct MachineApplier {
     cam::Apply(CamContext(world), ticket, c);
   }
 
-  // A mover cannot be let go: it comes to rest with its maximum dynamics.
+  // A mover cannot be released: it stops with its maximum dynamics.
   static mover::Command StopOf(const mover::MoverParams& params) {
     const trajectory::Limits most = params.xy.maximum.limits();
     return mover::Halt{.deceleration = most.deceleration, .jerk = most.jerk};
@@ -354,7 +356,7 @@ struct MachineApplier {
     for (std::size_t i = 0; i < world.pick_places.size() && !found; ++i) {
       found = of_pick_place(ContextOf(world, world.pick_places[i]), of, world.pick_place_states[i]);
     }
-    Report(FeedbackState::kDone);  // letting go of what is over already is no error
+    Report(FeedbackState::kDone);  // releasing a command that has ended is no error
   }
 };
 
@@ -380,7 +382,7 @@ axis::Forecast Foresee(World& w, std::size_t axis, const axis::Command& command)
 
 namespace {
 
-// One probe for several axes: the wire of another one.
+// Returns inputs with the touch probe of another axis: several axes may share one probe.
 ServoInputs WithProbeOf(const ServoInputs& wire, ServoInputs in) noexcept {
   in.touch_probe = wire.touch_probe;
   in.probe_rises = wire.probe_rises;
@@ -415,12 +417,12 @@ void Apply(World& w, const Command& command) noexcept {
     return std::visit(MachineApplier{w, command.ticket}, *for_machine);
   }
   const std::size_t kind = command.body.index() - 1;
-  const std::uint32_t component = command.target - 1;  // none has the machine's number less one
+  const std::uint32_t component = command.target - 1;  // out of range for the machine's own target
   if (component < w.first_of[kind] || component >= w.first_of[kind + 1]) return refuse(ErrorId::kUnknownTarget);
   const std::size_t i = component - w.first_of[kind];
   if (emergency && AsksToMove(command)) return refuse(ErrorId::kEmergencyStop);
   if (const auto* for_axis = std::get_if<axis::Command>(&command.body)) {
-    // What stops a follower stops its leader, which may be the group's (AX-101, GR-03).
+    // Stopping a follower stops its leader, which may be a member of the group (AX-101, GR-03).
     const bool of_leader =
         std::holds_alternative<axis::Stop>(*for_axis) || std::holds_alternative<axis::Halt>(*for_axis);
     const std::size_t leader = of_leader ? LeaderOf(w, i) : i;
@@ -459,7 +461,7 @@ void Apply(World& w, const Command& command) noexcept {
     if (Changes(wanted) && !MakeOrder(w, wanted)) return refuse(ErrorId::kCouplingLoop);
     mover::Apply(MoverContext(w, i), command.ticket, *for_mover, w.mover_states[i]);
   } else if (const auto* for_track = std::get_if<track::Command>(&command.body)) {
-    UseTracks(w);  // as movers have been told in this cycle; and they see what becomes of the track
+    UseTracks(w);  // with this cycle's commands to movers; below, movers see the change of the track
     track::Apply(TrackContext(w), i, command.ticket, *for_track);
     RefreshStreets(w);
   } else if (const auto* for_planar_group = std::get_if<planargroup::Command>(&command.body)) {
@@ -468,13 +470,13 @@ void Apply(World& w, const Command& command) noexcept {
     environment::Apply(EnvironmentContext(w), i, command.ticket, *for_environment);
   } else if (const auto* for_part = std::get_if<part::Command>(&command.body)) {
     ApplyToPart(w, i, command.ticket, *for_part);
-    RefreshStreets(w);  // what comes next in this cycle sees which tracks meet now
+    RefreshStreets(w);  // later commands in this cycle see which tracks are joined now
   }
 }
 
 namespace {
 
-// Before the first of its members; behind the module that moves it.
+// Steps a group before the first of its members, and after the module that moves it.
 void StepOnce(World& w, std::size_t group) {
   if (std::exchange(w.group_stepped[group], std::uint8_t{1}) != 0) return;
   if (const std::uint32_t module = w.pick_place_of[group]; module != 0) {
@@ -490,12 +492,12 @@ void StepBelts(World& w, std::span<const std::uint32_t> belts) {
   }
 }
 
-// Whether anything of StepMovers is there.
+// Returns true if the machine has anything that StepMovers steps.
 bool HasPlanar(const World& w) {
   return !w.movers.empty() || !w.tracks.states.empty() || !w.planar_groups.states.empty();
 }
 
-// All movers: behind the axes that they follow, before those that follow them.
+// Steps all movers: after the axes that they follow, before the axes that follow them.
 void StepMovers(World& w) {
   if (!HasPlanar(w)) return;
   mover::FollowRoutes(AllMovers(w));
@@ -506,7 +508,7 @@ void StepMovers(World& w) {
   if (!w.streets.names.empty()) {
     w.streets.traffic.Step(w.cycle, w.planner, w.streets.network, w.streets.riders, &w.grounds.guard);
   }
-  // Planets of formations behind their stars.
+  // Planets of formations after their stars.
   for (const bool planets : {false, true}) {
     for (std::size_t i = 0; i < w.movers.size(); ++i) {
       if (mover::IsPlanet(w.mover_states[i]) != planets) continue;
@@ -521,7 +523,7 @@ void StepMovers(World& w) {
 }  // namespace
 
 void Move(World& w) noexcept {
-  // A master does not go on without a follower that has failed.
+  // A master stops if a follower has failed.
   for (const std::uint32_t i : w.axis_order.sequence()) {
     if (i < w.axis_states.size() && w.axis_states[i].plc == axis::PlcState::kErrorStop) StopMasters(w, i);
   }
@@ -541,12 +543,12 @@ void Move(World& w) noexcept {
     axis::Move(ContextOf(w, i), w.axis_states[i]);
     StepBelts(w, w.belts_after[i]);
   }
-  for (std::size_t i = 0; i < w.groups.size(); ++i) StepOnce(w, i);  // without members
+  for (std::size_t i = 0; i < w.groups.size(); ++i) StepOnce(w, i);  // groups without members
 }
 
 void Control(World& w) noexcept {
   const auto publish = [&w](std::size_t i) { axis::Publish(w.axis_params[i], w.axis_states[i], w.axis_outputs[i]); };
-  // An axis publishes while its state is at hand: of a thousand, those of all do not fit into the nearer cache.
+  // Each axis publishes while its state is in the cache: a thousand states do not fit into it.
   bool sound = true;
   for (std::size_t i = 0; i < w.axis_states.size(); ++i) {
     sound &= axis::Control(ContextOf(w, i), w.axis_states[i], w.servo_outputs[i]);

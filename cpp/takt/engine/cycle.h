@@ -10,12 +10,12 @@
 
 namespace takt::engine {
 
-// Not for the cycle (axis/forecast.h).
+// Forecasts the motion of an axis, without or with a further command (axis/forecast.h). Not for use within the cycle.
 axis::Forecast Foresee(World& world, std::size_t axis);
 axis::Forecast Foresee(World& world, std::size_t axis, const axis::Command& command);
 
-// The stages, in the order of the cycle. Commands come between sense and move (Apply).
-// What a drive in another process has sent. False: nothing to go by.
+// The stages, in the order of the cycle. Commands are applied between Sense and Move.
+// Takes a sample of an external drive; returns false if it is of no use (see drives.h).
 bool Take(World& world, const DriveSample& sample) noexcept;
 void Sense(World& world) noexcept;
 void Apply(World& world, const Command& command) noexcept;

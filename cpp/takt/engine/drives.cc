@@ -8,7 +8,7 @@ namespace takt::engine {
 
 namespace {
 
-// How many answers are missing in this cycle if `answered` is the newest one.
+// Returns the number of missing answers in this cycle if `answered` is the newest one.
 std::int64_t Missing(Cycle cycle, std::int64_t answered) noexcept {
   return static_cast<std::int64_t>(cycle.count) - 1 - answered;
 }

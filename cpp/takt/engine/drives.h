@@ -1,11 +1,11 @@
-// The engine's side of drives in other processes (EN-26, AX-87): what goes to them and comes from them, and for how
-// long the last that came is gone by. How it travels is none of its business: see lcm/drives.h.
+// The engine's side of drives in other processes (EN-26, AX-87): the set points sent, the samples received, and how
+// long the last sample stays valid. Transport: lcm/drives.h.
 //
-// Every cycle has a set point for each drive, numbered as the cycle; the drive answers with what it measured once it
-// had carried that out. So in cycle k the answer to cycle k - 1 is wanted; the one to cycle -1, with the drive off,
-// before the first cycle. An older answer is carried on (axis/drive_link.h); when so many in a row are missing as the
-// machine file says, the drive is lost. One that has not answered at all yet is no fault: its axis is Disabled, and
-// switching it on fails when the drive does not get ready in time.
+// Every cycle sends each drive one set point, numbered as the cycle; the drive answers with what it measured after it
+// had carried out that set point. So cycle k expects the answer to cycle k - 1; cycle 0 expects the answer to "cycle
+// -1" (drive off). An older answer is extrapolated (axis/drive_link.h); the drive is lost when missing_cycles
+// consecutive answers are missing. A drive that has never answered is no fault: its axis is Disabled, and switching it
+// on fails if the drive is not ready in time.
 #pragma once
 
 #include <cstdint>
@@ -24,13 +24,13 @@ struct DriveSetPoint {
 };
 
 struct DriveSample {
-  std::int64_t cycle = -1;  // of the set point it answers
+  std::int64_t cycle = -1;  // of the set point that this sample answers
   std::uint32_t axis = 0;   // index in Machine::axes
   ServoInputs inputs;
-  // u: where the load really is, of a plant that knows it; published, but not used by the engine.
+  // [u] true position of the load, if the plant knows it; published, not used by the engine.
   double true_position = std::numeric_limits<double>::quiet_NaN();
-  // s, real time: how much later the cycles ought to begin for the clock of the drive's bus. Looked at by the
-  // scheduler, through lcm/drives.h; the engine does not know of it.
+  // [s] real time: delay by which later cycles should begin, for the clock of the drive's bus. Read by the scheduler
+  // through lcm/drives.h; the engine does not use it.
   double later_s = 0;
 };
 
@@ -39,19 +39,21 @@ struct DriveEntry {  // a sample as the cycle took it, for the journal
   DriveSample sample;
 };
 
-// What the engine remembers of one drive.
+// The link state of one external drive.
 struct HeardDrive {
   std::uint32_t axis = 0;            // index in Machine::axes
-  std::uint32_t missing_cycles = 1;  // answers missing in a row that make it lost
-  bool heard = false;                // at all
+  std::uint32_t missing_cycles = 1;  // consecutive missing answers after which the drive is lost
+  bool heard = false;                // it has answered at least once
   std::int64_t answered = -1;        // cycle of the set point that its newest sample answers ...
-  std::uint32_t step = 0;            // ... and how many cycles after the sample before, if it came in this cycle
+  // ... and the number of cycles since the sample before, if it arrived in this cycle
+  std::uint32_t step = 0;
 };
 
-// Takes the newest sample. False: it is none, or too old to go by, or answers what was not asked yet; nothing changes.
+// Takes a newer sample. Returns false, and changes nothing, if it is not newer than the last one, is too old to be
+// valid, or answers a set point that has not been sent yet.
 bool Take(Cycle cycle, const DriveSample& sample, HeardDrive& drive, ServoInputs& inputs) noexcept;
 
-// When what is known in this cycle was sampled; once a cycle, after what has come was taken.
+// Returns the age and link state of the inputs of this cycle. Call once a cycle, after all samples have been taken.
 Sampling SamplingIn(Cycle cycle, HeardDrive& drive) noexcept;
 
 void describe(Description<HeardDrive>&);

@@ -26,7 +26,7 @@ namespace {
 template <typename T, typename... Kinds>
 constexpr bool kIsOneOf = (std::is_same_v<T, Kinds> || ...);
 
-// For each kind of component: everything asks for motion but what is known not to.
+// For each kind of component: every command requests motion except those listed.
 bool Asks(const axis::Command& command) {
   return axis::AsksToMove(command);
 }
@@ -77,7 +77,7 @@ bool Asks(const part::Command& command) {
   return std::holds_alternative<part::ActivatePosition>(command);
 }
 
-// Belts, poses, tracks, groups of movers, environments: they move nothing by themselves.
+// Belts, poses, tracks, groups of movers, environments: they cause no motion by themselves.
 template <typename Other>
 bool Asks(const Other&) {
   return false;

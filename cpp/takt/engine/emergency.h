@@ -1,4 +1,4 @@
-// The emergency stop of the machine as a level (AX-100): who holds it, and what it refuses meanwhile.
+// The emergency stop of the machine as a level (AX-100): the commands that hold it, and the commands it refuses.
 #pragma once
 
 #include <array>
@@ -9,13 +9,14 @@
 
 namespace takt::engine {
 
-// Commands that hold the emergency stop. It is on while any does, and in the cycle in which one came that does not.
+// The commands that hold the emergency stop. It is on while at least one holds it, and in the cycle of any
+// EmergencyStop.
 class EmergencyHolders {
  public:
-  // False: as many hold it as there is room for.
+  // Returns false if there is no room for a further holder.
   bool Add(Ticket ticket) noexcept;
   void Pulse(std::uint64_t cycle) noexcept { pulse_ = cycle; }
-  // True: it held the stop.
+  // Returns true if the command held the stop.
   bool Remove(Ticket ticket) noexcept;
   void Clear() noexcept { *this = {}; }
   bool held() const noexcept { return count_ > 0; }
@@ -28,7 +29,7 @@ class EmergencyHolders {
   std::uint64_t pulse_ = UINT64_MAX;  // cycle
 };
 
-// Whether a command asks for power or motion, of whatever component: refused while an emergency stop is on.
+// Returns true if a command, of any component, requests power or motion: refused while an emergency stop is on.
 bool AsksToMove(const Command& command) noexcept;
 
 }  // namespace takt::engine

@@ -12,31 +12,32 @@ namespace takt::engine {
 
 namespace {
 
-// Lists of objects that may wait for each belt: they are long.
+// Lists of objects that may wait for each belt: they are large.
 constexpr std::size_t kObjectLists = 64;
-// Routes over the free surface that a cycle publishes: they are long.
+// Routes over the free surface that a cycle publishes: they are large.
 constexpr std::size_t kRoutesPerCycle = 8;
 
-// Every how many cycles something with this rate is due; 0: never.
+// Returns the number of cycles between two publications at this rate; 0: never.
 std::uint64_t Divisor(double rate_hz, double period_s) {
   if (rate_hz <= 0) return 0;
   return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(1 / (rate_hz * period_s))));
 }
 
-// Its multiples are spread evenly, whatever of them are taken.
-constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15;  // of 2^64
+// Its multiples are distributed evenly, whatever subset of them is used.
+constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15;  // times 2^64
 
-// Of the command queue, for commands that let go: for each component (EN-32) ...
+// Reserved entries of the command queue for commands with LetsGo(): for each component (EN-32) ...
 constexpr std::size_t kKeptPerComponent = 2;
-// ... and for those of the whole machine, whatever stops its components.
+// ... and for commands that stop the whole machine.
 constexpr std::size_t kKeptForAll = 16;
 // Answers to groups that one cycle takes.
 constexpr std::size_t kAnswersPerCycle = 16;
-// As many commands as a cycle can write into a journal: besides those of the queues one each of overruns and shutdown.
+// Maximum number of commands that a cycle writes into a journal: those of the queues, one for overruns and one for
+// shutdown.
 constexpr std::size_t kJournalledPerCycle = kCommandsPerCycle + kRenewalsPerCycle + kAnswersPerCycle + 2;
 
-// Cycles that may pass before the set points for external drives are fetched; and samples of a drive that one cycle
-// looks at.
+// Cycles that may pass before the set points for external drives are fetched; and maximum number of samples of a drive
+// that one cycle takes.
 constexpr std::size_t kDriveQueue = 16;
 
 bool IsTrackMade(const Command& command) {
@@ -54,7 +55,7 @@ bool IsCamBuilt(const Command& command) {
   return machine && std::holds_alternative<cam::CamBuilt>(*machine);
 }
 
-// Stops the whole machine.
+// Returns true if the command stops the whole machine.
 bool StopsAll(const Command& command) {
   const auto* machine = std::get_if<MachineCommand>(&command.body);
   return machine && !std::holds_alternative<Release>(*machine) && LetsGo(command);
@@ -67,7 +68,7 @@ bool IsRenewal(const Command& command) {
 
 }  // namespace
 
-// What the components of a kind publish.
+// The published states of the components of a kind.
 template <typename Outputs>
 struct OfKind {
   template <typename Params>
@@ -85,7 +86,7 @@ struct OfKind {
 
   SpscQueue<SnapshotOf<Outputs>> queue;
   const std::vector<Outputs>& outputs;
-  std::vector<std::uint64_t> divisors;  // due every so many cycles; 0: never
+  std::vector<std::uint64_t> divisors;  // period in cycles; 0: never
 };
 
 struct Engine::Impl {
@@ -126,10 +127,10 @@ struct Engine::Impl {
         figures_divisor(Divisor(machine.lcm.engine_rate_hz, machine.cycle.period_s)) {
     PublishFirst();
     SendSetPoints(-1);
-    LetsGo(Command{});  // its first call takes memory
+    LetsGo(Command{});  // its first call allocates
   }
 
-  // What is read before the first cycle is what an idle one finds: values at rest, not zeros.
+  // Before the first cycle, readers find the outputs of an idle cycle: values at rest, not zeros.
   void PublishFirst() {
     World idle(machine);
     Sense(idle);
@@ -148,7 +149,7 @@ struct Engine::Impl {
     world.part_outputs = idle.part_outputs;
   }
 
-  // To a component, with its number among those of its kind.
+  // Queues an answer for a component, by its index within its kind.
   bool GiveAnswer(std::size_t index, const CommandBody& answer) noexcept {
     const auto target = static_cast<std::uint32_t>(world.first_of[answer.index() - 1] + index + 1);
     return answers.TryPush({0, target, 0, answer});
@@ -178,7 +179,7 @@ struct Engine::Impl {
     figures.overruns += timing.overrun ? 1 : 0;
     figures.cycles_skipped += timing.late_periods;
     now_ns = timing.now_ns;
-    // A cycle that ends late counts as one period, however little it is late; a stall as many as passed in it (EN-34).
+    // A cycle that ends late counts as one period, however small the delay; a stall counts its whole periods (EN-34).
     const bool late = timing.overrun || timing.late_periods > 0;
     late_periods = late ? late_periods + std::max<std::uint64_t>(1, timing.late_periods) : 0;
     const std::uint32_t allowed = machine.cycle.overruns_in_a_row;
@@ -224,7 +225,7 @@ struct Engine::Impl {
     }
   }
 
-  // Producing thread.
+  // Called by the producing thread.
   bool Queue(const Command& command) noexcept {
     if (IsRenewal(command)) return renewals.TryPush(command);
     const std::size_t waiting = commands.size();
@@ -243,10 +244,11 @@ struct Engine::Impl {
   void PublishAll(OfKind<Outputs>& kind) noexcept {
     const std::size_t count = kind.divisors.size();
     if (count == 0) return;
-    // What comes last is what a full queue or buffer does not take: somebody else in every cycle, whatever the rates.
+    // The last components are those that a full queue or buffer drops: the first one varies from cycle to cycle, at any
+    // rate.
     std::size_t i = ((world.cycle.count * kGoldenRatio) >> 32) % count;
     for (std::size_t k = 0; k < count; ++k, i = i + 1 < count ? i + 1 : 0) {
-      // All components of a rate in the same cycle, so that a receiver can hold them against one another.
+      // All components of a rate in the same cycle, so that a receiver can compare them.
       const bool due = kind.divisors[i] != 0 && world.cycle.count % kind.divisors[i] == 0;
       if (!due && !options.every_cycle) continue;
       if (!kind.queue.TryPush({world.cycle.count, static_cast<std::uint32_t>(i), due, kind.outputs[i]}))
@@ -261,9 +263,9 @@ struct Engine::Impl {
     }
   }
 
-  // With the state of a mover when it has changed, and periodically for later subscribers.
+  // Publishes a trail with the state of its mover when it has changed, and periodically for later subscribers.
   void PublishTrails() noexcept {
-    const auto repeat = static_cast<std::uint64_t>(1 / machine.cycle.period_s);  // a second
+    const auto repeat = static_cast<std::uint64_t>(1 / machine.cycle.period_s);  // 1 s
     for (std::uint32_t i = 0; i < movers.divisors.size(); ++i) {
       if (movers.divisors[i] == 0 || world.cycle.count % movers.divisors[i] != 0) continue;
       const planar::Route trail = planar::TrailOf(world.streets.riders[i]);
@@ -292,7 +294,7 @@ struct Engine::Impl {
   // Publishes each route soon after it has changed, at most kRoutesPerCycle in a cycle, and again every second for
   // later subscribers.
   void PublishRoutes() noexcept {
-    const auto repeat = static_cast<std::uint64_t>(1 / machine.cycle.period_s);  // a second
+    const auto repeat = static_cast<std::uint64_t>(1 / machine.cycle.period_s);  // 1 s
     const auto count = static_cast<std::uint32_t>(movers.divisors.size());
     std::size_t told = 0;
     for (std::uint32_t k = 0, i = next_route; k < count && told < kRoutesPerCycle; ++k, i = i + 1 < count ? i + 1 : 0) {
@@ -338,7 +340,7 @@ struct Engine::Impl {
   World world;
   EngineFigures figures;
 
-  const std::size_t kept;  // places in the queue for commands that let go of a component
+  const std::size_t kept;  // reserved entries of the queue for commands with LetsGo()
   SpscQueue<Command> commands;
   SpscQueue<Command> renewals;
   SpscQueue<Command> answers;
@@ -355,7 +357,7 @@ struct Engine::Impl {
     planar::Route trail;
     std::uint64_t cycle = 0;
   };
-  std::vector<Said> trails;  // by mover, as published last
+  std::vector<Said> trails;  // by mover, as last published
   SpscQueue<RouteSnapshot> mover_routes;
   struct SaidRoute {
     bool on = false;
@@ -365,8 +367,8 @@ struct Engine::Impl {
       return on == other.on && started == other.started && begin == other.begin && last == other.last;
     }
   };
-  std::vector<SaidRoute> routes;  // likewise
-  std::uint32_t next_route = 0;   // the mover that is looked at first
+  std::vector<SaidRoute> routes;  // by mover, as last published
+  std::uint32_t next_route = 0;   // the mover that is checked first
   OfKind<pickplace::Outputs> pick_places;
   OfKind<mover::Outputs> movers;
   OfKind<track::Outputs> tracks;
@@ -382,18 +384,18 @@ struct Engine::Impl {
   SpscQueue<DriveSample> drive_samples;
   SpscQueue<DriveEntry> drive_journal;
 
-  Command taken;  // from a queue, by the cycle: made once, as it is large
+  Command taken;  // by the cycle from a queue; made once, as it is large
 
   std::uint64_t figures_divisor;
   std::uint64_t feedback_dropped = 0;  // by the queue
   std::uint64_t samples_unused = 0;    // by the cycle
   std::uint64_t late_periods = 0;      // since the last cycle in time
-  std::int64_t now_ns = 0;             // CycleTiming's
+  std::int64_t now_ns = 0;             // of CycleTiming
   bool shutting_down = false;
   std::atomic<bool> shutdown{false};
   std::atomic<std::uint64_t> refused{0};
-  std::atomic<std::uint64_t> samples_refused{0};  // before they came to the cycle
-  Ticket next_ticket = 1;                         // producing thread
+  std::atomic<std::uint64_t> samples_refused{0};  // before they reached the cycle
+  Ticket next_ticket = 1;                         // of the producing thread
 };
 
 Engine::Engine(Machine machine, const EngineOptions& options)
@@ -416,7 +418,7 @@ Ticket Engine::Submit(const Command& command) noexcept {
 
 bool Engine::Resubmit(const Command& command) noexcept {
   impl_->next_ticket = std::max(impl_->next_ticket, command.ticket + 1);
-  if (IsTrackMade(command)) track::Make(impl_->world.tracks.desk);  // what the journal says of it is given anyhow
+  if (IsTrackMade(command)) track::Make(impl_->world.tracks.desk);  // the journal has its result
   if (IsBoundaryMade(command)) environment::Make(impl_->world.environments.desk);
   if (IsCamBuilt(command)) BuildCam();
   return impl_->journalled.TryPush(command);

@@ -33,14 +33,14 @@ bool GoodName(std::string_view name) {
   return !name.empty() && name.size() <= 40 && std::all_of(name.begin(), name.end(), good);
 }
 
-// People read it; everything but control characters.
+// For display: everything but control characters.
 bool GoodMachineName(std::string_view name) {
   return !name.empty() && name.size() <= 64 && std::none_of(name.begin(), name.end(), [](char c) {
     return static_cast<unsigned char>(c) < ' ' || c == '\x7f';
   });
 }
 
-// What the reader cannot know: how parts of the file refer to one another.
+// Checks that the reader cannot make: references between parts of the file.
 class CrossCheck {
  public:
   CrossCheck(const Machine& machine, const SourceMap& source) : machine_(machine), source_(source) {}
@@ -120,7 +120,7 @@ class CrossCheck {
     }
   }
 
-  // Whether the key behind `path` stands in the text.
+  // Returns true if the key after `path` is written in the text.
   bool Written(const std::string& path, const char* key) const {
     const Place inner = source_.PlaceOf(path + key);
     const Place outer = source_.PlaceOf(path);
@@ -150,7 +150,7 @@ class CrossCheck {
       const std::optional<std::uint32_t> followed = MasterOf(machine_, i);
       if (followed && k-- == 0) return followed;
       const std::optional<std::uint32_t> led = MasterOfModule(machine_, i);
-      return led && led != i && k == 0 ? led : std::nullopt;  // one that leads itself is reported for itself
+      return led && led != i && k == 0 ? led : std::nullopt;  // an axis that leads itself is reported elsewhere
     };
     if (order.Make(master_of)) return;
     std::string members;
@@ -160,7 +160,7 @@ class CrossCheck {
         "expected axes that follow one another in no loop, found " + members + machine_.axes[loop.front()].name);
   }
 
-  // Cam modules and the axes and cams that they name.
+  // Cam modules and the axes and cams that they refer to.
   void CheckModules() {
     std::vector<std::string_view> slaves;
     std::vector<std::string_view> cams;
@@ -196,7 +196,7 @@ class CrossCheck {
     }
   }
 
-  // Groups and the axes that they name.
+  // Groups and the axes that they refer to.
   void CheckGroups() {
     std::vector<std::string_view> others = names_;
     for (const flexcam::FlexCamParams& module : machine_.flex_cams) others.push_back(module.name);
@@ -251,7 +251,7 @@ class CrossCheck {
     }
   }
 
-  // Belts and the axes that they name; several may go by the same. And poses.
+  // Belts and the axes that they refer to, which several belts may share; and poses.
   void CheckBelts() {
     for (std::size_t i = 0; i < machine_.belts.size(); ++i) {
       const std::string path = "belts[" + std::to_string(i) + "]";
@@ -264,7 +264,7 @@ class CrossCheck {
     }
   }
 
-  // Pick and place modules, and what they name. A group has one at most.
+  // Pick and place modules and what they refer to. A group has at most one module.
   void CheckPickPlaces() {
     std::vector<std::string_view> groups, belts, moved;
     for (const group::GroupParams& group : machine_.groups) groups.push_back(group.name);
@@ -304,7 +304,7 @@ class CrossCheck {
     for (std::size_t i = 0; i < machine_.movers.size(); ++i) {
       const mover::MoverParams& mover = machine_.movers[i];
       CheckUnique("movers", i, mover.name);
-      // However it is turned. One that is not written grows with the mover.
+      // In any orientation. The default gap depends on the mover's size.
       const double least = std::min(mover.width, mover.height);
       const std::string path = "movers[" + std::to_string(i) + "]";
       if (mover.gap >= least || !Written(path, ".gap")) continue;
@@ -323,7 +323,7 @@ class CrossCheck {
     if (problems.empty()) CheckRanges(parts);
   }
 
-  // PL-81: ranges that are given are no shorter than those that its movers need.
+  // PL-81: given ranges are no shorter than those that the movers of a track need.
   void CheckRanges(const planar::Parts& parts) {
     const auto is_manual = [](const track::TrackParams& params) {
       return params.collision_range_mode == track::CollisionRangeMode::kManual;
@@ -337,7 +337,7 @@ class CrossCheck {
       if (!is_manual(params)) continue;
       const track::CollisionRanges least = track::RangesOf(tracks, i);
       const auto check = [&](const char* key, double given, double needed) {
-        constexpr double kResolution = 1;  // mm, of what is needed
+        constexpr double kResolution = 1;  // [mm] of the required range
         if (given >= needed - kResolution) return;
         Add("tracks[" + std::to_string(i) + "]." + key,
             "expected at least " + FormatReal(std::ceil(needed)) + " mm, within which movers of " +
@@ -349,7 +349,7 @@ class CrossCheck {
     }
   }
 
-  // Groups of movers and what is in them: each in one at most.
+  // Groups of movers and their contents: each object is in at most one group.
   void CheckPlanarGroups() {
     std::vector<std::string_view> movers, tracks, environments, in_groups;
     for (const mover::MoverParams& mover : machine_.movers) movers.push_back(mover.name);
@@ -385,7 +385,7 @@ class CrossCheck {
     }
   }
 
-  // No two components have one name; it is said of the later one. Those of one section are looked at by others.
+  // Component names are unique; the later one is reported. Names within one section are checked by the reader.
   void CheckUnique(std::string_view section, std::size_t index, std::string_view name) {
     const std::vector<std::string_view> others = NamesBefore(section);
     if (name != "machine" && std::ranges::find(others, name) == others.end()) return;
@@ -403,12 +403,12 @@ class CrossCheck {
   }
   std::vector<std::string_view> Components() const { return ComponentNames(machine_); }
 
-  // A member goes by its group alone.
+  // A member of a group must not be moved by anything else.
   void CheckMember(const std::string& path, std::string_view name) {
     if (std::string why = WhyNoMember(machine_, name); !why.empty()) Add(path, why);
   }
 
-  // Lists that no axis of the machine can have.
+  // Lists of cam switches that no axis of the machine can have.
   void CheckCamSwitches() {
     for (std::size_t i = 0; i < machine_.cam_switches.size(); ++i) {
       const axis::CamSwitches& list = machine_.cam_switches[i];
@@ -430,7 +430,7 @@ class CrossCheck {
     }
   }
 
-  // Of components of any kind.
+  // Rates of components of any kind.
   void CheckRates() {
     const std::vector<std::string_view> components = Components();
     std::vector<std::string_view> seen;
@@ -440,12 +440,12 @@ class CrossCheck {
     }
   }
 
-  // A name that must be an axis', each at most once.
+  // Checks a name that must be an axis', each at most once.
   void CheckReference(const std::string& path, std::string_view name, std::vector<std::string_view>& seen) {
     CheckReference(path, name, seen, names_, "axis");
   }
 
-  // A name that must be one of `names`, each at most once.
+  // Checks a name that must be one of `names`, each at most once.
   void CheckReference(const std::string& path, std::string_view name, std::vector<std::string_view>& seen,
                       const std::vector<std::string_view>& names, const std::string& what) {
     if (name.empty()) return;
@@ -486,7 +486,7 @@ LoadResult LoadMachine(std::string_view text, std::string_view file_name, Worksp
   const bool has_any = std::ranges::any_of(ComponentKinds(), [&](const ComponentKind& k) { return k.count(machine); });
   if (readable && has_any) {
     std::vector<Problem> more = CrossCheck(machine, source).Run();
-    // A value that could not be read was not taken: what is found in its place does not stand in the file.
+    // A value that could not be read was not stored: the value found in its member is not the one in the file.
     const auto told = [&](const Problem& p) {
       return !p.path.empty() && std::ranges::find(problems, p.path, &Problem::path) != problems.end();
     };

@@ -1,4 +1,4 @@
-// Reads and checks a machine file: all problems in one run, nothing is started.
+// Reads and checks a machine file: reports all problems in one run, starts nothing.
 #pragma once
 
 #include <cstdint>
@@ -15,24 +15,25 @@ namespace takt::engine {
 struct LoadResult {
   std::optional<Machine> machine;
   std::vector<std::string> problems;  // "file:line:column: key.path: expected ..., found ..."
-  std::vector<std::string> warnings;  // in the same form; nothing that hinders
-  // The text alone does not say everything; WriteYaml(machine) does, but for the meshes of workspaces.
+  std::vector<std::string> warnings;  // in the same form; they do not prevent loading
+  // The text names other files, so it is not complete by itself; WriteYaml(machine) is, except for the meshes of
+  // workspaces.
   bool names_files = false;
   Checkers checkers{};
 };
 
-// kSkip: for whoever never asks whether a path is free, and may not have the files of meshes.
+// kSkip: for callers that never check paths, and may not have the mesh files.
 enum class Workspaces : std::uint8_t { kMake, kSkip };
 
-// kRefuse: the text is from a network or a log. None of the files that it names is opened; to name one is a problem.
+// kRefuse: the text comes from a network or a log. No file that it names is opened; naming one is a problem.
 enum class Files : std::uint8_t { kOpen, kRefuse };
 
-// What is wrong with naming it.
+// Returns the message for a file that was not opened.
 std::string NotOpened(const std::string& file);
 
 LoadResult LoadMachine(std::string_view text, std::string_view file_name, Workspaces workspaces = Workspaces::kMake,
                        Files files = Files::kOpen);
-// Reads the file; a problem when it cannot be read.
+// Reads and checks the file; a file that cannot be read is a problem.
 LoadResult LoadMachineFile(const std::string& path);
 
 }  // namespace takt::engine

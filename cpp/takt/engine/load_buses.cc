@@ -19,16 +19,15 @@ namespace {
 constexpr std::string_view kCanopen = "canopen:";
 constexpr std::string_view kEthercat = "ethercat:";
 
-// The watchdog of process data (register 0x0420) counts steps of 100 us with 16 bits, as it is set at power-on
-// [ETG.1000.4].
+// The watchdog of process data (register 0x0420) has 16 bits and counts steps of 100 us by default [ETG.1000.4].
 constexpr double kLongestEthercatHeartbeatS = 2.1845;
 
-// With a channel behind the colon.
+// Returns true if the bus is of this kind, with a channel after the colon.
 bool IsOf(std::string_view bus, std::string_view kind) {
   return bus.starts_with(kind) && bus.size() > kind.size();
 }
 
-// "0x6098", up to `largest`.
+// Returns true for "0x6098", up to `largest`.
 bool IsHex(std::string_view text, std::uint64_t largest) {
   if (!text.starts_with("0x") && !text.starts_with("0X")) return false;
   text.remove_prefix(2);
@@ -37,7 +36,7 @@ bool IsHex(std::string_view text, std::uint64_t largest) {
   return error == std::errc() && end == text.data() + text.size() && value <= largest;
 }
 
-// "0x6098:0", both hexadecimal or the second one decimal.
+// Returns true for "0x6098:0", both hexadecimal or the second one decimal.
 bool IsObject(std::string_view text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string_view::npos || !IsHex(text.substr(0, colon), 0xFFFF)) return false;
@@ -50,7 +49,7 @@ bool IsObject(std::string_view text) {
 bool FitsBits(std::int64_t value, int bits) {
   if (bits == 64) return true;
   const std::int64_t half = std::int64_t{1} << (bits - 1);
-  return value >= -half && value < 2 * half;  // with or without a sign
+  return value >= -half && value < 2 * half;  // signed or unsigned
 }
 
 class BusChecker {
@@ -162,11 +161,11 @@ class BusChecker {
         "expected another bit than that of limit_negative, found " + std::to_string(inputs.limit_positive) + " again");
   }
 
-  // A drive counts with 32 bits: in a cycle an axis may not go half their range, or nobody knows which way it went. And
-  // csv has a velocity of 32 bits.
+  // A drive counts with 32 bits: in a cycle an axis must move less than half their range, otherwise its direction is
+  // ambiguous. And the velocity of csv has 32 bits.
   void CheckScaling(const std::string& at, const BusDrive& drive) {
     const std::uint32_t index = axis::FindAxis(machine_.axes, drive.axis);
-    if (index == axis::kNoAxis) return;  // reported
+    if (index == axis::kNoAxis) return;  // reported elsewhere
     const axis::AxisParams& axis = machine_.axes[index];
     double per_unit = axis.encoder.increments_per_unit;
     std::string key = at + ".axis";
@@ -228,7 +227,7 @@ class BusChecker {
     const BusHoming& homing = *drive.homing;
     if (homing.method == 0) Add(at + ".homing.method", "expected a homing method (0x6098) other than 0, found 0");
     const std::uint32_t index = axis::FindAxis(machine_.axes, drive.axis);
-    if (index == axis::kNoAxis) return;  // reported
+    if (index == axis::kNoAxis) return;  // reported elsewhere
     const axis::AxisParams& axis = machine_.axes[index];
     if (axis.encoder.type != axis::EncoderType::kIncremental) {
       Add(at + ".homing",
@@ -245,7 +244,7 @@ class BusChecker {
     }
   }
 
-  // What the drive does by itself keeps to the limits of the axis, too.
+  // Motions of the drive itself must respect the limits of the axis, too.
   void CheckMost(const std::string& at, const std::optional<double>& found, double most, const std::string& what) {
     if (!found || *found <= most) return;
     Add(at, "expected the " + what + " limit of the axis at the most, " + FormatReal(most) + ", found " +

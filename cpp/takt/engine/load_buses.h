@@ -1,4 +1,4 @@
-// Field buses of a machine file: checks them, and makes external drives of their axes.
+// Field buses of a machine file: checks them, and makes their axes' drives external drives.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@ namespace takt::engine {
 
 std::vector<Problem> CheckBuses(const SourceMap& source, const Machine& machine);
 
-// Axes on buses become external drives, those that are listed as such already excepted.
+// Adds the axes on buses to the external drives, except those that are listed there already.
 void AddDrivesOfBuses(Machine& machine);
 
 }  // namespace takt::engine

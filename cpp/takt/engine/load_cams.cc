@@ -60,7 +60,7 @@ class CamLoader {
   cam::CamParams& cam_;
   const Files files_;
   CamLoading& loading_;
-  std::string file_;  // of points, where there is one
+  std::string file_;  // of points; empty: none
   cam::CsvPoints csv_;
 };
 

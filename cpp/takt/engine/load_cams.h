@@ -1,4 +1,4 @@
-// The cams of a machine file: reads their files, checks them.
+// The cams of a machine file: reads their files and checks them.
 #pragma once
 
 #include <vector>
@@ -12,10 +12,10 @@ namespace takt::engine {
 struct CamLoading {
   std::vector<Problem> problems;
   std::vector<Problem> warnings;
-  bool files = false;  // some cam came from a file
+  bool files = false;  // at least one cam came from a file
 };
 
-// Puts the points of files into the machine. A file's path counts from the machine file's folder.
+// Puts the points of files into the machine. Paths are relative to the folder of the machine file.
 CamLoading LoadCams(const SourceMap& source, Machine& machine, Files files);
 
 }  // namespace takt::engine

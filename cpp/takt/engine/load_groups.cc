@@ -42,7 +42,7 @@ class Loader {
   std::filesystem::path Folder() const { return std::filesystem::path(source_.file()).parent_path(); }
   std::string Beside(const std::string& file) const { return (Folder() / file).string(); }
 
-  // Of the file that the key `path` names.
+  // Returns the text of the file that the key `path` names.
   std::optional<std::string> Read(const std::string& path, const std::string& file) {
     loading_.files = true;
     if (files_ == Files::kRefuse) {

@@ -1,4 +1,4 @@
-// The groups of axes of a machine file and the paths for them: reads their files, checks them.
+// The groups of axes of a machine file and their paths: reads their files and checks them.
 #pragma once
 
 #include <vector>
@@ -16,8 +16,8 @@ struct GroupLoading {
   Checkers checkers{};
 };
 
-// Puts what stands in files (URDF, paths as CSV) into the machine. A file's path counts from the machine file's folder.
-// kMake: what knows whether paths are free is made, too, unless no files may be opened.
+// Puts the contents of files (URDF, paths as CSV) into the machine. Paths are relative to the folder of the machine
+// file. kMake: also makes the collision checkers, unless files may not be opened.
 GroupLoading LoadGroups(const SourceMap& source, Machine& machine, Workspaces workspaces, Files files);
 
 }  // namespace takt::engine

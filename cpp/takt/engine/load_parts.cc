@@ -28,10 +28,10 @@ std::string At(const char* list, std::size_t i) {
   return std::string(list) + "[" + std::to_string(i) + "]";
 }
 
-// mm: rounding. What overlaps by less lies side by side.
+// [mm] Rounding: parts that overlap by less are adjacent.
 constexpr double kFlush = 1e-6;
 
-// Rounded up, so that it is never 0.
+// Rounded up, so that the result is never 0.
 std::string Micrometres(double mm) {
   return FormatReal(std::ceil(mm * 1000) / 1000);
 }
@@ -58,7 +58,7 @@ class Checker {
     problems_.push_back(source_.ProblemAt(path, message));
   }
 
-  // Positions refer to both.
+  // Coordinate systems and parts: positions refer to both.
   void CheckNames() {
     std::vector<std::string_view> names{"machine"};
     for (const ComponentKind& kind : ComponentKinds()) {
@@ -105,7 +105,7 @@ class Checker {
     }
   }
 
-  // Where parts are at first, and where they can never be.
+  // Checks the initial positions of parts, and positions that they can never reach.
   void CheckPlaces(const planar::Parts& parts) {
     const auto overlaps = [&](std::size_t i, std::size_t position, std::size_t k) {
       const planar::Spot& spot = parts.all[i].positions[position];
@@ -125,7 +125,7 @@ class Checker {
   }
 
   void CheckMovers(const planar::Parts& parts) {
-    std::vector<std::optional<planar::Spot>> spots;  // of the movers before; none: not known
+    std::vector<std::optional<planar::Spot>> spots;  // of the preceding movers; none: not known
     for (std::size_t i = 0; i < machine_.movers.size(); ++i) {
       const mover::MoverParams& mover = machine_.movers[i];
       const std::string path = At("movers", i);
@@ -152,7 +152,7 @@ class Checker {
     }
   }
 
-  // Without parts the environment of its group says where a mover may be.
+  // Without parts, the environment of its group limits the positions of a mover.
   void CheckOnEnvironment(std::size_t i, const planar::Spot& at) {
     for (const planargroup::PlanarGroupParams& group : machine_.planar_groups) {
       if (!group.environment || std::ranges::find(group.movers, machine_.movers[i].name) == group.movers.end())
@@ -170,7 +170,7 @@ class Checker {
     }
   }
 
-  // What a mover covers at the start, for a person to read.
+  // Returns the area that a mover covers at the start, for messages.
   std::string Described(std::size_t i, const planar::Spot& at) const {
     const mover::MoverParams& mover = machine_.movers[i];
     const planar::Extent extent = planar::ExtentOf(mover::AreaAt(mover, at.origin, mover.initial.c));
@@ -181,7 +181,7 @@ class Checker {
            from_to(extent.lower.y, extent.upper.y) + " mm";
   }
 
-  // Two coordinate systems have nothing to do with each other.
+  // Movers in two different coordinate systems are independent.
   void CheckPair(std::size_t k, const planar::Spot& at_k, std::size_t i, const planar::Spot& at_i) {
     if (at_k.system != at_i.system) return;
     const mover::MoverParams &one = machine_.movers[k], &other = machine_.movers[i];

@@ -1,4 +1,4 @@
-// Coordinate systems and parts of a machine file: checks them, and where movers stand on them at the start.
+// Coordinate systems and parts of a machine file: checks them, and the initial positions of movers on them.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace takt::engine {
 
-// Without problems the parts can be made (part::Make).
+// If it returns no problems, the parts can be made (part::Make).
 std::vector<Problem> CheckParts(const SourceMap& source, const Machine& machine);
 
 }  // namespace takt::engine

@@ -30,7 +30,7 @@ class TwinChecker {
     problems_.push_back(source_.ProblemAt(path, message));
   }
 
-  // Whether `name` is one of `names` and new.
+  // Returns true if `name` is one of `names` and not in `seen` yet.
   bool Known(const std::string& path, const std::string& what, std::string_view name,
              const std::vector<std::string_view>& names, std::vector<std::string_view>& seen) {
     if (name.empty()) return false;  // reported as missing already
@@ -65,7 +65,7 @@ class TwinChecker {
     if (!made_ && axis.joint.empty()) Add(path, "expected the joint of the model that this axis moves (joint)");
     if (!made_) return;
     const group::GroupParams* group = GroupOf(axis.axis);
-    const bool weighed = group && group->kinematics->serial;  // its file says the masses
+    const bool weighed = group && group->kinematics->serial;  // its file defines the masses
     if (!weighed && !axis.mass) Add(path, "expected the mass of the body that this axis moves (mass)");
     if (weighed && axis.mass) Add(path + ".mass", "expected no mass: the URDF of group " + group->name + " has it");
     if (group) return;

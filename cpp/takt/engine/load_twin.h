@@ -1,5 +1,5 @@
-// The section `twin` of a machine file: its names, and what it must say of each axis. Whether a model fits is judged
-// where the model is (takt.twin).
+// The section `twin` of a machine file: checks its names and the data it needs for each axis. Whether a model fits is
+// checked with the model (takt.twin).
 #pragma once
 
 #include <vector>

@@ -7,7 +7,7 @@ namespace takt::engine {
 
 namespace {
 
-// An encoder that sends what the axis expects.
+// Returns an encoder that sends what the axis expects.
 plant::ServoEncoder MatchingEncoder(const axis::Encoder& expected) {
   plant::ServoEncoder encoder;
   const bool incremental = expected.type == axis::EncoderType::kIncremental;
@@ -26,7 +26,7 @@ plant::ServoEncoder MatchingEncoder(const axis::Encoder& expected) {
   return encoder;
 }
 
-// Enough torque for twice the axis' largest acceleration; the rest as the struct's defaults say.
+// Returns mechanics with torque for twice the axis' largest acceleration; otherwise the defaults.
 plant::ServoMechanics MatchingMechanics(const axis::AxisParams& axis, const plant::ServoDrive& drive) {
   plant::ServoMechanics mechanics;
   mechanics.inertia = drive.max_torque / (2 * axis.limits.acceleration);

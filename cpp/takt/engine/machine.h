@@ -28,9 +28,9 @@
 namespace takt::engine {
 
 struct CycleParams {
-  double period_s = 0.001;  // s, 250 µs to 20 ms
-  // So many periods of lateness without a cycle in time between stop everything; 0: never. As long as the watchdog of
-  // an external drive (takt/drive.py).
+  double period_s = 0.001;  // [s] 250 µs to 20 ms
+  // Late periods, without a cycle in time between them, after which everything stops; 0: never. As long as the watchdog
+  // of an external drive (takt/drive.py).
   std::uint32_t overruns_in_a_row = 100;
 };
 
@@ -40,15 +40,15 @@ struct ChannelRate {
 };
 
 struct LcmParams {
-  std::optional<std::string> url{};  // unset: that of the environment, else one that stays on this host (EN-25)
-  double axis_rate_hz = 100;         // of each component's state channel; at most once a cycle
+  std::optional<std::string> url{};  // unset: from the environment, else one that stays on this host (EN-25)
+  double axis_rate_hz = 100;         // [Hz] of each component's state channel; at most once a cycle
   std::vector<ChannelRate> rates{};  // components with a rate of their own
-  double engine_rate_hz = 10;        // of the engine's own channel
-  double dead_man_s = 0.25;          // s without a heartbeat after which a level-sensitive command is released
-  double command_age_s = 1;          // s after which a command that was not taken is refused
+  double engine_rate_hz = 10;        // [Hz] of the engine's own channel
+  double dead_man_s = 0.25;          // [s] without a heartbeat after which a level-sensitive command is released
+  double command_age_s = 1;          // [s] after which a command that no cycle has taken is refused
 };
 
-// The simulated servo behind an axis. Axes without one get an ideal servo that fits their own parameters.
+// The simulated servo of an axis. Axes without one get an ideal servo that fits their own parameters.
 struct SimulatedServo {
   std::string axis;  // name of the axis
   plant::ServoDrive drive;
@@ -62,19 +62,19 @@ struct Simulation {
   std::vector<SimulatedServo> servos;
 };
 
-// A drive with its encoder and switches that lives in another process, instead of a simulated one.
+// A drive, with its encoder and switches, in another process instead of a simulated one.
 struct ExternalDrive {
   std::string axis;                  // name of the axis
-  std::uint32_t missing_cycles = 5;  // so many answers missing in a row are a drive error
+  std::uint32_t missing_cycles = 5;  // consecutive missing answers that are a drive error
 };
 
 struct External {
   std::vector<ExternalDrive> drives;
   std::vector<Bus> buses;
-  double answer_within_s = 2;  // simulated time: s of the wall clock to wait for the answers to one cycle
+  double answer_within_s = 2;  // [s] of wall-clock time that simulated time waits for the answers to one cycle
 };
 
-// The live page (`takt view`). The engine itself takes commands from whoever gives them.
+// The live page (`takt view`). The engine itself accepts commands from any client.
 struct ViewParams {
   bool commands = false;
 };
@@ -101,19 +101,18 @@ struct Machine {
   std::vector<environment::EnvironmentParams> environments;
   Simulation simulation;
   External external;
-  std::optional<plant::TwinParams> twin{};  // unset: there is none
+  std::optional<plant::TwinParams> twin{};  // unset: no twin
   ViewParams view;
 };
 
-// The drive of this axis that lives in another process; null: it does not.
+// Returns the external drive of this axis; null if its drive is simulated.
 const ExternalDrive* ExternalOf(const Machine& machine, std::size_t axis);
-// Returns whether the drive of the axis homes before it is ready for the first time.
+// Returns true if the drive of the axis homes before it is ready for the first time.
 bool DriveHomes(const Machine& machine, std::size_t axis);
-// Returns why the axis of this name cannot be a member of a group: what was expected, and what was found. Empty: it
-// can.
+// Returns why the axis of this name cannot be a member of a group (what was expected, what was found); empty if it can.
 std::string WhyNoMember(const Machine& machine, std::string_view axis);
 
-// The servo behind `axis` in this machine.
+// Returns the parameters of the simulated servo of an axis in this machine.
 plant::ServoParams ServoOf(const Machine& machine, std::size_t axis);
 
 void describe(Description<CycleParams>&);

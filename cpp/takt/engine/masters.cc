@@ -11,22 +11,22 @@ namespace takt::engine {
 
 namespace {
 
-// Whether groups come behind all belts, wherever those go by themselves: they may ride on any of them.
+// kFirst: groups step after all belts, as far as no group moves those, since they may ride on any of them.
 enum class Belts : std::uint8_t { kFirst, kAnywhere };
 
-// The n-th that is seen is what is looked for.
+// Finds the n-th master that is passed to See.
 struct Nth {
   const World& world;
   const Wanted& wanted;
   std::uint32_t n;
-  std::uint32_t movers;  // the number of all of them
+  std::uint32_t movers;  // the common number of all movers
   std::optional<std::uint32_t> found{};
 
   void See(std::uint32_t master) {
     const std::uint32_t first = StepsBefore(world, master);
     if (!found && first != axis::kNoAxis && n-- == 0) found = first;
   }
-  // Number of the group that an axis belongs to, or will; 0: none.
+  // Returns the number of the group that an axis belongs to, or will; 0: none.
   std::uint32_t GroupOf(std::uint32_t axis) const { return axis == wanted.added ? wanted.group : world.group_of[axis]; }
 };
 
@@ -34,7 +34,7 @@ void SeeMasters(const axis::CouplingRequest& r, Nth& nth) {
   for (const axis::CouplingTerm& term : r.terms) nth.See(term.master);
 }
 
-// Of the paths of a group, each once in a row.
+// The masters of the paths of a group, without consecutive duplicates.
 void SeeMasters(const group::State& s, Nth& nth) {
   std::uint32_t last = 0;
   for (std::uint32_t i = 0; i < s.queue.count && !nth.found; ++i) {
@@ -51,14 +51,14 @@ void SeeMembers(const World& w, std::size_t group, Nth& nth) {
   if (nth.wanted.group == group + 1) nth.See(nth.wanted.added);
 }
 
-// The axes of belts whose set position counts.
+// The axes of belts by set position.
 void SeeBelts(const World& w, Nth& nth) {
   for (const Belt& belt : w.belts) {
     if (!IsMeasured(belt.params) && nth.GroupOf(belt.axis) == 0) nth.See(belt.axis);
   }
 }
 
-// The axes that carry, by the number of the carrier; measured belts need none.
+// The axes that move a carrier, given its number; measured belts need none.
 void SeeCarrier(const World& w, std::uint32_t number, Nth& nth) {
   if (number == 0) return;
   std::size_t i = number - 1;
@@ -70,10 +70,10 @@ void SeeCarrier(const World& w, std::uint32_t number, Nth& nth) {
   if (i < w.groups.size()) SeeMembers(w, i, nth);
 }
 
-// Of all that a group rides on, or may at any time.
+// The carriers that a group rides on, or may ride on at any time.
 void SeeCarriers(const World& w, std::size_t group, Nth& nth) {
   const group::State& s = w.group_states[group];
-  std::uint32_t last = 0;  // each once in a row
+  std::uint32_t last = 0;  // to skip consecutive duplicates
   const auto see = [&](const group::CarriedTarget& cargo) {
     if (cargo.carrier != last) SeeCarrier(w, cargo.carrier, nth);
     last = cargo.carrier;
@@ -86,7 +86,7 @@ void SeeCarriers(const World& w, std::size_t group, Nth& nth) {
   }
 }
 
-// The axes that movers follow.
+// Returns the n-th axis that movers follow.
 std::optional<std::uint32_t> MasterOfMovers(const World& w, Nth nth) {
   for (std::size_t i = 0; i < w.movers.size(); ++i) {
     const planar::Rider& rider = w.streets.riders[i];
@@ -96,9 +96,9 @@ std::optional<std::uint32_t> MasterOfMovers(const World& w, Nth nth) {
   return nth.found;
 }
 
-// The k-th axis that axis i must not step before: the one it follows from load on or by a cam module, those it is
-// coupled to, those it will be coupled to by buffered commands, those that its group follows or rides on, the members
-// of the group that it follows itself. Last come those of `wanted`.
+// Returns the k-th axis that axis i must not step before: the one it follows by the machine file or by a cam module,
+// those it is coupled to, those it will be coupled to by buffered commands, those that its group follows or rides on,
+// the members of the group that it follows itself. Last come those of `wanted`.
 std::optional<std::uint32_t> MasterOf(const World& w, std::uint32_t i, std::uint32_t k, const Wanted& wanted,
                                       Belts belts) {
   Nth nth{w, wanted, k, static_cast<std::uint32_t>(w.axis_states.size())};

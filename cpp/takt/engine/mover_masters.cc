@@ -12,7 +12,7 @@ namespace takt::engine {
 
 namespace {
 
-// What axes can follow of a mover: its way along tracks, which goes by its name alone, and coordinates.
+// The masters that a mover offers to axes: its position along tracks, under its own name, and its coordinates.
 constexpr std::array kCoordinates = {mover::kX, mover::kY, mover::kC};
 constexpr std::array kSuffixes = {"", ".x", ".y", ".c"};
 

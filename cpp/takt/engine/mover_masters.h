@@ -1,4 +1,4 @@
-// Movers that follow axes, and axes and movers that follow movers; belts that axes follow.
+// Masters across component kinds: axes for movers; movers and belts for axes.
 #pragma once
 
 #include <cstdint>
@@ -7,21 +7,21 @@
 
 namespace takt::engine {
 
-// Once, when a world is made.
+// Fills the tables of masters; called once, when a world is made.
 void NameMasters(World& world);
-// Before movers step: where axes are at the end of this cycle.
+// Before movers step: passes the states of axes at the end of this cycle to movers.
 void ShowAxesToMovers(World& world) noexcept;
-// Behind that: where movers are then.
+// After that: passes the states of movers to axes.
 void ShowMovers(World& world) noexcept;
 
-// Behind each belt: where it is then.
+// After each belt has stepped: passes its travel to axes.
 void ShowBelt(World& world, std::uint32_t belt) noexcept;
 
-// The axis that has to step before what follows this master (numbered as axis::FindMaster does): itself, that of a
-// belt, or for movers the number of all of them; kNoAxis: none.
+// Returns the axis that must step before the followers of this master (numbered as by axis::FindMaster): the axis
+// itself, the axis of a belt, or the common number of all movers; kNoAxis if none.
 std::uint32_t StepsBefore(const World& world, std::uint32_t master) noexcept;
 
-// The axis that a mover would follow by this command; kNoAxis: none.
+// Returns the axis that a mover would follow by this command; kNoAxis if none.
 std::uint32_t AxisFollowedBy(const World& world, const mover::Command& command) noexcept;
 
 }  // namespace takt::engine

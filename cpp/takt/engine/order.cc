@@ -25,7 +25,7 @@ void Order::Close() noexcept {
   made_[made_size_++] = component;
 }
 
-// The path goes from followers to masters; it comes to `again` a second time.
+// The path leads from followers to masters, and reaches `again` a second time.
 void Order::NoteLoop(std::uint32_t again) noexcept {
   while (depth_ > 0) {
     const std::uint32_t member = path_[--depth_].component;

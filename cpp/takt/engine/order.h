@@ -1,4 +1,4 @@
-// In which order axes step: masters before followers (EN-03).
+// The step order of axes: masters before followers (EN-03).
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,14 @@
 
 namespace takt::engine {
 
-// An order of `count` components such that each comes behind all its masters. All memory is taken when it is made, so
-// that it can be made anew within a cycle.
+// An order of `count` components in which each comes after all its masters. All memory is allocated at construction, so
+// that the order can be made anew within a cycle.
 class Order {
  public:
   explicit Order(std::size_t count);
 
-  // `master_of(i, k)` is the k-th master of i, or nothing where i has no more. False: there is a loop; the order stays
-  // as it was.
+  // Makes the order by depth-first search. `master_of(i, k)` is the k-th master of i, or nothing if i has no more.
+  // Returns false, and keeps the old order, if there is a loop.
   template <typename MasterOf>
   bool Make(const MasterOf& master_of) noexcept {
     Begin();
@@ -43,14 +43,14 @@ class Order {
   }
 
   std::span<const std::uint32_t> sequence() const noexcept { return sequence_; }
-  // The members of the loop that the last Make found, each a master of the next, the last one of the first.
+  // Returns the members of the loop that the last Make found: each is a master of the next, the last one of the first.
   std::span<const std::uint32_t> loop() const noexcept { return {loop_.data(), loop_size_}; }
 
  private:
   enum class Mark : std::uint8_t { kNew, kOpen, kDone };
   struct Visit {
     std::uint32_t component;
-    std::uint32_t next;  // which of its masters is looked at next
+    std::uint32_t next;  // index of the master to visit next
   };
 
   void Begin() noexcept;
@@ -59,17 +59,18 @@ class Order {
   void NoteLoop(std::uint32_t again) noexcept;
 
   std::vector<Mark> marks_;
-  std::vector<Visit> path_;  // from the component first asked to the one at hand
+  std::vector<Visit> path_;  // from the root of the search to the current component
   std::size_t depth_ = 0;
   std::vector<std::uint32_t> sequence_, made_, loop_;
   std::size_t made_size_ = 0, loop_size_ = 0;
 };
 
-// Index of the axis that this one follows from load on, if any.
+// Returns the index of the axis that this axis follows by the machine file; nothing if it follows none.
 std::optional<std::uint32_t> MasterOf(const Machine& machine, std::size_t axis);
-// Index of the axis that the cam module which moves this one follows, if any.
-// The names of all that a cam module can follow: axes, belts, movers and their coordinates.
+// Returns the names of all masters that a cam module can follow: axes, belts, movers and their coordinates.
 std::vector<std::string> MasterNames(const Machine& machine);
+// Returns the index of the axis (or of the axis of the belt by set position) that the cam module of this axis follows;
+// nothing if there is none.
 std::optional<std::uint32_t> MasterOfModule(const Machine& machine, std::size_t axis);
 
 }  // namespace takt::engine

@@ -25,7 +25,7 @@ Hindrance By(ErrorId error, ObjectKind kind, std::size_t index) {
   return {error, ObjectAt(kind, index)};
 }
 
-// What a part does has changed: others see it.
+// Makes a change of a part's state visible to movers and tracks.
 void Show(World& w, std::size_t i) {
   planar::PartNow& now = w.surface.now[i];
   const planar::PartNow before = now;
@@ -48,7 +48,7 @@ bool TouchesPart(World& w, std::size_t mover, std::size_t part) {
   });
 }
 
-// It stands on the part, or its way leads over it.
+// Returns true if the mover is on the part, or its route leads over it.
 bool Uses(World& w, std::size_t mover, std::size_t part) {
   if (w.mover_states[mover].part == part || TouchesPart(w, mover, part) ||
       mover::LeadsOver(MoverContext(w, mover), w.mover_states[mover], static_cast<std::uint32_t>(part))) {
@@ -65,14 +65,15 @@ void FailMoversOn(World& w, std::size_t part, ErrorId error) {
   }
 }
 
-constexpr double kStride = 10;  // mm
+constexpr double kStride = 10;  // [mm]
 
-// A place on a track, where its part is to be.
+// Returns a position on a track, with its part at its commanded position.
 planar::Place PlaceOn(const World& w, std::uint32_t track, double s) {
   return planar::PlaceAt(*w.tracks.ways[track], s) + w.tracks.goal(track).origin;
 }
 
-// Whether a mover that stands on one track comes too near to another that goes between two places on the other track.
+// Returns true if a mover at rest on one track would be too close to another mover between two positions on another
+// track.
 bool IsTooNear(const World& w, const planar::Rider& one, double gap, std::uint32_t track, double from, double to) {
   const track::Tracks& t = w.tracks;
   const std::uint32_t own = one.route.first();
@@ -80,10 +81,11 @@ bool IsTooNear(const World& w, const planar::Rider& one, double gap, std::uint32
   const double at = one.at.position, rest = t.states[own].length - at, length = t.states[track].length;
   const planar::Place place = PlaceOn(w, own, at);
   const double reach = w.streets.tracks[own].reach;
-  // One behind the other.
+  // Consecutive tracks.
   if (t.end_nodes[own] == t.start_nodes[track] && rest + from < gap) return true;
   if (t.end_nodes[track] == t.start_nodes[own] && length - to + at < gap) return true;
-  // Both behind a node, or before it: where they may touch, or are near the node, they keep the gap along the way, too.
+  // Both after a node, or before it: where they may touch, or are near the node, they also keep the gap along the
+  // tracks.
   const bool touch =
       planar::NearestTo(*t.ways[track], place - t.goal(track).origin).distance < reach + planar::kRangeSlack;
   const auto beside = [&](double its, double least, double most) {
@@ -100,8 +102,8 @@ bool IsTooNear(const World& w, const planar::Rider& one, double gap, std::uint32
   return false;
 }
 
-// Whether two movers on tracks of different parts would be nearer to each other than movers come there: one that its
-// part brings, and stands, and another that may be going, and stops as soon as it can.
+// Returns true if two movers on tracks of different parts would be closer than allowed: one that its part carries, at
+// rest, and another that may be moving, and stops as soon as it can.
 bool AreTooNear(const World& w, const planar::Rider& one, const planar::Rider& other) {
   const double gap = std::max(one.gap, other.gap);
   double least = other.at.position, most = least;
@@ -110,7 +112,7 @@ bool AreTooNear(const World& w, const planar::Rider& one, const planar::Rider& o
     least = braking.lowest;
     most = braking.highest;
   }
-  double begin = 0;  // of the track, seen from where its first one begins
+  double begin = 0;  // begin of the track, relative to the begin of the route's first track
   for (const std::uint32_t track : other.route.all()) {
     if (begin > most) break;
     const double length = w.tracks.states[track].length;
@@ -121,8 +123,8 @@ bool AreTooNear(const World& w, const planar::Rider& one, const planar::Rider& o
   return false;
 }
 
-// What of a mover's group would be in its way where its part goes: of all that does not go along, and that movers on
-// tracks do not keep clear of by themselves.
+// Returns the object of a mover's group that the mover would collide with at its part's new position: of all objects
+// that do not move along, and that movers on tracks do not avoid by themselves.
 Hindrance InGroup(const World& w, std::size_t mover, std::uint32_t part, const planar::Spot& from,
                   const planar::Spot& to) {
   const planar::GroupRegistry& g = w.grounds;
@@ -154,7 +156,7 @@ Hindrance InGroup(const World& w, std::size_t mover, std::uint32_t part, const p
   return {};
 }
 
-// Who would be too near to a mover that the part takes along, were that there.
+// Returns the object that would be too close to a mover that the part carries, at the new position.
 Hindrance TooNear(World& w, std::uint32_t part, std::uint32_t position) {
   const planar::PartNow before = w.surface.now[part];
   const planar::Spot from = w.surface.spot(part), to = w.surface.all[part].positions[position];
@@ -177,8 +179,8 @@ Hindrance TooNear(World& w, std::uint32_t part, std::uint32_t position) {
   return found;
 }
 
-// Movers that hinder a part from leaving where it is: those on it that move or reach over its border, and others that
-// reach over it.
+// Returns true if a mover prevents a part from leaving its position: a mover on it that moves or extends over its
+// border, or another one that extends over it.
 bool Holds(World& w, std::size_t mover, std::uint32_t part, const mover::Cover& cover) {
   const mover::State& s = w.mover_states[mover];
   const auto touches = [&](std::uint32_t k) {
@@ -194,7 +196,7 @@ bool Holds(World& w, std::size_t mover, std::uint32_t part, const mover::Cover& 
   return false;
 }
 
-// A mover on the part belongs to a formation that is not all on it.
+// Returns true if a mover on the part belongs to a formation that is not completely on it.
 bool IsTorn(World& w, std::size_t mover, std::uint32_t part) {
   const auto body = [&](std::size_t i) { return mover::BodyOf(MoverContext(w, i), w.mover_states[i]); };
   if (w.mover_states[mover].part != part || body(mover) == 0) return false;
@@ -204,7 +206,7 @@ bool IsTorn(World& w, std::size_t mover, std::uint32_t part) {
   return false;
 }
 
-// Another part brings a mover to where this one goes.
+// Returns true if another part carries a mover to the target position of this one.
 bool ComesUnder(const World& w, std::size_t mover, const planar::Part& shape, const planar::Spot& to) {
   const planar::MoverView& now = w.grounds.movers[mover];
   return now.comes && planar::Touches(shape, to, now.goal.system, planar::AreaThere(now));
@@ -235,7 +237,7 @@ Hindrance HindranceOf(World& w, std::uint32_t part, std::uint32_t position) {
         cover.all(), [&](const planar::Area& area) { return planar::Touches(shape, to, s.system, area); });
     if (s.part != part && (below || ComesUnder(w, i, shape, to))) return By(ErrorId::kPartMover, ObjectKind::kMover, i);
     if (s.part != part) continue;
-    // Those that are there already, or are to be; and those that could not stop before it any more.
+    // Movers that are there already, or will be; and those that could not stop before it.
     const auto goes_along = [&](std::uint32_t k, bool) { return w.mover_states[k].part == part; };
     planar::Course brought;
     for (const planar::Area& area : cover.all()) planar::Add(Shifted(area, to.origin - from.origin), brought);
@@ -288,7 +290,7 @@ void ApplyToPart(World& w, std::size_t i, Ticket ticket, const part::Command& co
   }
   part::Apply(ContextOfPart(w, i), ticket, command, hindrance, w.part_states[i]);
   Show(w, i);
-  // From now on it has a place where it goes.
+  // From now on the movers on the part also reserve an area at its target position.
   for (std::size_t k = 0; goes && k < w.movers.size(); ++k) {
     if (w.mover_states[k].part == i) mover::Stand(MoverContext(w, k), w.mover_states[k]);
   }

@@ -1,5 +1,5 @@
-// Parts of the surface and what is on them: who has to rest before a part goes, and goes with it; and the states that
-// movers and parts force on each other (PL-32).
+// Parts of the surface and the movers on them: which movers must be at rest before a part moves and travel with it, and
+// the states that movers and parts force on each other (PL-32).
 #pragma once
 
 #include <cstddef>
@@ -8,15 +8,15 @@
 
 namespace takt::engine {
 
-// command: carries it out or refuses it.
+// Stage Apply: carries the command out or refuses it.
 void ApplyToPart(World& world, std::size_t part, Ticket ticket, const part::Command& command) noexcept;
 
-// move: before tracks and movers.
+// Stage Move: before tracks and movers.
 void StepParts(World& world) noexcept;
 
 void PublishParts(World& world) noexcept;
 
-// actuate: what ideal parts report in the next cycle, or broken ones.
+// Stage Actuate: computes what simulated parts, ideal or with faults, report in the next cycle.
 void SimulateParts(World& world) noexcept;
 
 }  // namespace takt::engine

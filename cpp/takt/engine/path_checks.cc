@@ -28,9 +28,9 @@ using workspace::Sample;
 using workspace::Trouble;
 
 constexpr auto kIdleWait = std::chrono::milliseconds(1);
-// Looked at in one go: a start of its own costs more than a sample.
+// Samples that are checked in one run: starting a run costs more than a sample.
 constexpr std::size_t kSamplesAtOnce = 1000;
-// Of refused moves whose end has not been told yet.
+// Sentences about refused moves whose end has not been reported yet.
 constexpr std::size_t kSentences = 1024;
 
 std::string_view UnitOf(path::Measure measure) {
@@ -74,7 +74,7 @@ std::string_view NoWaySentence(double value) {
 }
 static_assert(planar::kRouteTracks == 256, "NoWaySentence says so");
 
-// To three places, a whole number without any.
+// Rounds to three decimals; a whole number without any.
 std::string Rounded(double value) {
   std::string text = FormatReal(std::round(value * 1000) / 1000);
   if (text.ends_with(".0")) text.resize(text.size() - 2);
@@ -96,7 +96,7 @@ std::string ModeSentence(double value) {
   return std::string(ErrorText(ErrorId::kCommandMode)) + (mode ? "; it is in " + std::string(mode->name) : "");
 }
 
-// "mover two"; empty: none.
+// Returns "mover two"; empty if there is no object.
 std::string NameOf(const ObjectInfo& object, const Machine& machine) {
   const auto name = [&](const char* kind, const auto& list) {
     return object.number == 0 || object.number > list.size() ? std::string() : kind + list[object.number - 1].name;
@@ -121,12 +121,12 @@ std::string NameOf(const ObjectInfo& object, const Machine& machine) {
   }
 }
 
-// One question: what goes on without a gap is looked at together.
+// The check of one request: contiguous parts of the path are checked together.
 class Inquiry {
  public:
   explicit Inquiry(workspace::Checker& checker) : checker_(checker) {}
 
-  // False: something is wrong, or nothing is left to look at.
+  // Returns false if a problem was found, so that the remaining path need not be checked.
   bool Take(const Survey::Part& part) {
     unit_ = UnitOf(part.measure);
     if (part.on_blend) {
@@ -136,14 +136,14 @@ class Inquiry {
       return false;
     }
     for (const Sample& sample : part.samples) {
-      if (!line_.empty() && &sample == part.samples.data()) continue;  // the last one of the part before
+      if (!line_.empty() && &sample == part.samples.data()) continue;  // the last sample of the previous part
       line_.push_back(sample);
       elements_.push_back(part.element);
     }
     return line_.size() < kSamplesAtOnce || CheckLine();
   }
 
-  // `lost`: behind the last part there is no position of the axes.
+  // `lost`: why the axes have no position after the last part.
   void End(kinematics::Reason lost) {
     if (finding_ || !CheckLine() || lost == kinematics::Reason::kNone) return;
     Finding finding{.trouble = Trouble::kNoPose, .first = "tool", .second = {}, .joints = {}, .reason = lost};
@@ -163,7 +163,8 @@ class Inquiry {
     on_blend_ = on_blend;
   }
 
-  // False: something is wrong. The last sample stays: from there it goes on.
+  // Checks the collected samples. Returns false if a problem was found. The last sample is kept: the next part begins
+  // there.
   bool CheckLine() {
     if (line_.size() < 2) return true;
     const std::optional<Finding> found = checker_.Check(line_);
@@ -194,7 +195,7 @@ struct PathChecks::OfGroup {
         survey(fixed),
         parts(workspace::PartNames(fixed.params.workspace.value(), fixed.kinematics)) {}
 
-  // From 1; 0: none.
+  // Returns the number of the part, from 1; 0: none.
   std::uint32_t NumberOf(const std::string& part) const {
     const auto found = std::ranges::find(parts, part);
     return found == parts.end() ? 0 : static_cast<std::uint32_t>(found - parts.begin() + 1);
@@ -203,7 +204,7 @@ struct PathChecks::OfGroup {
   workspace::Checker checker;
   Survey survey;
   std::vector<std::string> parts;
-  std::optional<group::PathCheckRequest> asked{};  // last
+  std::optional<group::PathCheckRequest> asked{};  // last request
 };
 
 PathChecks::PathChecks(Engine& engine, Checkers checkers) : engine_(engine) {
@@ -224,7 +225,7 @@ void PathChecks::Run() {
   }
   group::PathCheckRequest question;
   bool any = false;
-  while (engine_.questions().TryPop(question)) {  // what was asked before is not waited for any more
+  while (engine_.questions().TryPop(question)) {  // earlier requests are not waited for any more
     const std::size_t index = question.group - 1;
     if (index >= groups_.size() || !groups_[index]) continue;
     groups_[index]->asked = question;
@@ -271,7 +272,7 @@ std::string PathChecks::Sentence(const FeedbackEvent& event) {
   if (found == sentences_.end()) return SentenceNaming(event, engine_.machine());
   std::string sentence = std::move(found->second);
   sentences_.erase(found);
-  // Something else may have ended the command meanwhile.
+  // The command may have ended for another reason meanwhile.
   const bool as_answered = event.error == ErrorId::kCollision || event.error == ErrorId::kUnreachable ||
                            event.error == ErrorId::kSingular || event.error == ErrorId::kCamMaking;
   return as_answered ? sentence : SentenceNaming(event, engine_.machine());

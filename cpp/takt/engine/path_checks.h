@@ -1,8 +1,8 @@
-// Answers groups that ask whether a path is free (group/path_check_request.h), with what stands in their workspaces,
-// and has tracks made (track/build_queues.h) and cams built (cam/builder.h). Not for the cycle.
+// Answers groups that ask whether a path is free (group/path_check_request.h), from the obstacles in their workspaces,
+// and builds tracks (track/build_queues.h) and cams (cam/builder.h). Not for use within the cycle.
 //
-// Simulated time asks between two cycles, so that it stands still meanwhile and each run is the same; real time has a
-// thread for it. The answer is a command of the journal: a replay asks nobody.
+// In simulated time this runs between two cycles, so that time stands still meanwhile and every run is the same; in
+// real time it has a thread of its own. The answer is a command of the journal: a replay needs no checks.
 #pragma once
 
 #include <atomic>
@@ -22,14 +22,15 @@ namespace takt::engine {
 
 class PathChecks {
  public:
-  // `checkers`: of LoadMachine. `engine` must outlive this.
+  // `checkers`: from LoadMachine. `engine` must outlive this object.
   PathChecks(Engine& engine, Checkers checkers);
   ~PathChecks();
 
-  // Answers what has been asked. One thread.
+  // Answers all waiting requests. Call from one thread.
   void Run();
 
-  // What is wrong, for people: of a path that was refused, what meets what where. Any thread. Empty: nothing is.
+  // Returns a message for users, e.g. which objects collide where on a refused path; empty if there is no error. Any
+  // thread.
   std::string Sentence(const FeedbackEvent& event);
 
  private:
@@ -44,12 +45,12 @@ class PathChecks {
   std::deque<std::pair<Ticket, std::string>> sentences_;
 };
 
-// What is wrong, for people, where nobody has looked at the workspace; empty: nothing is. The machine has names for
-// what is in the way.
+// Returns a message for users without a check of the workspace; empty if there is no error. SentenceNaming also names
+// the objects involved, by their names in the machine.
 std::string Sentence(const FeedbackEvent& event);
 std::string SentenceNaming(const FeedbackEvent& event, const Machine& machine);
 
-// Runs them again and again, for as long as this lives.
+// Runs the checks repeatedly while this object lives.
 class PathCheckThread {
  public:
   explicit PathCheckThread(PathChecks& checks);

@@ -10,12 +10,12 @@
 namespace takt::engine {
 namespace {
 
-// So deep the cycle's calls never go; its pages are there before the first cycle.
+// The cycle's calls never go deeper than this; its pages are mapped before the first cycle.
 [[gnu::noinline]] void TouchStack() {
   constexpr std::size_t kBytes = 256 * 1024;
   std::byte stack[kBytes];
   std::memset(stack, 0, kBytes);
-  asm volatile("" : : "r"(stack) : "memory");  // so that the compiler keeps it
+  asm volatile("" : : "r"(stack) : "memory");  // keeps the compiler from removing the array
 }
 
 }  // namespace

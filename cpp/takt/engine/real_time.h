@@ -1,4 +1,4 @@
-// Makes the calling thread a real-time thread for as long as this object lives (EN-02).
+// Makes the calling thread a real-time thread while this object lives (EN-02).
 #pragma once
 
 #include <sched.h>
@@ -10,13 +10,13 @@ namespace takt::engine {
 
 class RealTimeThread {
  public:
-  // SCHED_FIFO with this priority, memory locked, stack touched, and one CPU if given.
+  // Requests SCHED_FIFO with this priority, locks memory, touches the stack, and pins the thread to `cpu` if given.
   RealTimeThread(int priority, std::optional<int> cpu);
   ~RealTimeThread();
   RealTimeThread(const RealTimeThread&) = delete;
   RealTimeThread& operator=(const RealTimeThread&) = delete;
 
-  // What the system did not permit, and why; empty: nothing.
+  // Returns what the system did not permit, and why; empty if it permitted everything.
   const std::string& refused() const { return refused_; }
 
  private:

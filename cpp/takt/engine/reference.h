@@ -1,4 +1,4 @@
-// Everything that is described in C++, as one JSON text: pages and Python signatures are made from it.
+// Everything that is described in C++ as one JSON text; reference pages and Python signatures are made from it.
 #pragma once
 
 #include <string>

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::int64_t kReaderWaitNs = 200'000;
-constexpr std::int64_t kFollows = 100;    // a hundredth of what is asked for in a cycle, as the answer to it comes late
-constexpr std::int64_t kMostShift = 500;  // 1/500 of a period: 2000 ppm, far more than clocks differ by
+constexpr std::int64_t kFollows = 100;    // a hundredth of the requested shift per cycle: its effect is reported late
+constexpr std::int64_t kMostShift = 500;  // 1/500 of a period: 2000 ppm, far more than clocks differ
 
 std::int64_t NowNs() {
   timespec now{};
@@ -30,7 +30,7 @@ void SleepUntil(std::int64_t instant_ns) {
   }
 }
 
-// When a run ends: asked before every cycle.
+// Decides when a run ends; called before every cycle.
 class EndJudge {
  public:
   EndJudge(Engine& engine, const SchedulerOptions& options, const std::atomic<int>& signals)
@@ -93,11 +93,12 @@ RunResult RunRealTime(Engine& engine, const SchedulerOptions& options, EndJudge&
   RunResult result;
   CycleTiming timing;
   std::int64_t deadline = NowNs() + period_ns;
-  std::int64_t skipped = 0;  // periods that the cycle before lost while it ran
+  std::int64_t skipped = 0;  // periods lost while the previous cycle ran
   while (!judge.Ended(result)) {
     SleepUntil(deadline);
     const std::int64_t woken = NowNs();
-    const std::int64_t asleep = std::max<std::int64_t>(0, (woken - deadline) / period_ns);  // periods lost before it
+    // periods lost before this cycle
+    const std::int64_t asleep = std::max<std::int64_t>(0, (woken - deadline) / period_ns);
     timing.late_periods = static_cast<std::uint64_t>(skipped + asleep);
     timing.now_ns = woken;
     RunOne(engine, options, timing);

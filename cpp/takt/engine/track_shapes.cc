@@ -7,8 +7,8 @@ namespace takt::engine {
 
 namespace {
 
-constexpr double kShapeStride = 10;     // mm from one place to the next, or more:
-constexpr std::uint32_t kPlaces = 512;  // so many there are at most
+constexpr double kShapeStride = 10;     // [mm] smallest distance of points; larger if there would be more than ...
+constexpr std::uint32_t kPlaces = 512;  // ... this number of points
 
 std::uint32_t CountOn(double length) {
   if (!(length > 0)) return 0;
@@ -48,7 +48,7 @@ std::optional<std::uint32_t> TrackShapes::Next(const track::Tracks& tracks) noex
 void TrackShapes::Publish(std::uint64_t cycle, const track::Tracks& tracks, SpscQueue<TrackPlaces>& queue) noexcept {
   if (known_.empty()) return;
   if (!looked_ || tracks.changes != changes_) {
-    // From its first place again, whatever has changed.
+    // Starts again with its first point, whatever has changed.
     if (now_) known_[*now_] = {};
     now_.reset();
     looked_ = true;
@@ -62,7 +62,7 @@ void TrackShapes::Publish(std::uint64_t cycle, const track::Tracks& tracks, Spsc
   }
   if (!now_) return;
   const TrackPlaces out = PlacesOf(cycle, tracks, *now_, first_);
-  if (!queue.TryPush(out)) return;  // in one of the next cycles
+  if (!queue.TryPush(out)) return;  // retry in one of the next cycles
   first_ += out.count;
   if (first_ == out.total) now_.reset();
 }

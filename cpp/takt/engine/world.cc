@@ -21,7 +21,7 @@ namespace {
 // Feedback of one cycle: each live command of an axis may start and end in it, and so may each newly arrived one.
 constexpr std::size_t kEventsPerAxis = 4 * (axis::kBufferSize + 5);
 constexpr std::size_t kEventsPerCommand = 4;
-// A question may be given up and the next one asked before anybody has looked.
+// A request may be abandoned and the next one made before it has been answered.
 constexpr std::size_t kQuestionsPerGroup = 4;
 constexpr std::size_t kEventsPerMover = 4 * mover::kSlots;
 constexpr std::size_t kEventsPerPart = 6;
@@ -32,7 +32,7 @@ void TouchTypes(const std::variant<T...>*) {
   (TypeOf<T>(), ...);
 }
 
-// It must be there.
+// Requires: an element of this name exists.
 template <typename T>
 std::uint32_t IndexNamed(const std::vector<T>& list, const std::string& name) {
   return static_cast<std::uint32_t>(std::ranges::find(list, name, &T::name) - list.begin());

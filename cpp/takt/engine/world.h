@@ -34,29 +34,29 @@
 
 namespace takt::engine {
 
-// So many commands are applied in one cycle at most; the others wait in the queue. Each may plan a motion, which takes
+// Maximum number of commands applied in one cycle; the others wait in the queue. Each may plan a motion, which takes
 // some µs.
 inline constexpr std::size_t kCommandsPerCycle = 16;
-// The same for renewals, which plan nothing and wait in a queue of their own.
+// The same for renewals, which plan nothing and have a queue of their own.
 inline constexpr std::size_t kRenewalsPerCycle = 64;
 
-// What a cam module is made from, with its names looked up.
+// A cam module: its parameters, with names resolved.
 struct FlexCam {
   flexcam::FlexCamParams params;
   std::uint32_t slave = 0;
   std::optional<std::uint32_t> master{};
-  axis::HomingParams homing;  // of the slave, as the machine file has it
+  axis::HomingParams homing;  // of the slave, from the machine file
 };
 
-// What a group of axes is made from.
+// A group of axes: its parameters and what is made from them.
 struct AxesGroup {
   group::GroupParams params;
   group::Mounting mounting;
   std::optional<kinematics::Kinematics> kinematics{};
-  std::vector<std::uint32_t> axes;  // members at the start
+  std::vector<std::uint32_t> axes;  // initial members
 };
 
-// What a belt is made from.
+// A belt: its parameters, with names resolved.
 struct Belt {
   conveyor::BeltParams params;
   std::uint32_t axis = 0;
@@ -64,47 +64,48 @@ struct Belt {
 
 struct World;
 
-// A group as one who looks for what carries: it does not carry itself.
+// A group in search of carriers: it does not carry itself.
 struct Rider {
   World* world;
   std::uint32_t group;
 };
 
-// What a pick and place module is made from, with its names looked up.
+// A pick and place module: its parameters, with names resolved.
 struct PickPlace {
   pickplace::PickPlaceParams params;
   std::uint32_t group = 0;
   std::vector<std::uint32_t> belts;
 };
 
-// What is broken in the simulation of a part; for tests.
+// Faults to inject into the simulation of a part; for tests.
 struct PartFaults {
-  bool fault = false;  // it reports one
-  bool stuck = false;  // it never gets where it is to be
-  bool lost = false;   // it is nowhere
+  bool fault = false;  // it reports an error
+  bool stuck = false;  // it never reaches its commanded position
+  bool lost = false;   // its position is unknown
 };
 
 // Everything the cycle works on, in arrays by component; index i is axis i of the machine.
 struct World {
   explicit World(const Machine& machine);
-  World(const World&) = delete;  // the sink and what surrounds an axis point into the storage
+  World(const World&) = delete;  // `feedback` and `surrounding` point into the storage
   World& operator=(const World&) = delete;
 
   Cycle cycle;
   trajectory::Planner planner;
   EmergencyHolders emergency;
 
-  std::vector<std::uint32_t> first_of;  // of each kind the number of its first component (components.h)
+  std::vector<std::uint32_t> first_of;  // number of the first component of each kind (components.h)
 
   std::vector<axis::AxisParams> axis_params;
   std::vector<axis::CamSwitches> cam_switches;
   cam::Store cams;
   std::vector<axis::State> axis_states;
   std::vector<axis::Outputs> axis_outputs;
-  axis::MachineView surrounding;                           // all axes, as each of them sees it
-  Order axis_order;                                        // masters before followers; behind all axes: the movers
-  std::vector<std::uint32_t> probe_wires;                  // the axis whose touch probe each has
-  std::vector<std::optional<std::uint32_t>> axis_masters;  // which axis each follows, if any
+  axis::MachineView surrounding;  // all axes, as each of them sees the others
+  // masters before followers; the movers are one node after all axes
+  Order axis_order;
+  std::vector<std::uint32_t> probe_wires;                  // the axis whose touch probe input each axis uses
+  std::vector<std::optional<std::uint32_t>> axis_masters;  // the axis that each axis follows, if any
 
   std::vector<FlexCam> flex_cams;
   std::vector<flexcam::State> flex_cam_states;
@@ -117,17 +118,19 @@ struct World {
   std::vector<group::LookAhead> look_aheads;
   std::vector<group::PathTable> paths;
   std::vector<group::Zone> zones;
-  bool plans_elsewhere = false;             // of groups: PathPlanned tells that they are there
+  // plans of groups are made outside the cycle: PathPlanned says that they are ready
+  bool plans_elsewhere = false;
   group::PathCheckRequests questions;       // of all groups
   std::vector<std::uint32_t> group_of;      // the group that each axis is a member of, from 1; 0: none
-  std::vector<std::uint8_t> group_stepped;  // in this cycle
+  std::vector<std::uint8_t> group_stepped;  // already stepped in this cycle
 
   std::vector<Belt> belts;
   std::vector<conveyor::State> belt_states;
   std::vector<conveyor::Outputs> belt_outputs;
-  std::vector<std::uint32_t> measured_belts;            // step before all axes ...
-  std::vector<std::vector<std::uint32_t>> belts_after;  // ... and those of set positions behind each axis
-  std::vector<Rider> riders;                            // the groups
+  std::vector<std::uint32_t> measured_belts;  // belts by measured position, which step before all axes ...
+  // ... and belts by set position, which step after the axis of this index
+  std::vector<std::vector<std::uint32_t>> belts_after;
+  std::vector<Rider> riders;  // the groups
 
   std::vector<conveyor::PoseParams> poses;
   std::vector<conveyor::PoseState> pose_states;
@@ -143,7 +146,7 @@ struct World {
   std::vector<part::Inputs> part_inputs;
   std::vector<part::Outputs> part_outputs;
   std::vector<PartFaults> part_faults;
-  planar::Parts surface;  // as movers and tracks see the parts
+  planar::Parts surface;  // the parts as movers and tracks see them
 
   std::vector<mover::MoverParams> movers;
   std::vector<mover::Inputs> mover_inputs;
@@ -152,13 +155,13 @@ struct World {
   mover::SurfaceRoutes routes;      // over the free surface
   std::vector<mover::Outputs> mover_outputs;
   mover::TrackNetworkState streets;
-  std::vector<mover::TrackView> tracks_now;        // of this cycle
-  std::uint64_t streets_changes = 0;               // Tracks::changes as of which the links between them are known
-  std::vector<axis::OutsideMaster> mover_masters;  // the coordinates of movers, as axes follow them
+  std::vector<mover::TrackView> tracks_now;        // in this cycle
+  std::uint64_t streets_changes = 0;               // value of Tracks::changes for which `streets.declared` is valid
+  std::vector<axis::OutsideMaster> mover_masters;  // coordinates of movers and travel of belts, as masters for axes
 
   track::Tracks tracks;
 
-  planar::GroupRegistry grounds;  // of movers, tracks, groups of movers and environments
+  planar::GroupRegistry grounds;  // for movers, tracks, groups of movers and environments
   planargroup::Groups planar_groups;
   environment::Environments environments;
 
@@ -166,9 +169,9 @@ struct World {
   std::vector<ServoOutputs> servo_outputs;
   std::vector<plant::ServoParams> servo_params;
   std::vector<plant::ServoState> servo_states;
-  std::vector<std::uint32_t> simulated;  // axes whose drive is a servo here ...
-  std::vector<HeardDrive> drives;        // ... and those of the others
-  std::vector<double> true_positions;    // u, of axes whose plant says them; else NaN
+  std::vector<std::uint32_t> simulated;  // axes with a simulated servo ...
+  std::vector<HeardDrive> drives;        // ... and the links of the external drives of the others
+  std::vector<double> true_positions;    // [u] of axes whose plant reports it; else NaN
   std::vector<Sampling> samplings;
 
   std::vector<FeedbackEvent> feedback_storage;

@@ -1,4 +1,4 @@
-// Commands as they arrive: inputs and settings changed, changes of cam queued, or refused.
+// Commands to a module: inputs and settings are changed, changes of cam queued, or refused.
 #include <algorithm>
 
 #include "takt/axis/axis.h"
@@ -10,16 +10,17 @@ namespace takt::flexcam {
 
 namespace {
 
-// What a change of inputs asks for. A level that is there already asks for nothing: it needs a new edge.
+// Returns the action that a change of inputs requests. A level that is set already requests nothing: it needs a new
+// edge.
 Action AskedBy(const Control& command, const Inputs& was, const State& s) {
   if (command.sync_cam) {
     if (*command.sync_cam != was.sync_cam) return *command.sync_cam ? Action::kSyncIn : Action::kSyncOut;
-    if (*command.sync_cam && s.state != ModuleState::kSync) return Action::kSyncIn;  // and is refused
+    if (*command.sync_cam && s.state != ModuleState::kSync) return Action::kSyncIn;  // will be refused
   }
   return command.home_execute.value_or(false) && !was.home_execute ? Action::kHome : Action::kNone;
 }
 
-// Levels that rise with this command, beside those that rose in this cycle before.
+// Adds the levels that rise with this command to those that rose earlier in this cycle.
 void Note(const Inputs& was, const Inputs& now, Inputs& rose) {
   rose.enable |= now.enable && !was.enable;
   rose.reset_error |= now.reset_error && !was.reset_error;
@@ -32,7 +33,7 @@ void Note(const Inputs& was, const Inputs& now, Inputs& rose) {
   rose.sync_out_instant |= now.sync_out_instant && !was.sync_out_instant;
 }
 
-// Every cam that a sequence runs has to be there.
+// Returns true if a cam that the sequence runs is missing.
 bool LacksCam(const State& s, SequenceMode mode) {
   for (const SequencePart part : {SequencePart::kIn, SequencePart::kOut}) {
     for (const SequenceStep& step : StepsOf(mode, part)) {
@@ -46,7 +47,7 @@ bool WithMaster(const State& s) {
   return s.settings.position_control == PositionControl::kMasterDirection;
 }
 
-// A command is told the end of a ramp only if there is one: where the slave follows, and the mode is that of a ramp.
+// A command is notified of the end of a ramp only if there is one: the slave follows, and the mode is that of a ramp.
 bool Ramps(const State& s, OffsetMode mode) {
   return mode == OffsetMode::kRampIn || (WithMaster(s) && mode == OffsetMode::kDirect);
 }
@@ -66,7 +67,7 @@ void Adjust(const Context& c, Ticket ticket, Adjustment what, State& s) {
   Report(c, before, FeedbackState::kAborted);
 }
 
-// Whether the end of a ramp is to be waited for.
+// Returns true if the command is done only at the end of a ramp.
 bool BeginAdjustments(const Context& c, Ticket ticket, const Inputs& was, State& s) {
   if (s.state != ModuleState::kSync || !IsCoupled(s.clutch)) return false;
   const Inputs& now = s.inputs;
@@ -88,7 +89,7 @@ ErrorId MayControl(const Control& command, const State& s) {
   if (command.cam_table && s.slots[*command.cam_table - 1] == 0) return ErrorId::kUnknownTarget;
   const bool sequence = command.cam_sequencer.value_or(false) && !s.inputs.cam_sequencer;
   if (sequence && LacksCam(s, s.settings.cam_sequence_mode)) return ErrorId::kEmptySlot;
-  // A slave that would have to come back to where its cam is zero.
+  // The slave would have to move back to the zero of its cam.
   const bool to_nothing = command.scaling_slave == 0.0 && s.inputs.scaling_slave != 0;
   if (to_nothing && WithMaster(s)) return ErrorId::kWouldReverse;
   return ErrorId::kNone;
@@ -121,10 +122,10 @@ void CarryOut(const Context& c, Ticket ticket, double, const Control& command, a
     return;
   }
   for (Ticket& adjusting : s.adjusting) {
-    if (adjusting == ticket) adjusting = 0;  // its end is that of the clutch or of homing
+    if (adjusting == ticket) adjusting = 0;  // the command ends with the clutch or with homing
   }
   const bool of_clutch = s.request == Action::kSyncIn || s.request == Action::kSyncOut;
-  if (asked == Action::kHome && of_clutch) {  // it would be refused, and the other one lost
+  if (asked == Action::kHome && of_clutch) {  // it would be refused, and the other request lost
     s.warning = ErrorId::kState;
     return Report(c, ticket, FeedbackState::kError, ErrorId::kState);
   }
@@ -153,7 +154,7 @@ void CarryOut(const Context& c, Ticket ticket, double lease_s, const Jog& comman
   const bool opposite = s.jog.ticket == 0 && command.positive && command.negative;
   ErrorId error = ErrorId::kNone;
   if (s.state != ModuleState::kReady && !jogs) error = ErrorId::kState;
-  if (opposite) error = ErrorId::kParameter;  // nobody knows which key was first
+  if (opposite) error = ErrorId::kParameter;  // the first key is unknown
   if (!IsOn(slave)) error = ErrorId::kPowerOff;
   if (held && error != ErrorId::kNone) return Report(c, ticket, FeedbackState::kError, error);
   Report(c, ticket, FeedbackState::kActive);
@@ -174,7 +175,7 @@ void CarryOut(const Context& c, Ticket ticket, double, const ChangeCam& command,
   const bool empty = s.slots[command.cam_table - 1] == 0;
   ErrorId error = ErrorId::kNone;
   if (empty) error = ErrorId::kUnknownTarget;
-  // A sequence decides itself what comes next.
+  // A sequence selects the next cam itself.
   if (s.state != ModuleState::kSync || s.inputs.cam_sequencer) error = ErrorId::kState;
   if (error == ErrorId::kNone && !Enqueue(ticket, command, s)) error = ErrorId::kBufferFull;
   Report(c, ticket, error == ErrorId::kNone ? FeedbackState::kActive : FeedbackState::kError, error);

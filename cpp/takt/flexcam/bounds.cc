@@ -9,11 +9,11 @@ namespace takt::flexcam {
 
 namespace {
 
-// Some 0.05 µs each; ten times that where a piece goes further than those before it.
+// About 0.05 µs each; ten times as much if a piece exceeds the extreme values so far.
 constexpr int kPiecesPerCycle = 4;
 
-// Pieces are taken in leaps all over the cam: so the great ones come early, and most of those that follow are seen at
-// once to go no further.
+// Pieces are visited in strides all over the cam: the large values are found early, and most of the remaining pieces
+// are quickly seen not to exceed them.
 std::size_t LeapOf(std::size_t pieces) {
   std::size_t leap = std::max<std::size_t>(1, pieces * 5 / 8);
   while (std::gcd(leap, pieces) != 1) ++leap;

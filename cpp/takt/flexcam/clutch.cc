@@ -12,7 +12,7 @@ using trajectory::Quintic;
 constexpr int kBisections = 40;
 constexpr int kTurnsAhead = 3;
 constexpr double kTiny = 1e-9;
-// A measured master has turned round once it is further back than this share of the distance; noise is less.
+// A measured master has reversed once it is back by more than this share of the distance; noise is less.
 constexpr double kPlay = 1e-3;
 
 double SlaveTurn(const ClutchContext& c) {
@@ -31,13 +31,13 @@ bool OnCam(const ClutchState& s) {
   return s.phase == ClutchPhase::kWaitingOut || s.phase == ClutchPhase::kClosed;
 }
 
-// The slave follows the last curve.
+// Returns true if the slave follows the last curve.
 bool OnCurves(const ClutchState& s) {
   const bool opens = s.phase == ClutchPhase::kOpening || (s.phase == ClutchPhase::kWaitingIn && s.opens_still);
   return s.curve_count > 0 && s.mode == ClutchMode::kRampPos && (opens || s.phase == ClutchPhase::kClosing);
 }
 
-// Requires: OnCurves(s). A master at `master` has passed the end of the curve.
+// Requires: OnCurves(s). Returns true if a master at `master` has passed the end of the curve.
 bool EndsBefore(const ClutchState& s, double master) {
   return On(Top(s), master) >= Top(s).over.length;
 }
@@ -74,23 +74,23 @@ bool RightDirection(const ClutchContext& c, double sense) {
   }
 }
 
-// The sense to plan for: that of the master or, while it stands, the only one allowed; 0: not known yet.
+// Returns the sense to plan for: that of the master or, while it is at rest, the only one allowed; 0: not known yet.
 double SenseToPlan(const ClutchContext& c, const ClutchState& s) {
   if (s.sense != 0) return s.sense;
   if (c.settings.sync_direction == ClutchDirection::kCurrent) return 0;
   return c.settings.sync_direction == ClutchDirection::kPositive ? 1 : -1;
 }
 
-// --- What the slave does over the master's position ---
+// --- Motion of the slave over the master's position ---
 
-// Whether that is defined: at rest, on a curve, or on the cam with the master moving.
+// Returns true if that motion is defined: at rest, on a curve, or on the cam with the master moving.
 bool IsTied(const ClutchContext& c, const ClutchState& s) {
   if (OnCurves(s)) return c.in_step;
   if (OnCam(s)) return c.in_step && c.master_before.velocity != 0;
   return c.at_rest;
 }
 
-// Requires: it is tied, and the master is at `master`, in the cycle before or between that and this one.
+// Requires: IsTied, and `master` is a position from the previous cycle to this one.
 KinematicState OwnOver(const ClutchContext& c, const ClutchState& s, double master) {
   if (OnCurves(s) && !EndsBefore(s, master)) return OverMaster(Top(s), master);
   const KinematicState& m = c.master_before;
@@ -100,7 +100,7 @@ KinematicState OwnOver(const ClutchContext& c, const ClutchState& s, double mast
   return {own.position, slope, (own.acceleration - slope * m.acceleration) / (m.velocity * m.velocity)};
 }
 
-// Begins a curve on what the slave does now. False: too many are there.
+// Begins a curve on the present motion of the slave. Returns false if there are too many curves.
 bool Push(const ClutchCurve& curve, const Way& way, ClutchState& s) {
   if (!OnCurves(s) || EndsBefore(s, curve.begin)) {
     s.curve_count = 0;
@@ -112,9 +112,8 @@ bool Push(const ClutchCurve& curve, const Way& way, ClutchState& s) {
   return true;
 }
 
-// Takes back the curves whose begin the master has gone back behind.
-// With an opening the turn of a rotary slave comes back that it began in: a
-// closing that was planned meanwhile may have chosen another one.
+// Discards the curves whose begin the master has passed backwards. With an opening, the turn of a rotary slave is
+// restored in which it began: a closing that was planned meanwhile may have chosen another one.
 void TakeBack(const ClutchContext& c, Way& way, ClutchState& s) {
   const bool closes = s.phase == ClutchPhase::kWaitingIn || (s.phase == ClutchPhase::kClosing && !s.leaves);
   bool taken = false;
@@ -150,19 +149,19 @@ void TakeBack(const ClutchContext& c, Way& way, ClutchState& s) {
 
 // --- Closing over the master's displacement ---
 
-// Meanwhile the cam is no function of the master's position.
+// While a ramp is in progress, the cam is no function of the master's position.
 bool IsRamped(const Way& way) {
   return way.to_x.ramp.kind != RampKind::kNone || way.to_slave.ramp.kind != RampKind::kNone;
 }
 
-// Master's u after which there is the next sync position; 0: there is one only.
+// [master's u] Returns the distance between sync positions; 0: there is only one.
 double TurnOfPlace(const ClutchContext& c, const Way& way) {
   if (c.master_turn != 0) return c.master_turn;
   const bool repeats = c.settings.sync_in_passed == PassedSync::kNextCycle && !way.profiler.once;
   return repeats ? c.table.length() / way.to_x.factor : 0;
 }
 
-// The next sync position that leaves room for the whole distance. False: there is none ahead.
+// Finds the next sync position that leaves room for the whole distance. Returns false if there is none ahead.
 bool FindPlace(const ClutchContext& c, double sense, const Way& way, ClutchState& s) {
   const double full = c.settings.master_sync_in_distance;
   const double least = s.looked_from + sense * full * (1 - kTiny);
@@ -177,7 +176,7 @@ bool FindPlace(const ClutchContext& c, double sense, const Way& way, ClutchState
   return true;
 }
 
-// Brings the position that the cam means to the turn of a rotary slave that is nearest to `position`.
+// Moves the cam's position to the turn of a rotary slave that is nearest to `position`.
 void NearestTurn(const ClutchContext& c, double wanted, double position, Way& way) {
   const double turn = SlaveTurn(c);
   if (turn != 0) way.to_slave.out_zero += turn * std::round((position - wanted) / turn);
@@ -190,7 +189,7 @@ ClutchCurve ClosingCurve(const ClutchContext& c, const KinematicState& own, doub
   return MakeCurve(s.place - sense * distance, distance, sense, true, own, end, c.slave.planner_limits());
 }
 
-// Finds turn of the slave and distance such that the curve keeps its sense.
+// Finds the turn of the slave and the distance for which the curve does not reverse.
 Status KeepSense(const ClutchContext& c, const KinematicState& own, double sense, Way& way, ClutchState& s) {
   const double full = c.settings.master_sync_in_distance;
   const double turn = SlaveTurn(c);
@@ -219,7 +218,7 @@ Status KeepSense(const ClutchContext& c, const KinematicState& own, double sense
   return Status::Failed(too_fast ? ErrorId::kSlaveLimits : ErrorId::kWouldReverse);
 }
 
-// Where the curve begins and ends for a master in this sense, and in which turn of the slave.
+// Plans begin and end of the curve for a master in this sense, and the turn of the slave.
 Status PlanClosing(const ClutchContext& c, double sense, Way& way, ClutchState& s) {
   if (!FindPlace(c, sense, way, s)) return Status::Failed(ErrorId::kSyncPassed);
   const KinematicState own = IsTied(c, s) ? OwnOver(c, s, c.master_before.position) : KinematicState{s.out, 0, 0};
@@ -238,7 +237,7 @@ Status PlanClosing(const ClutchContext& c, double sense, Way& way, ClutchState& 
   return Status::Ok();
 }
 
-// Waits for the master to get to the begin of the curve.
+// Waits for the master to reach the begin of the curve.
 Status WaitForBegin(const ClutchContext& c, Way& way, ClutchState& s) {
   UpdateSense(c, c.settings.master_sync_in_distance, s);
   const double sense = SenseToPlan(c, s);
@@ -256,7 +255,7 @@ Status WaitForBegin(const ClutchContext& c, Way& way, ClutchState& s) {
   if (s.planned_sense != sense) {
     s.planned_sense = 0;
     if (const Status status = plan(); status.failed()) {
-      // A master that has turned away may come back; one that was asked to close behind itself is refused.
+      // A master that has turned away may return; a closing behind the master at the time of the request is refused.
       const bool away = status.error == ErrorId::kSyncPassed && s.accepted_sense != 0 && s.accepted_sense != sense;
       if (!away) return status;
       s.looked_from = c.master.position;
@@ -269,7 +268,7 @@ Status WaitForBegin(const ClutchContext& c, Way& way, ClutchState& s) {
     s.looked_from = c.master.position;
     return wait(ramps ? ClutchWait::kRamps : s.sense == 0 ? ClutchWait::kMasterStands : ClutchWait::kPosition);
   }
-  if (ramps || !IsTied(c, s)) {  // the begin has been passed meanwhile
+  if (ramps || !IsTied(c, s)) {  // the begin was passed meanwhile
     s.looked_from = c.master.position;
     s.planned_sense = 0;
     wait(ramps ? ClutchWait::kRamps : ClutchWait::kSlave);
@@ -278,13 +277,13 @@ Status WaitForBegin(const ClutchContext& c, Way& way, ClutchState& s) {
   const double begin = s.place - sense * s.distance;
   const ClutchCurve curve = ClosingCurve(c, OwnOver(c, s, begin), sense, 0, way, s, s.distance);
   if (!Follows(curve, std::abs(c.master.velocity))) return Status::Failed(ErrorId::kSlaveLimits);
-  if (KeepsSense(c) && !Monotone(curve)) {  // something has changed since it was planned
+  if (KeepsSense(c) && !Monotone(curve)) {  // something has changed since the planning
     s.looked_from = c.master.position;
     s.planned_sense = 0;
     wait(ClutchWait::kReverse);
     return plan();
   }
-  if (!Push(curve, way, s)) {  // once the opening has come to its end there is room
+  if (!Push(curve, way, s)) {  // there is room once the opening is complete
     s.looked_from = c.master.position;
     s.planned_sense = 0;
     wait(ClutchWait::kSlave);
@@ -305,8 +304,8 @@ KinematicState Shift(const KinematicState& own, const KinematicState& wanted) {
   return {own.position - wanted.position, own.velocity - wanted.velocity, own.acceleration - wanted.acceleration};
 }
 
-// Limits of a ramp from a shift to none. One that speeds up more than ramps may is brought to that as fast as the slave
-// can: in the time that a gentle jerk takes for it, it would run away.
+// Returns the limits of a ramp from a shift to zero. A shift that accelerates more than ramps may is decelerated as
+// fast as the slave can: during the time that a low jerk takes for it, it would drift far away.
 trajectory::Limits ClutchLimits(const ClutchContext& c, const KinematicState& shift) {
   const trajectory::Limits own = c.slave.planner_limits();
   const Settings& s = c.settings;
@@ -320,7 +319,7 @@ trajectory::Limits ClutchLimits(const ClutchContext& c, const KinematicState& sh
 constexpr double kStretch = 1.05;
 constexpr int kStretches = 200;
 
-// Begins to bring what lies between the slave and Y to zero.
+// Begins to ramp the shift between the slave and Y to zero.
 void BeginShift(const ClutchContext& c, const KinematicState& shift, double time_s, ClutchState& s) {
   if (s.mode == ClutchMode::kRampVelAcc) {
     if (!BeginProfile(shift, ClutchLimits(c, shift), c.cycle, c.planner, s.ramp)) s.mode = ClutchMode::kAbsolute;
@@ -355,7 +354,7 @@ void StartClosing(const ClutchContext& c, Way& way, ClutchState& s) {
 
 // --- Following ---
 
-// The end of the closing curve: what the cam says there now may differ from what it was to say.
+// At the end of the closing curve: the cam's value there may now differ from the planned one.
 void EndCurve(const ClutchContext& c, const Way& way, ClutchState& s) {
   const double place = EndOf(Top(s));
   const KinematicState now = PlaceAt(way, c.table, place);
@@ -387,21 +386,22 @@ KinematicState Closing(const ClutchContext& c, const KinematicState& wanted, con
   return wanted;
 }
 
-// The turn of the sync-out position that lies nearest to where the slave comes.
+// Returns the turn of the sync-out position that is nearest to the expected position of the slave.
 double OutPlace(const ClutchContext& c, double expected) {
   const double place = c.settings.slave_sync_out_position + c.slave_zero;
   const double turn = SlaveTurn(c);
   return turn == 0 ? place : place + turn * std::round((expected - place) / turn);
 }
 
-// Begins the opening over the master's displacement, if there is a curve.
+// Begins the opening over the master's displacement, if a curve serves.
 void BeginOut(const ClutchContext& c, const Way& way, ClutchState& s) {
   const double length = c.settings.master_sync_out_distance;
   UpdateSense(c, length, s);
   s.waits = ClutchWait::kMasterStands;
   if (s.sense == 0 || c.master.velocity == 0) return;
   s.waits = ClutchWait::kRamps;
-  if (OnCam(s) && IsRamped(way) && !way.profiler.held) return;  // where the cam is held no ramp of the slave goes on
+  // while the end of a cam is held, ramps of the slave do not proceed
+  if (OnCam(s) && IsRamped(way) && !way.profiler.held) return;
   s.waits = ClutchWait::kSlave;
   if (!IsTied(c, s)) return;
   const double sense = s.sense;
@@ -428,7 +428,7 @@ void BeginOut(const ClutchContext& c, const Way& way, ClutchState& s) {
   }
 }
 
-// `there` comes back true where nothing is left to do but to come to rest.
+// `there` returns true if the slave only has to come to rest.
 KinematicState Opening(const ClutchContext& c, const ClutchState& s, bool& there) {
   const KinematicState rest = {s.out, 0, 0};
   there = true;
@@ -441,7 +441,7 @@ KinematicState Opening(const ClutchContext& c, const ClutchState& s, bool& there
   return Sum(rest, At(s.ramp, c.cycle));
 }
 
-// It was never on the cam, or is refused: it opens on as it did, or stays at rest.
+// The clutch was never on the cam, or the closing is refused: the opening continues, or the slave stays at rest.
 void GiveUpClosing(ClutchState& s) {
   s.phase = ClutchPhase::kOpening;
   if (!s.opens_still) s.mode = ClutchMode::kAbsolute;
@@ -462,7 +462,7 @@ Status WaitToClose(const ClutchContext& c, Way& way, ClutchState& s) {
 }
 
 Status WaitToOpen(const ClutchContext& c, const Way& way, ClutchState& s) {
-  if (OnCurves(s) && BeyondEnd(c, s)) {  // it is closed in this cycle, and opens from the cam
+  if (OnCurves(s) && BeyondEnd(c, s)) {  // it closes in this cycle, and opens from the cam
     s.waits = ClutchWait::kSlave;
     return Status::Ok();
   }
@@ -501,7 +501,7 @@ const ClutchCurve* FollowedCurve(const ClutchState& s) noexcept {
 
 void BeginClosing(const ClutchContext& c, ClutchState& s) noexcept {
   s.stretched = false;
-  if (s.phase == ClutchPhase::kClosing || OnCam(s)) {  // it is on the cam still, or on its way there
+  if (s.phase == ClutchPhase::kClosing || OnCam(s)) {  // still on the cam, or approaching it
     if (s.phase == ClutchPhase::kWaitingOut) s.phase = ClutchPhase::kClosed;
     s.leaves = false;
     return;
@@ -538,7 +538,7 @@ void BeginOpening(const ClutchContext& c, ClutchState& s) noexcept {
 Status StepClutch(const ClutchContext& c, const KinematicState& wanted, Way& way, ClutchState& s,
                   KinematicState& demand) noexcept {
   const double zero = way.to_slave.out_zero;
-  const auto on_cam = [&] {  // in the turn that the slave is in now
+  const auto on_cam = [&] {  // in the present turn of the slave
     return KinematicState{wanted.position + way.to_slave.out_zero - zero, wanted.velocity, wanted.acceleration};
   };
   bool there = false;

@@ -40,7 +40,7 @@ double Weaker(const trajectory::Limits& limits) {
   return std::min(limits.acceleration, limits.deceleration);
 }
 
-// The n-th derivative over time is that over the master's position times the n-th power of its speed.
+// The n-th derivative over time is the one over the master's position times the n-th power of the master's speed.
 double FastestOn(const Quintic& q, const trajectory::Limits& limits) {
   const Peaks peaks = PeaksOf(q);
   double fastest = std::numeric_limits<double>::max();

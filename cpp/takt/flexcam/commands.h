@@ -1,5 +1,5 @@
-// What a cam module understands. Its inputs are levels, as those of the Flex Cam block: they stay until they are
-// changed.
+// The commands of a cam module. Its inputs are levels, as those of the Flex Cam block: they keep their value until they
+// are changed.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace takt::flexcam {
 
 inline constexpr std::size_t kSlots = 4;
 
-// The inputs of the manual's 3.3.2; "Flex Cam:" in the doc strings is the name there.
+// The inputs of the manual's 3.3.2; in doc strings "Flex Cam:" gives the name used there.
 template <template <typename> class Of>
 struct InputsOf {
   Of<bool> enable = Preset<Of>(true);
@@ -34,48 +34,48 @@ struct InputsOf {
   Of<bool> sync_out_instant = Preset<Of>(false);
   Of<bool> cam_change_instant = Preset<Of>(false);
   Of<bool> cam_sequencer = Preset<Of>(false);
-  Of<double> offset_master = Preset<Of>(0.0);   // x
-  Of<double> offset_slave = Preset<Of>(0.0);    // u
-  Of<double> scaling_master = Preset<Of>(1.0);  // x per master's u
-  Of<double> scaling_slave = Preset<Of>(1.0);   // u per y
+  Of<double> offset_master = Preset<Of>(0.0);   // [x]
+  Of<double> offset_slave = Preset<Of>(0.0);    // [u]
+  Of<double> scaling_master = Preset<Of>(1.0);  // [x per master's u]
+  Of<double> scaling_slave = Preset<Of>(1.0);   // [u per y]
   Of<std::uint32_t> cam_table = Preset<Of>(std::uint32_t{1});
-  Of<double> virtual_velocity = Preset<Of>(0.0);  // master's u/s
+  Of<double> virtual_velocity = Preset<Of>(0.0);  // [master's u/s]
 };
 using Inputs = InputsOf<Plain>;
 
-// Changes inputs. Where it closes or opens the clutch or starts homing, it is done when that is.
+// Changes inputs. If that closes or opens the clutch or starts homing, the command is done when that is done.
 using Control = InputsOf<std::optional>;
 
-// Whether it asks for power or motion.
+// Returns true if the command requests power or motion.
 bool AsksToMove(const Control& control) noexcept;
 
-// Level-sensitive: give it again to change the levels, both false (or a release) to let go.
+// Level-sensitive: give it again to change the levels; both false (or a release) ends the jog.
 struct Jog {
   bool positive = false;
   bool negative = false;
 };
 
-struct SetCam {  // another cam in a slot
+struct SetCam {  // puts another cam into a slot
   std::uint32_t slot = 1;
   Name cam;
 };
 
-// When a change of cam takes place.
+// When a change of cam takes effect.
 enum class ChangeWhen : std::uint8_t { kAtOnce, kMasterPosition, kCamPosition, kNextCycle, kWithoutJump };
-// What is shifted so that both cams meet.
+// How Y or X is shifted so that both cams meet.
 enum class ChangeAlign : std::uint8_t { kNothing, kPosition, kVelocity };
 
 struct ChangeCam {
   std::uint32_t cam_table = 1;
   ChangeWhen when = ChangeWhen::kNextCycle;
-  double position = 0;  // master's u or x, where `when` needs one
+  double position = 0;  // [master's u or x] for the kinds of `when` that need one
   ChangeAlign align = ChangeAlign::kNothing;
 };
-struct WithdrawChanges {};  // of those that have not taken place
+struct WithdrawChanges {};  // aborts all changes that have not taken effect
 
 using Command = std::variant<Control, Jog, Configure, SetCam, ChangeCam, WithdrawChanges>;
 
-// What is wrong with a command, as a sentence for people; empty: nothing. Not for the cycle.
+// Returns what is wrong with a command, as a sentence for users; empty if nothing is. Not for use within the cycle.
 std::string Diagnose(const Command& command);
 
 void describe(Enumeration<ChangeWhen>&);

@@ -25,14 +25,15 @@ RampMaster RideOf(const ConversionTarget& target, const ConversionInputs& in, co
   return {in.ride_before, in.before.velocity, c.factor, target.ramps};
 }
 
-// What of a ramp is left, from 1 to 0.
+// Returns the remaining share of a ramp, from 1 to 0.
 double ShareLeft(const Conversion& c, const Cycle& cycle) {
   if (c.ramp_begin == 0) return 0;
   const KinematicState shift = At(c.ramp, cycle);
   return std::clamp((c.by_speed ? shift.velocity : shift.position) / c.ramp_begin, 0.0, 1.0);
 }
 
-// After `old` has become `c`: what of each is to be ramped, from what was in force.
+// After `old` has become `c`: notes which part of the ramp is due to offset and factor, relative to the values in
+// force.
 void NoteRamp(const Cycle& cycle, const ConversionInputs& in, const Conversion& old, bool by_speed, Conversion& c) {
   const Cycle earlier = Earlier(cycle);
   const KinematicState begin = At(c.ramp, earlier);
@@ -42,14 +43,14 @@ void NoteRamp(const Cycle& cycle, const ConversionInputs& in, const Conversion& 
   c.ramp_begin = by_speed ? begin.velocity : begin.position;
 }
 
-// The acceleration that a factor has of its input is no part of the ramp's motion: with its own jerk it would take long
-// to end, and the ramp would run away meanwhile.
+// The acceleration that a factor transmits from its input is no part of the ramp's motion: with the ramp's own jerk it
+// would last long, and the ramp would drift away meanwhile.
 KinematicState WithOwnAcceleration(const KinematicState& shift, const trajectory::Limits& limits) {
   const double most = std::max(limits.acceleration, limits.deceleration);
   return {shift.position, shift.velocity, std::clamp(shift.acceleration, -most, most)};
 }
 
-// Begins the ramp from `old` to what `c` has become.
+// Begins the ramp from `old` to the new values of `c`.
 bool RampFrom(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in, const Conversion& old,
               trajectory::Planner& planner, Conversion& c) {
   const KinematicState shift = Difference(Convert(old, Earlier(cycle), in.before), Law(c, in.before));
@@ -61,7 +62,7 @@ bool RampFrom(const ConversionTarget& target, const Cycle& cycle, const Conversi
   return BeginWithMaster(shift, RideOf(target, in, c), planner, c.ramp);
 }
 
-// What the output was under the old law, as a shift that goes to zero under the new one.
+// Ramps the difference of the outputs under the old and the new law to zero.
 void TakeRamped(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in, const Conversion& old,
                 trajectory::Planner& planner, Conversion& c) {
   if (!RampFrom(target, cycle, in, old, planner, c)) {
@@ -71,7 +72,7 @@ void TakeRamped(const ConversionTarget& target, const Cycle& cycle, const Conver
   NoteRamp(cycle, in, old, false, c);
 }
 
-// Only the speed is to change: the position where the ramp of the speed ends is the one that counts.
+// Only the velocity changes: the position at the end of its ramp becomes the reference.
 void RampSlope(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in, const Conversion& old,
                trajectory::Planner& planner, Conversion& c) {
   const KinematicState was = Convert(old, Earlier(cycle), in.before);
@@ -87,7 +88,8 @@ void RampSlope(const ConversionTarget& target, const Cycle& cycle, const Convers
   NoteRamp(cycle, in, old, true, c);
 }
 
-// A ramp with the master counts on the factor of what it is added to: a smaller one has to wait for its end.
+// A ramp with the master relies on the factor of the motion to which it is added: a smaller factor must wait for its
+// end.
 bool MustWait(const Conversion& c, double factor) {
   return c.ramp.kind == RampKind::kWithMaster && factor < c.factor;
 }

@@ -28,7 +28,7 @@ struct Conversion {
   double ramp_begin = 0;  // position shift of the ramp at its start, or its velocity if by_speed
 };
 
-// What is wanted of it, and how it gets there.
+// The target of a conversion, and how it is approached.
 struct ConversionTarget {
   double factor = 1;
   double offset = 0;
@@ -59,7 +59,7 @@ void EndRamp(const Cycle& cycle, Conversion& conversion) noexcept;
 // input of the previous cycle on.
 void Approach(const ConversionTarget& target, const Cycle& cycle, const ConversionInputs& in,
               trajectory::Planner& planner, Conversion& conversion) noexcept;
-// Where the cam begins or ends, at the input `at`: applies the changes whose mode is kXZero.
+// At the begin or end of the cam, at the input `at`: applies the changes whose mode is kXZero.
 void ApproachAtZero(const ConversionTarget& target, double at, const Cycle& cycle, const ConversionInputs& in,
                     trajectory::Planner& planner, Conversion& conversion) noexcept;
 

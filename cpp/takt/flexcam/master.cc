@@ -14,7 +14,7 @@ double Elapsed(const Cycle& cycle, const MasterState& m) {
   return static_cast<double>(cycle.count - m.start_cycle) * cycle.period_s;
 }
 
-// A master without an axis: a velocity, with ramps and jerk.
+// A virtual master: a velocity with ramps and jerk.
 void FollowVirtual(const axis::Context& c, const Settings& settings, double velocity, MasterState& m) {
   if (velocity != m.velocity) {
     const trajectory::Limits limits = {std::max({std::abs(velocity), std::abs(m.now.velocity), 1e-9}),

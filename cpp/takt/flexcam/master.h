@@ -1,4 +1,4 @@
-// What a cam module follows: the set or measured position of an axis, filtered if it is measured, a coordinate of a
+// The master of a cam module: the set or measured position of an axis (filtered if it is measured), a coordinate of a
 // mover, the travel of a belt, or a virtual master.
 #pragma once
 
@@ -16,35 +16,36 @@ namespace takt::flexcam {
 
 struct MasterState {
   KinematicState now;          // over all turns
-  KinematicState before;       // in the cycle before
-  bool known = false;          // what is above means something
-  bool coasts = false;         // it does not, and goes on as it was
-  bool comes_to_rest = false;  // it got slower when it was lost, and does on
+  KinematicState before;       // in the previous cycle
+  bool known = false;          // the states above are valid
+  bool coasts = false;         // the master is lost; the state continues with its last velocity
+  bool comes_to_rest = false;  // it was decelerating when it was lost, and continues to do so
   trajectory::TrackingFilterState filter;
-  trajectory::Profile motion;  // of a virtual master
+  trajectory::Profile motion;  // of a virtual master, or while coasting
   std::uint64_t start_cycle = 0;
-  double velocity = 0;  // that it has, or is on its way to
+  double velocity = 0;  // velocity that `motion` has or approaches
 };
 
-// The axis, mover or belt that is followed, as this cycle has it.
+// The axis, mover or belt that is followed, as of this cycle.
 struct MasterSeen {
   KinematicState at;  // over all turns
-  double zero = 0;    // where its own position is 0
-  double turn = 0;    // of it; 0: it has none
+  double zero = 0;    // zero of its own position
+  double turn = 0;    // one turn; 0: linear
   bool known = false;
-  bool measured = false;  // `at` is
+  bool measured = false;  // `at` is measured; also set for movers and belts
 };
+// Returns the state of a master (numbered as by axis::FindMaster) in this cycle.
 MasterSeen SeeMaster(const axis::Context& slave, std::uint32_t master, axis::MasterSource source) noexcept;
 
-// Each cycle, behind the axis that is the master. `coast`: if its position is lost it goes on with its last velocity;
-// one that got slower comes to rest, with the ramp of a virtual one.
+// Each cycle, after the master has stepped. `coast`: if its position is lost it continues with its last velocity; if it
+// was decelerating it comes to rest, with the ramp of a virtual master.
 void Follow(const axis::Context& slave, std::optional<std::uint32_t> master, axis::MasterSource source,
             const Settings& settings, double virtual_velocity, bool coast, MasterState& state) noexcept;
 
-// Master's own numbers: where its position is 0, and one turn of it (0: it has none).
+// Return the zero of the master's own position, and the length of one turn (0: linear).
 double ZeroOf(const axis::Context& slave, std::optional<std::uint32_t> master) noexcept;
 double TurnOf(const axis::Context& slave, std::optional<std::uint32_t> master) noexcept;
-// A position of it as it is reported.
+// Returns a position of the master as it is reported.
 double ReportedOf(const axis::Context& slave, std::optional<std::uint32_t> master, double position) noexcept;
 
 void describe(Description<MasterState>&);

@@ -14,18 +14,19 @@ namespace takt::flexcam {
 
 namespace {
 
-// A ramp of the module's, no stronger than the slave's own.
+// Limits a ramp of the module to the slave's own limit.
 double Within(double asked, double own) {
   return own > 0 ? std::min(asked, own) : asked;
 }
 
-// The slave's homing is the module's own only while that runs: each way out of it gives the axis' own back.
+// The module's homing parameters replace those of the slave only while it is homing: every exit restores the slave's
+// own.
 void Enter(const Context& c, ModuleState to, State& s) {
   if (s.state == ModuleState::kHoming && to != ModuleState::kHoming) c.slave.params.homing = c.homing;
   s.state = to;
 }
 
-// Gives the slave a command; why it was refused, if it was.
+// Commands the slave; returns why it was refused, if it was.
 ErrorId Tell(const Context& c, const axis::Command& command, axis::State& slave) {
   c.slave.feedback.TakeOwnError();
   axis::Apply(c.slave, 0, 0, command, slave);
@@ -41,7 +42,7 @@ void EndAction(const Context& c, FeedbackState feedback, ErrorId error, State& s
   s.action_ticket = 0;
 }
 
-// The running action gives way to another one, or a request is refused; what runs is not touched by that.
+// Accept: the requested action replaces the running one. Refuse: the request is refused; the running action continues.
 void Accept(const Context& c, State& s) {
   EndAction(c, FeedbackState::kAborted, ErrorId::kNone, s);
   s.action = s.request;
@@ -60,14 +61,14 @@ void Brake(const Context& c, double deceleration, double jerk, bool hold, axis::
   const trajectory::Limits own = c.slave.params.planner_limits();
   const double within = Within(deceleration, own.deceleration);
   const double within_jerk = axis::BrakingJerk(slave.setpoint, Within(jerk, own.jerk), own.jerk);
-  if (hold || slave.plc == axis::PlcState::kHoming) {  // a search takes no halt
+  if (hold || slave.plc == axis::PlcState::kHoming) {  // a search accepts no halt
     Tell(c, axis::Stop{.deceleration = within, .jerk = within_jerk, .hold = hold}, slave);
   } else {
     Tell(c, axis::Halt{.deceleration = within, .jerk = within_jerk}, slave);
   }
 }
 
-// Stops the slave and keeps it so until the module lets go of that.
+// Stops the slave and holds it until the module releases the stop.
 void HoldStopped(const Context& c, axis::State& slave, State& s) {
   Brake(c, s.settings.stop_deceleration, s.settings.stop_jerk, true, slave);
   s.holds = axis::HoldsStop(0, slave);
@@ -77,7 +78,7 @@ void LetGoOfStop(axis::State& slave, State& s) {
   s.holds = false;
 }
 
-// The clutch is open, however it came to that; the slave is somebody else's.
+// Clears the clutch, after it was opened for any reason; the module no longer moves the slave.
 void Abandon(const Context& c, State& s) {
   s.clutch = {};
   s.sequencer = {};
@@ -88,7 +89,7 @@ void Abandon(const Context& c, State& s) {
   EndAction(c, FeedbackState::kAborted, ErrorId::kNone, s);
 }
 
-// The manual's number for what stopped the slave, where it has one.
+// Returns the manual's error number for the error that stopped the slave, if it has one.
 ErrorId ErrorOf(ErrorId axis_error) {
   switch (axis_error) {
     case ErrorId::kLimitSwitchPositive:
@@ -118,9 +119,9 @@ void FailAtSwitch(const Context& c, int sense, axis::State& slave, State& s) {
   Fail(c, sense > 0 ? ErrorId::kModuleLimitSwitchPositive : ErrorId::kModuleLimitSwitchNegative, slave, s);
 }
 
-// Whether what the slave has begun at rest leads this way.
+// Returns true if the motion that the slave has begun at rest is in this direction.
 bool Begins(const Context& c, int sense, const axis::State& slave) {
-  const double least = 1e-9 * c.slave.params.limits.velocity;  // what is less is rounding
+  const double least = 1e-9 * c.slave.params.limits.velocity;  // smaller ones are rounding
   if (axis::IsGuided(slave)) {
     const KinematicState& demand = slave.guidance.demand;
     const double way = demand.position - slave.origin - slave.setpoint.position;
@@ -132,7 +133,7 @@ bool Begins(const Context& c, int sense, const axis::State& slave) {
   return sense * slave.motion.profile.At(axis::Elapsed(c.slave, slave)).velocity > least;
 }
 
-// Towards a switch that the module looks at nothing begins, as at those of the axis itself.
+// No motion begins towards an active limit switch of the module, as with those of the axis itself.
 void WatchBeginnings(const Context& c, axis::State& slave, State& s) {
   const bool own = s.state == ModuleState::kJogPos || s.state == ModuleState::kJogNeg ||
                    s.state == ModuleState::kHoming || s.state == ModuleState::kSync;
@@ -144,7 +145,7 @@ void WatchBeginnings(const Context& c, axis::State& slave, State& s) {
 void WatchLimits(const Context& c, axis::State& slave, State& s) {
   if (slave.error != ErrorId::kNone) return Fail(c, ErrorOf(slave.error), slave, s);
   if (!s.inputs.enable_hw_limit) return;
-  // On a new edge, or when the slave moves further out.
+  // On a new edge, or while the slave moves further beyond the switch.
   const double v = slave.setpoint.velocity;
   const auto hits = [&](bool now, bool rose, double sense) { return rose || (now && sense * v > 0); };
   const bool looks = s.rose.enable_hw_limit;
@@ -162,7 +163,7 @@ void SwitchPower(const Context& c, axis::State& slave, State& s) {
   if (falls) Tell(c, axis::Power{.enable = false}, slave);
 }
 
-// What the slave does without the module.
+// Returns true if the slave moves without the module.
 bool IsBusyItself(const axis::State& slave) {
   using K = axis::RequestKind;
   const K kind = slave.active.kind;
@@ -230,7 +231,7 @@ void BeginSync(const Context& c, axis::State& slave, State& s) {
   BeginClosing(ClutchOf(c, slave, s.wanted, s), s.clutch);
 }
 
-// What is asked for off has to be asked for again once the slave is on. In SYNC the clutch looks at requests itself.
+// A request while the slave is off must be repeated once it is on. In SYNC the clutch handles requests itself.
 void Requests(const Context& c, axis::State& slave, State& s) {
   if (s.request == Action::kNone) return;
   const bool sync = s.request == Action::kSyncIn || s.request == Action::kSyncOut;
@@ -259,7 +260,7 @@ void BeginStop(const Context& c, axis::State& slave, State& s) {
 void InStop(const Context& c, axis::State& slave, State& s) {
   if (s.rose.stop) return BeginStop(c, slave, s);
   if (s.inputs.stop || s.inputs.halt) {
-    // Nothing else moves it meanwhile.
+    // Nothing else may move it meanwhile.
     using K = axis::RequestKind;
     const K kind = slave.active.kind;
     const bool strays = kind != K::kNone && kind != K::kStop && kind != K::kHalt && kind != K::kPower;
@@ -270,12 +271,13 @@ void InStop(const Context& c, axis::State& slave, State& s) {
   using K = axis::RequestKind;
   const K kind = slave.active.kind;
   const bool stops = kind == K::kStop || kind == K::kHalt || kind == K::kPower;
-  if (!slave.loop_closed || !stops) Enter(c, ModuleState::kReady, s);  // else a command of its own has taken over
+  // else a command of the slave's own has taken over
+  if (!slave.loop_closed || !stops) Enter(c, ModuleState::kReady, s);
 }
 
 void InReady(const Context& c, axis::State& slave, State& s) {
   if (s.jog.ticket == 0) return;
-  // Switched off since: a key that is held does not move it once it is on again.
+  // Switched off since: a held key does not move the slave once it is on again.
   if (!IsOn(slave)) return EndJog(c, FeedbackState::kAborted, ErrorId::kPowerOff, s);
   if (!s.jog.keys.positive && !s.jog.keys.negative) return EndJog(c, FeedbackState::kDone, ErrorId::kNone, s);
   if (const ErrorId error = TellJog(c, slave, s); error != ErrorId::kNone) {
@@ -302,7 +304,7 @@ void InJog(const Context& c, axis::State& slave, State& s) {
   Enter(c, ModuleState::kReady, s);
 }
 
-// Something has ended the search before its time: a stop of the axis or of the machine, power off.
+// Returns true if something has ended the search early: a stop of the axis or of the machine, or power off.
 bool IsStopped(const axis::State& slave) {
   using K = axis::RequestKind;
   const K kind = slave.active.kind;
@@ -321,8 +323,8 @@ void InHoming(const Context& c, const axis::State& slave, State& s) {
   EndAction(c, FeedbackState::kError, slave.error == ErrorId::kNone ? ErrorId::kNoReference : slave.error, s);
 }
 
-// Whether the cam, run on as it is, leads the slave out of its SW limits: then it is stopped early enough for the
-// module's own ramp.
+// Returns true if the cam, continued as it is, would move the slave out of its SW limits: then it is stopped early
+// enough for the module's own ramp.
 bool LeavesLimits(const Context& c, const axis::State& slave, const State& s) {
   const axis::AxisLimits& limits = c.slave.params.limits;
   const bool on_cam = s.clutch.phase == ClutchPhase::kClosed || s.clutch.phase == ClutchPhase::kWaitingOut;
@@ -347,7 +349,7 @@ void InSync(const Context& c, axis::State& slave, State& s) {
     Enter(c, ModuleState::kReady, s);
     return;
   }
-  if (!axis::IsGuided(slave)) {  // a command of its own has taken the slave away, or it is off
+  if (!axis::IsGuided(slave)) {  // a command of the slave's own has taken over, or the slave is off
     if (slave.emergency != axis::Emergency::kNone) return Fail(c, ErrorId::kEmergencyStop, slave, s);
     Abandon(c, s);
     if (!IsOn(slave)) s.warning = ErrorId::kPowerOff;
@@ -401,7 +403,7 @@ void InError(const Context& c, axis::State& slave, State& s) {
   const bool stands = !slave.loop_closed || axis::AtRest(slave);
   if (s.error == ErrorId::kNone && slave.error == ErrorId::kNone && stands && !slave.reset_pending) {
     Enter(c, ModuleState::kReady, s);
-    const bool stopped = slave.emergency != axis::Emergency::kNone;  // then power has to be asked for anew
+    const bool stopped = slave.emergency != axis::Emergency::kNone;  // then power must be requested anew
     if (s.inputs.regulator_on && !slave.enable && !stopped) Tell(c, axis::Power{.enable = true}, slave);
   }
 }
@@ -412,15 +414,15 @@ void WatchLease(const Context& c, State& s) {
   s.jog.lease_s = 0;
 }
 
-// READY and SERVICE are one another's: what the slave does by itself is a service.
+// Switches between READY and SERVICE: motion of the slave by itself is a service.
 void ReadyOrService(const Context& c, const axis::State& slave, State& s) {
   if (s.state != ModuleState::kReady && s.state != ModuleState::kService) return;
-  const bool led = axis::IsGuided(slave);  // by a group: the module itself is in SYNC then
+  const bool led = axis::IsGuided(slave);  // by a group: for the module itself the state would be SYNC
   const bool service = s.inputs.internal_control || led || IsBusyItself(slave);
   Enter(c, service ? ModuleState::kService : ModuleState::kReady, s);
 }
 
-// Takes the slave off the cam and leaves it alone. An error stays one.
+// Takes the slave off the cam and releases it. An error remains.
 void Disable(const Context& c, axis::State& slave, State& s) {
   Refuse(c, ErrorId::kState, s);
   if (s.state == ModuleState::kInit) return;
@@ -467,7 +469,7 @@ void RunStates(const Context& c, axis::State& slave, State& s) {
   StepState(c, slave, s);
   WatchBeginnings(c, slave, s);
   Refuse(c, ErrorId::kState, s);
-  // A key that was pressed when something else began does not move anything later.
+  // A key that was pressed when something else began does not cause motion later.
   const bool jogs =
       s.state == ModuleState::kReady || s.state == ModuleState::kJogPos || s.state == ModuleState::kJogNeg;
   if (!jogs && s.jog.ticket != 0) EndJog(c, FeedbackState::kAborted, ErrorId::kNone, s);
@@ -501,7 +503,7 @@ void EndJog(const Context& c, FeedbackState feedback, ErrorId error, State& s) n
   s.jog = {};
 }
 
-// Whatever it was about is over, also what was asked for in this cycle and has not begun.
+// All actions end, including those that were requested in this cycle and have not begun.
 void EmergencyStop(const Context& c, axis::State& slave, State& s) noexcept {
   Refuse(c, ErrorId::kEmergencyStop, s);
   const bool moves = s.state == ModuleState::kJogPos || s.state == ModuleState::kJogNeg ||

@@ -14,31 +14,33 @@
 
 namespace takt::flexcam {
 
-// What every stage gets besides the module itself.
+// The context of every stage.
 struct Context {
   const FlexCamParams& params;
-  axis::Context slave;  // of the axis that is moved
+  axis::Context slave;  // context of the axis that the module moves
   std::optional<std::uint32_t> master{};
-  axis::HomingParams homing{};  // of the slave, as the machine file has it
+  axis::HomingParams homing{};  // of the slave, from the machine file
 };
 
-// Whether a slot, the cam that runs or one that a sequence may come back to has this index.
+// Returns true if the cam with this index is in a slot, runs, or may be returned to by a sequence, or is used for the
+// extreme values.
 bool UsesCam(const State& state, std::uint32_t index) noexcept;
 
-// As it stands when power comes on. `slots`: numbers of the machine's cams from 1; 0: none.
+// Returns the state at power-on. `slots`: numbers of the machine's cams from 1; 0: none.
 State MakeState(const FlexCamParams& params, const std::array<std::uint32_t, kSlots>& slots) noexcept;
 
-// command: carries a command out or refuses it; reports either way. `lease_s` > 0: of a jog, see Renew.
+// Stage Apply: carries a command out or refuses it, and reports either. `lease_s` > 0: lease of a jog, see Renew.
 void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, axis::State& slave,
            State& s) noexcept;
-// Lets go of a jog with this ticket, and extends its lease. False: there is none.
+// Release ends the jog with this ticket, Renew extends its lease. Both return false if there is no such jog.
 bool Release(const Context& c, Ticket ticket, State& s) noexcept;
 bool Renew(const Context& c, Ticket ticket, State& s) noexcept;
 
-// Behind that of its slave: a module that moved it is in error, and does nothing that was asked for before.
+// Call after the EmergencyStop of its slave: a module that moved the slave enters the error state and drops all
+// requests.
 void EmergencyStop(const Context& c, axis::State& slave, State& s) noexcept;
 
-// move: behind the master, before the slave.
+// Stage Move: after the master, before the slave.
 void Step(const Context& c, axis::State& slave, State& s) noexcept;
 
 void Publish(const Context& c, const axis::State& slave, const State& s, Outputs& out) noexcept;

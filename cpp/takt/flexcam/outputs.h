@@ -1,4 +1,4 @@
-// What a cam module publishes every cycle: the outputs of the manual's 3.3.3 and its signal flow (3.5.1).
+// The outputs that a cam module publishes every cycle: those of the manual's 3.3.3 and its signal flow (3.5.1).
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@ enum class ModuleState : std::uint8_t { kInit, kReady, kService, kJogPos, kJogNe
 
 enum class ClutchPhase : std::uint8_t {
   kOpen,
-  kWaitingIn,  // the master is not yet where it begins to close
+  kWaitingIn,  // the master has not reached the begin of the curve
   kClosing,
   kClosed,
-  kWaitingOut,  // still on the cam: the master stands, or there is no curve
+  kWaitingOut,  // still on the cam: the master is stationary, or no curve serves
   kOpening,
-  kReleased,  // opened at once; the slave comes to rest by itself
+  kReleased,  // opened at once; the slave comes to rest on its own
 };
 
-// For what a clutch waits.
+// The reason why the clutch waits.
 enum class ClutchWait : std::uint8_t {
   kNothing,
   kMasterStands,
@@ -35,27 +35,27 @@ enum class ClutchWait : std::uint8_t {
 };
 
 struct Outputs {
-  double set_offset_master = 0;   // x, in force
-  double set_offset_slave = 0;    // u, in force
+  double set_offset_master = 0;   // [x] in force
+  double set_offset_slave = 0;    // [u] in force
   double set_scaling_master = 1;  // in force
   double set_scaling_slave = 1;   // in force
-  double set_x_position = 0;      // x
-  double set_x_velocity = 0;      // x per s
-  double set_x_acceleration = 0;  // x per s²
-  double set_y_position = 0;      // y
-  double set_y_velocity = 0;      // y per s
-  double set_y_acceleration = 0;  // y per s²
+  double set_x_position = 0;      // [x]
+  double set_x_velocity = 0;      // [x/s]
+  double set_x_acceleration = 0;  // [x/s²]
+  double set_y_position = 0;      // [y]
+  double set_y_velocity = 0;      // [y/s]
+  double set_y_acceleration = 0;  // [y/s²]
   double actual_slave_position = 0;
   double actual_slave_velocity = 0;
   double slave_max_position = 0;
   double slave_min_position = 0;
   double slave_max_velocity = 0;
   double slave_max_acceleration = 0;
-  // The signal flow: inputs (IP), intermediate points (MP) and outputs (OP) of the way from the master to the slave.
+  // The signal flow: inputs (IP), intermediate points (MP) and outputs (OP) between the master and the slave.
   double ip01_set_scaling_master = 1;
   ScalingMode ip02_scaling_mode_master = ScalingMode::kXZero;
-  double ip03_set_offset_master = 0;  // x
-  double ip04_set_offset_slave = 0;   // u
+  double ip03_set_offset_master = 0;  // [x]
+  double ip04_set_offset_slave = 0;   // [u]
   OffsetMode ip05_offset_mode_slave = OffsetMode::kXZero;
   double ip06_set_scaling_slave = 1;
   ScalingMode ip07_scaling_mode_slave = ScalingMode::kXZero;
@@ -63,27 +63,27 @@ struct Outputs {
   std::uint32_t ip09_cam_table2 = 0;
   std::uint32_t ip10_cam_table3 = 0;
   std::uint32_t ip11_cam_table4 = 0;
-  double mp01_set_master_position = 0;        // master's u, as the module takes it
-  double mp02_set_slave_position = 0;         // u, set point of the slave
-  double mp03_master_to_x_position = 0;       // x, where the master's position is on the X axis
-  double mp04_cam_profiler_position_out = 0;  // y, what the cam says for it
-  double mp05_set_y_position = 0;             // y, the strokes of earlier cycles added
-  double mp06_y_to_slave_position = 0;        // u, where Y wants the slave
-  double op01_set_x_position_out = 0;         // x, in the cam's cycle
-  double op02_set_y_position_out = 0;         // y
-  double clutch_position = 0;                 // master's u, where the clutch is closed, or open
-  double clutch_distance = 0;                 // master's u, until there
-  double clutch_master_velocity = 0;          // master's u/s
+  double mp01_set_master_position = 0;        // [master's u] as the module takes it
+  double mp02_set_slave_position = 0;         // [u] set point of the slave
+  double mp03_master_to_x_position = 0;       // [x] the master's position on the X axis
+  double mp04_cam_profiler_position_out = 0;  // [y] value of the cam there
+  double mp05_set_y_position = 0;             // [y] with the strokes of earlier cycles added
+  double mp06_y_to_slave_position = 0;        // [u] position of the slave by Y
+  double op01_set_x_position_out = 0;         // [x] in the cam's cycle
+  double op02_set_y_position_out = 0;         // [y]
+  double clutch_position = 0;                 // [master's u] position at which the clutch will be closed, or open
+  double clutch_distance = 0;                 // [master's u] distance to that position
+  double clutch_master_velocity = 0;          // [master's u/s] largest steady speed on the clutch's curve
   ErrorId error = ErrorId::kNone;
   ErrorId warning = ErrorId::kNone;
   ModuleState state = ModuleState::kInit;
   ClutchPhase clutch = ClutchPhase::kOpen;
   ClutchWait clutch_waits = ClutchWait::kNothing;
-  std::uint32_t cam_table = 1;        // slot of the cam that runs
+  std::uint32_t cam_table = 1;        // slot of the running cam
   std::uint32_t cam_number = 0;       // Table::number of that cam
-  std::uint32_t next_cam_table = 0;   // slot of the cam that is next; 0: none
+  std::uint32_t next_cam_table = 0;   // slot of the next cam; 0: the same
   std::uint32_t pending_changes = 0;  // of change_cam
-  std::uint32_t cam_ends = 0;         // how often the end of a cam was passed
+  std::uint32_t cam_ends = 0;         // number of cam ends passed
   bool internal_control_active = false;
   bool axis_enabled = false;
   bool done = false;

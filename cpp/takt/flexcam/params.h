@@ -1,4 +1,4 @@
-// What a machine file says about one cam module (Flex Cam).
+// Parameters of one cam module (Flex Cam) from the machine file.
 #pragma once
 
 #include <optional>
@@ -16,10 +16,10 @@ namespace takt::flexcam {
 struct FlexCamParams {
   std::string name;
   std::string slave;                    // name of the axis
-  std::optional<std::string> master{};  // name of the axis, belt, mover or its coordinate; unset: a virtual one
-  axis::MasterSource source = axis::MasterSource::kSetValue;  // which position of it counts
+  std::optional<std::string> master{};  // name of the axis, belt, mover or its coordinate; unset: a virtual master
+  axis::MasterSource source = axis::MasterSource::kSetValue;  // which position of the master is used
   std::vector<std::string> cams;                              // for slots 1 to 4
-  Settings settings;                                          // at the start
+  Settings settings;                                          // initial settings
   std::optional<axis::HomingParams> homing{};                 // for home_by_module
 };
 

@@ -86,14 +86,14 @@ bool AnnouncesEnd(const cam::Table& table, const Cycle& cycle, const KinematicSt
                   ProfilerState& s) noexcept {
   const double t = cycle.period_s;
   const KinematicState next = {x.position + t * (x.velocity + 0.5 * t * x.acceleration), 0, 0};
-  bool announce = passed && !s.announced;  // it came unexpected
+  bool announce = passed && !s.announced;  // it was not expected
   if (passed) s.announced = false;
   const std::optional<Passed> ahead = PassedEnd(table, s, next.position);
   if (ahead && !s.announced && !announce) {
     announce = s.announced = true;
     s.announced_sense = ahead->sense;
   } else if (!ahead && s.announced && x.velocity * s.announced_sense <= 0) {
-    s.announced = false;  // X did not get there, after all
+    s.announced = false;  // X did not reach it
   }
   return announce;
 }

@@ -1,4 +1,4 @@
-// What everybody sees of a module.
+// The outputs of a module.
 #include "takt/axis/axis.h"
 #include "takt/flexcam/run.h"
 
@@ -8,7 +8,7 @@ namespace takt::flexcam {
 
 namespace {
 
-// Of the cam with this index, counted from 1; 0: none.
+// Returns Table::number of the cam with this index, counted from 1; 0: none.
 std::uint32_t NumberOf(const Context& c, std::uint32_t from_one) {
   return from_one == 0 ? 0 : static_cast<std::uint32_t>(c.slave.machine.cams[from_one - 1].number());
 }

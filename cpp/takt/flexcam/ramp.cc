@@ -13,9 +13,9 @@ double Elapsed(const Ramp& ramp, const Cycle& cycle) {
   return (static_cast<double>(cycle.count) - static_cast<double>(ramp.start_cycle)) * cycle.period_s;
 }
 
-// Sums are kept this far from standing still against a master that moves.
+// Margin by which sums are kept from standstill while the master moves.
 constexpr double kShare = 0.999;
-// Speeds of a master below this share of the reference are standstill.
+// Speeds of the master below this share of the reference count as standstill.
 constexpr double kStandstill = 1e-9;
 
 double RateAt(const RampClock& clock, double speed) {
@@ -31,7 +31,7 @@ double SignOf(double x) {
   return x < 0 ? -1 : 1;
 }
 
-// Acceleration of the master's speed.
+// Returns the rate of change of the master's speed.
 double SpeedChange(const KinematicState& master) {
   return master.velocity == 0 ? std::abs(master.acceleration) : SignOf(master.velocity) * master.acceleration;
 }
@@ -40,7 +40,7 @@ trajectory::Limits LimitsOf(const RampClock& clock) {
   return {clock.velocity, clock.acceleration, clock.acceleration, clock.jerk};
 }
 
-// A clock for a shift with this motion, and that motion on the profile.
+// Returns a clock for a shift with this motion, and that motion on the profile.
 RampClock ClockFor(const KinematicState& shift, const RampMaster& ride, KinematicState& on_profile) {
   const trajectory::Limits& limits = ride.limits;
   const KinematicState& master = ride.master;
@@ -55,7 +55,7 @@ RampClock ClockFor(const KinematicState& shift, const RampMaster& ride, Kinemati
   const bool against = shift.velocity * ride.base_velocity < 0 && speed > kStandstill * clock.reference;
   const double left = against ? 1 - std::abs(shift.velocity) / (speed * bound) : 1;
   clock.reference = std::max(clock.reference, 0.25 * speed / std::max(left, 1e-3));
-  // A shift that runs ahead is slowed down at the full rate, at the price of less speed on the way back.
+  // A shift that runs ahead is slowed down at the full rate, at the price of less velocity on its return.
   if (shift.velocity * ride.base_velocity > 0) clock.reference = std::min(clock.reference, 2 * speed);
   clock.velocity = std::min(clock.velocity, bound * clock.reference);
   on_profile = {shift.position, 0, 0};
@@ -68,8 +68,8 @@ RampClock ClockFor(const KinematicState& shift, const RampMaster& ride, Kinemati
   return clock;
 }
 
-// An acceleration that would lead to more speed than the limit, once it has ended with the jerk, is cut: the sense of
-// the sum depends on that speed.
+// An acceleration that would lead beyond the velocity limit, until it has ended with the jerk, is cut: the sense of the
+// sum depends on that velocity.
 KinematicState WithinSpeed(KinematicState from, const trajectory::Limits& limits) {
   if (from.velocity * from.acceleration <= 0) return from;
   const double room = std::max(limits.velocity - std::abs(from.velocity), 0.0);
@@ -87,7 +87,7 @@ bool PlanToZero(KinematicState from, const trajectory::Limits& limits, trajector
   return true;
 }
 
-// The part of the profile's motion from `from` that has no position to get to ends at zero.
+// Plans the velocity of `from` to zero; the position at the end is defined as zero.
 bool PlanToRest(KinematicState from, trajectory::Limits limits, trajectory::Planner& planner, double& begin,
                 trajectory::Profile& out) {
   from = WithinSpeed(from, limits);
@@ -106,7 +106,7 @@ void Reverse(RampClock& clock) {
   clock.sense = -clock.sense;
 }
 
-// The clock has gone back beyond its begin: the ramp is for the other sense of the master now.
+// The clock has run back beyond its begin: the ramp is for the other sense of the master now.
 void TurnRound(trajectory::Planner& planner, Ramp& ramp) {
   RampClock& clock = ramp.clock;
   const KinematicState& start = ramp.profile.start();
@@ -205,7 +205,7 @@ bool MoveZero(double distance, trajectory::Planner& planner, Ramp& ramp) noexcep
   Ramp moved = ramp;
   KinematicState from = ramp.profile.At(ramp.clock.time_s);
   from.position += distance;
-  if (ramp.clock.rate < 0) {  // it goes back with its master: that is its way on from here
+  if (ramp.clock.rate < 0) {  // it runs back with its master: that is forwards for the new ramp
     from.velocity = -from.velocity;
     Reverse(moved.clock);
   }
@@ -232,7 +232,7 @@ void Advance(const KinematicState& before, const KinematicState& now, double dis
     next = size * most / most_before + t * growth;
     next_change = clock.share * RateSlope(clock, speed) * SpeedChange(now) + growth;
   } else {
-    // What it has of the master's acceleration from turning round ends with the ramp's jerk.
+    // The part of the master's acceleration that remains from a reversal ends with the ramp's jerk.
     next_change = std::max(growth, sign * clock.rate_change - t * clock.jerk / clock.velocity);
     next = size + t * next_change;
   }
@@ -244,7 +244,7 @@ void Advance(const KinematicState& before, const KinematicState& now, double dis
   const double rate_before = clock.rate, change_before = clock.rate_change;
   clock.rate = sign * next;
   clock.rate_change = sign * next_change;
-  // The integral of the rate, never more than the master's displacement allows.
+  // The integral of the rate, limited to what the master's displacement allows.
   const double step = 0.5 * t * (rate_before + clock.rate) + t * t / 12 * (change_before - clock.rate_change);
   const double most_step = clock.sense * displacement / clock.reference;
   clock.time_s += std::clamp(step, std::min(most_step, 0.0), std::max(most_step, 0.0));

@@ -7,7 +7,7 @@ namespace takt::flexcam {
 
 namespace {
 
-// A change with equal slopes looks so many pieces of the cam to either side: some 20 µs at most.
+// A change with equal slopes searches this many pieces of the cam on either side: about 20 µs at most.
 constexpr std::size_t kPiecesToLookAt = 64;
 
 trajectory::Limits MasterRamps(const Settings& s) {
@@ -20,13 +20,13 @@ trajectory::Limits SlaveRamps(const Settings& s) {
           s.jerk};
 }
 
-// Y where the cam's own y is 0 in its present cycle.
+// Returns the Y at which the cam's own y is 0 in its present cycle.
 double ZeroOfY(const Context& c, const State& s) {
   return s.way.profiler.base + static_cast<double>(s.way.profiler.cycle) * TableOf(c, s).stroke();
 }
 
-// The master's position that absolute scaling counts from: its own zero as long as X is its position, else where X is 0
-// in the present cycle of the cam.
+// Returns the master's position that absolute scaling refers to: its own zero as long as X is its position, else the
+// position at which X is 0 in the present cycle of the cam.
 double ZeroOfMaster(const Context& c, const State& s) {
   const double zero = ZeroOf(c.slave, c.master);
   const double turn = TurnOf(c.slave, c.master);
@@ -60,8 +60,8 @@ ConversionTarget SlaveTarget(const Context& c, const State& s) {
   return t;
 }
 
-// Ramps of the slave ride on Y: they never move the slave against it. Where Y falls while X rises they go on all the
-// same, so they have the speed of Y and the sense of X.
+// Ramps of the slave are relative to Y: they never move the slave against it. If Y falls while X rises they still
+// proceed, so they use the speed of Y and the sense of X.
 KinematicState RideOf(const KinematicState& y, const KinematicState& x) {
   const double sign = y.velocity * x.velocity < 0 ? -1 : 1;
   return {y.position, sign * y.velocity, sign * y.acceleration};
@@ -76,15 +76,15 @@ bool IsEmpty(const State& s, std::uint32_t slot) {
   return slot == 0 || slot > kSlots || s.slots[slot - 1] == 0;
 }
 
-// Whether a cam's slope has a step where its end would go over into its beginning: it was not made to be run again and
-// again. Cams of straight lines have such steps anyhow.
+// Returns true if a cam's slope has a step between its end and its beginning: it was not made to be run cyclically.
+// Cams of straight lines have such steps anyway.
 bool IsOpen(const cam::Table& table) {
   if (table.cyclic() || table.source().interpolation == cam::Interpolation::kLinear) return false;
   const double begin = table.At(table.begin()).dy, end = table.At(table.end()).dy;
   return std::abs(end - begin) > 1e-6 * (1 + std::max(std::abs(begin), std::abs(end)));
 }
 
-// Whether the cam that was taken is run once: an open one is, whatever is asked for (CAM-86).
+// Returns true if the selected cam is run once: an open cam always is (CAM-86).
 bool RunsOnce(const Context& c, bool cyclic, State& s) {
   const bool open = IsOpen(TableOf(c, s));
   if (open && (cyclic || s.settings.cam_cyclic)) s.warning = ErrorId::kOpenCam;
@@ -96,7 +96,7 @@ void Take(const SequenceStep& next, State& s) {
   s.way.profiler.cam = s.slots[next.slot - 1] - 1;
 }
 
-// A change of cam that is no step of a sequence ends the sequence, and X cannot go back to the cam before.
+// A change of cam that is no step of a sequence ends the sequence, and X cannot return to the previous cam.
 void LeaveSequence(State& s) {
   s.sequencer = {};
   s.entry = {};
@@ -113,7 +113,7 @@ void EndChange(const Context& c, FeedbackState feedback, ErrorId error, State& s
   s.gap_known = false;
 }
 
-// The other cam at the same place of X, or at one with the same slope; at the instant of the cycle before.
+// Changes to the other cam at the same x, or at an x with the same slope; at the instant of the previous cycle.
 bool ChangeHere(const Context& c, std::uint32_t slot, ChangeAlign align, double x_before, State& s) {
   const cam::Table& to = c.slave.machine.cams[s.slots[slot - 1] - 1];
   const ProfilerValue was = ValueAt(TableOf(c, s), s.way.profiler, x_before);
@@ -128,7 +128,7 @@ bool ChangeHere(const Context& c, std::uint32_t slot, ChangeAlign align, double 
   const bool cyclic = IsOpen(TableOf(c, s)) ? s.settings.cam_cyclic : !p.once;
   Take({slot, true}, s);
   Lay(to, x_before, x, RunsOnce(c, cyclic, s), p);
-  // Outside the other cam its end is held. An end that X is at is passed.
+  // Outside the other cam its end is held. An end that X is at counts as passed.
   const double near = 1e-9 * to.length();
   if (p.once && (x < to.begin() - near || x > to.end() + near)) GoOn(to, x_before, p);
   const bool meets = align != ChangeAlign::kNothing || !s.settings.slave_absolute;
@@ -138,7 +138,7 @@ bool ChangeHere(const Context& c, std::uint32_t slot, ChangeAlign align, double 
   return true;
 }
 
-// The master's position where X was at `x`, on the way from the cycle before to this one.
+// Returns the master's position at which X was at `x`, between the previous cycle and this one.
 double MasterAt(const State& s, double x, double x_before) {
   if (s.way.to_x.ramp.kind == RampKind::kNone) return InverseOf(s.way.to_x, x);
   const double way = s.x.position - x_before;
@@ -153,14 +153,14 @@ bool Passes(double place, double turn, double before, double now) {
   return up > std::floor((std::min(before, now) - place) / turn);
 }
 
-// What lies between this cam and the next one: in place, or where Y is shifted anyway, in slope.
+// Returns the gap between this cam and the next one: in position or, if Y is shifted anyway, in slope.
 double GapTo(const Context& c, const PendingChange& change, bool in_place, const State& s) {
   const cam::Table& to = c.slave.machine.cams[s.slots[change.change.cam_table - 1] - 1];
   const cam::Value there = to.At(s.at.x);
   return in_place ? ZeroOfY(c, s) + there.y - s.at.y : there.dy - s.at.dy;
 }
 
-// The slave can get from one slope to the other in a few cycles.
+// Returns true if the slave can change from one slope to the other in a few cycles.
 bool CanTakeSlope(const Context& c, double step, const State& s) {
   const trajectory::Limits own = c.slave.params.planner_limits();
   return std::abs(step * s.x.velocity * s.way.to_slave.factor) <=
@@ -178,7 +178,7 @@ bool MeetsNow(const Context& c, const PendingChange& change, State& s) {
   return CanTakeSlope(c, GapTo(c, change, false, s), s);
 }
 
-// Goes away from a place that comes only once.
+// Returns true if the motion leads away from a position that occurs only once.
 bool GoesAway(double place, double before, double now) {
   return (now - place) * (now - before) > 0;
 }
@@ -207,7 +207,7 @@ bool IsDue(const Context& c, const PendingChange& change, double x_before, State
   }
 }
 
-// Returns whether the cam was changed.
+// Returns true if the cam was changed.
 bool TakeChanges(const Context& c, double x_before, State& s) {
   bool changed = false;
   if (s.instant) {
@@ -227,7 +227,7 @@ bool TakeChanges(const Context& c, double x_before, State& s) {
   return changed;
 }
 
-// X stays in the cycle in which it is, for good.
+// Keeps X in its present cycle from now on.
 void Hold(const cam::Table& table, ProfilerState& p) {
   const auto cycle = static_cast<double>(p.cycle);
   p.laid += cycle * table.length();
@@ -236,15 +236,16 @@ void Hold(const cam::Table& table, ProfilerState& p) {
   p.once = p.held = true;
 }
 
-// Another cam is run from the end of this one on.
+// Runs another cam from the end of this one.
 void ChangeAtEnd(const Context& c, const Passed& passed, const SequenceStep& next, bool relative, State& s) {
   const cam::Table& from = TableOf(c, s);
   Take(next, s);
   Change(from, TableOf(c, s), passed, relative, RunsOnce(c, next.cyclic, s), s.way.profiler);
 }
 
-// Whether the other cam begins (X going back: ends) as this one is left, in place and, as far as the slave can in a few
-// cycles, in slope. Between two cycles that is not seen: the cams may touch there without crossing one another.
+// Returns true if the other cam begins (X moving backwards: ends) as this one is left, in position and, as far as the
+// slave can in a few cycles, in slope. MeetsNow does not find this between two cycles: the cams may touch there without
+// crossing.
 bool MeetsAtEnd(const Context& c, const PendingChange& change, const Passed& passed, const State& s) {
   const bool in_place = change.change.align == ChangeAlign::kNothing && s.settings.slave_absolute;
   const cam::Table& from = TableOf(c, s);
@@ -256,14 +257,14 @@ bool MeetsAtEnd(const Context& c, const PendingChange& change, const Passed& pas
   return CanTakeSlope(c, entered - left, s);
 }
 
-// The cam that a command wants from this end on. False: there is none.
+// Changes to the cam that a command requests from this end on. Returns false if there is none.
 bool TakePending(const Context& c, const Passed& passed, State& s) {
   const PendingChange* pending = Due(s, ChangeWhen::kNextCycle);
   if (pending == nullptr) pending = Due(s, ChangeWhen::kWithoutJump);
   if (pending == nullptr) return false;
   if (pending->change.when == ChangeWhen::kWithoutJump && !MeetsAtEnd(c, *pending, passed, s)) return false;
   const ChangeCam change = pending->change;
-  // With equal slopes it goes on somewhere within the other cam, else at its beginning.
+  // With equal slopes it continues somewhere within the other cam, else at its beginning.
   if (change.align == ChangeAlign::kVelocity) {
     if (!ChangeHere(c, change.cam_table, change.align, passed.x_total, s)) {
       EndChange(c, FeedbackState::kError, ErrorId::kPlanning, s);
@@ -295,11 +296,11 @@ void TakeNext(const Context& c, const Passed& passed, State& s) {
   }
 }
 
-// The cam of a sequence is left over the side where X came in: it was not run, and the one before it goes on. One that
-// was taken up right there goes on itself, from its other end.
+// The cam of a sequence is left over the end at which X entered: it was not run, and the previous one continues. A cam
+// that was started right there continues itself, from its other end.
 bool ComesBack(const Context& c, const Passed& passed, State& s) {
   if (s.entry.sense == 0 || passed.sense != -s.entry.sense) return false;
-  if (s.sequencer.part == SequencePart::kNone) {  // the sequence was switched on before a cam was run at all
+  if (s.sequencer.part == SequencePart::kNone) {  // the sequence was switched on before any cam was run
     if (!s.inputs.cam_sequencer) return false;
     const SequenceStep first = First(SequencerOf(c, s), s.sequencer);
     if (!IsEmpty(s, first.slot)) ChangeAtEnd(c, passed, first, !s.settings.slave_absolute, s);
@@ -329,7 +330,7 @@ void PassEnd(const Context& c, const Passed& passed, double x_before, State& s) 
   ProfilerState& p = s.way.profiler;
   const double master = MasterAt(s, passed.x_total, x_before);
   ++s.cam_ends;
-  // A curve of the clutch that ends on this cam finds it there.
+  // A curve of the clutch that ends on this cam relies on its position.
   const bool stays = IsOnCurve(s.clutch);
   if (!stays && !ComesBack(c, passed, s) && !TakePending(c, passed, s)) GoOnInSequence(c, passed, s);
   const double turn = TurnOf(c.slave, c.master);
@@ -339,20 +340,22 @@ void PassEnd(const Context& c, const Passed& passed, double x_before, State& s) 
   if (!stays) ApproachAtZero(MasterTarget(c, s), master, cycle, masters, c.slave.planner, s.way.to_x);
   s.x = Convert(s.way.to_x, c.slave.cycle, s.master.now);
   GoOn(TableOf(c, s), s.x.position, p);
-  // Counted from where Y is: the end of a cam that is held there or entered backwards, else its beginning.
+  // Counted from the present Y: the end of a cam that is held there or entered backwards, else its beginning.
   const bool at_end = p.held ? passed.sense > 0 : passed.sense < 0;
   const double entered = ZeroOfY(c, s) + (at_end ? TableOf(c, s).stroke() : 0);
   const ConversionInputs ys = {s.y, RideOf(s.y, s.x)};
   if (!IsFrozen(s.clutch)) ApproachAtZero(SlaveTarget(c, s), entered, cycle, ys, c.slave.planner, s.way.to_slave);
 }
 
-// What is set may come into force here. A clutch that waits for the ramps under way is not kept waiting by new ones.
+// Returns true if new settings may come into force now. A clutch that waits for ramps in progress is not kept waiting
+// by new ones.
 bool TakesOver(const ClutchState& clutch) {
   return !IsOnCurve(clutch) && clutch.waits != ClutchWait::kRamps;
 }
 
-// What is to be run instead of the end of a cam that is held, if anything: what a command wants, a sequence, or what is
-// set, be it another slot, another cam in this one, or this one again and again. `meets`: it begins where Y is.
+// Returns the cam to run instead of the held end of a cam, if any: by a command, by a sequence, or by the settings, be
+// it another slot, another cam in this slot, or this one cyclically. `meets` returns true if it begins at the present
+// Y.
 std::optional<SequenceStep> AfterHeld(const Context& c, bool& meets, State& s) {
   const ProfilerState& p = s.way.profiler;
   if (const PendingChange* pending = Due(s, ChangeWhen::kNextCycle)) {
@@ -367,7 +370,7 @@ std::optional<SequenceStep> AfterHeld(const Context& c, bool& meets, State& s) {
   return other ? std::optional(SequenceStep{p.slot, s.settings.cam_cyclic}) : std::nullopt;
 }
 
-// The end of a cam that is run once is held until another one is to be run. `changed`: the held cam was taken in this
+// Holds the end of a cam that is run once until another one is to be run. `changed`: the held cam was selected in this
 // cycle, so the next one begins at its Y.
 void HoldOn(const Context& c, bool changed, State& s) {
   ProfilerState& p = s.way.profiler;
@@ -417,7 +420,7 @@ bool IsStuck(const State& s, Adjustment what) noexcept {
   const bool on_cam = s.clutch.phase == ClutchPhase::kClosed || s.clutch.phase == ClutchPhase::kWaitingOut;
   if (s.state != ModuleState::kSync || !on_cam || !s.way.profiler.held || IsSettled(s, what)) return false;
   const Settings& set = s.settings;
-  const bool rides = s.way.to_slave.ramp.kind == RampKind::kWithMaster;  // on Y, which stands
+  const bool rides = s.way.to_slave.ramp.kind == RampKind::kWithMaster;  // on Y, which is at rest
   switch (what) {
     case Adjustment::kOffsetMaster:
       return set.offset_mode_master == OffsetMode::kXZero && s.way.to_x.offset != s.inputs.offset_master;
@@ -457,7 +460,7 @@ void TakeUp(const Context& c, const axis::State& slave, State& s) noexcept {
   }
   s.x = Convert(to_x, c.slave.cycle, s.master.before);
   const double x = s.assigned ? s.x.position : table.begin() + to_x.offset;
-  // A sequence begins in the cycle in which X is, wherever the master has got to; a cam that is run once may be over.
+  // A sequence begins in the cycle that X is in, at any position of the master; a cam that is run once may be over.
   const bool once = RunsOnce(c, first.cyclic, s);
   ProfilerState& p = s.way.profiler;
   Lay(table, s.x.position, x, once && s.sequencer.part == SequencePart::kNone, p);

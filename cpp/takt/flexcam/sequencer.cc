@@ -15,7 +15,7 @@ constexpr std::array<SequenceStep, 1> kIn3 = {{{3, true}}};
 constexpr std::array<SequenceStep, 1> kOut1 = {{{1, false}}};
 constexpr std::array<SequenceStep, 2> kOut41 = {{{4, false}, {1, true}}};
 
-// Begins a part with the cam in progress where that is its first one already.
+// Begins a part; skips its first cam if that is already running.
 SequenceStep Begin(const SequencerInputs& in, SequencePart part, SequencerState& s) {
   const std::span<const SequenceStep> steps = StepsOf(in.mode, part);
   s.part = part;
@@ -45,7 +45,7 @@ std::span<const SequenceStep> StepsOf(SequenceMode mode, SequencePart part) noex
 
 bool IsActive(const SequencerInputs& in, const SequencerState& s) noexcept {
   const std::span<const SequenceStep> steps = StepsOf(in.mode, s.part);
-  // What is run again and again on the way out is no sequence any more.
+  // A cyclic cam of the exit is no sequence any more.
   return s.part == SequencePart::kIn ||
          (s.part == SequencePart::kOut && s.step < steps.size() && !steps[s.step].cyclic);
 }
@@ -70,7 +70,7 @@ SequenceStep Next(const SequencerInputs& in, SequencerState& s) noexcept {
   if (s.part == SequencePart::kNone || s.step >= steps.size()) return in.selected;
   const SequenceStep now = steps[s.step];
   if (!now.cyclic) {
-    ++s.step;  // beyond the last one: its end is held
+    ++s.step;  // beyond the last one, its end is held
     return s.step < steps.size() ? steps[s.step] : now;
   }
   if (s.part == SequencePart::kOut && in.selected.slot != now.slot) {

@@ -1,4 +1,4 @@
-// Which cam comes next (the manual's 3.24, and the slot that is set).
+// Selects the next cam (the manual's 3.24, and the selected slot).
 #pragma once
 
 #include <cstdint>
@@ -10,34 +10,35 @@
 
 namespace takt::flexcam {
 
-enum class SequencePart : std::uint8_t { kNone, kIn, kOut };  // none; while the sequencer is on; what follows it
+// no sequence; while the sequencer is on; the exit after it
+enum class SequencePart : std::uint8_t { kNone, kIn, kOut };
 
 struct SequencerState {
   SequencePart part = SequencePart::kNone;
-  std::uint8_t step = 0;  // of the part
+  std::uint8_t step = 0;  // index within the part
 };
 
 struct SequenceStep {
   std::uint32_t slot = 1;
   bool cyclic = true;
 };
-// The cams of a part, the last one first run again and again where it is cyclic.
+// Returns the cams of a part in order; a cyclic one is repeated.
 std::span<const SequenceStep> StepsOf(SequenceMode mode, SequencePart part) noexcept;
 
 struct SequencerInputs {
   bool on = false;
   SequenceMode mode = SequenceMode::kCam1;
-  SequenceStep selected;  // without a sequence: what is set
+  SequenceStep selected;  // without a sequence: the selected slot
   SequenceStep running;
 };
 
-// Whether a sequence is being run (sequencer_active).
+// Returns true if a sequence is running (sequencer_active).
 bool IsActive(const SequencerInputs& in, const SequencerState& state) noexcept;
-// Where the clutch closes anew: the cam to begin with.
+// Returns the cam to begin with when the clutch closes anew.
 SequenceStep First(const SequencerInputs& in, SequencerState& state) noexcept;
-// At the end of a cam: the next one. The same slot again: it goes on.
+// At the end of a cam: returns the next one. The same slot: it continues.
 SequenceStep Next(const SequencerInputs& in, SequencerState& state) noexcept;
-// While the end of a cam is held that is run once: what is to be run instead, if anything.
+// While the end of a cam that is run once is held: returns the cam to run instead, if any.
 std::optional<SequenceStep> FromHeld(const SequencerInputs& in, SequencerState& state) noexcept;
 
 void describe(Enumeration<SequencePart>&);

@@ -6,7 +6,7 @@ namespace takt::flexcam {
 
 namespace {
 
-// Described once, for the settings and for the command that changes them.
+// One description for the settings and for the command that changes them.
 template <template <typename> class Of>
 void DescribeSettings(Description<SettingsOf<Of>>& d) {
   using S = SettingsOf<Of>;

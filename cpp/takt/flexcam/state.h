@@ -1,4 +1,4 @@
-// All memory of a cam module: plain, so that it can be copied, compared, hashed and replayed.
+// The state of a cam module: plain data, so that it can be copied, compared, hashed and replayed.
 #pragma once
 
 #include <array>
@@ -25,51 +25,51 @@ struct PendingChange {
   ChangeCam change;
 };
 
-// How X came into the cam of a sequence that it is in: a cam that is left over the side where X came in was not run.
+// How X entered the present cam of a sequence: a cam that X leaves again over the same end was not run.
 struct SequenceEntry {
-  std::int8_t sense = 0;    // of X at that end of the cam; 0: it was taken up within, or runs again and again
-  bool has_before = false;  // what follows is what was left there
+  std::int8_t sense = 0;    // of X at that end of the cam; 0: X began within the cam, or the cam is cyclic
+  bool has_before = false;  // the members below hold the state that was left there
   ProfilerState profiler;
   SequencerState sequencer;
 };
 
 struct JogKeys {
-  Ticket ticket = 0;  // 0: none is held
+  Ticket ticket = 0;  // 0: no key is held
   Jog keys;
-  double lease_s = 0;  // > 0: a dead man's lease ...
+  double lease_s = 0;  // [s] > 0: dead man's lease ...
   std::uint64_t lease_end_cycle = 0;
 };
 
-// What Control may change by a ramp.
+// Values that Control may change by a ramp.
 enum class Adjustment : std::uint8_t { kOffsetMaster, kOffsetSlave, kScalingMaster, kScalingSlave };
 inline constexpr std::size_t kAdjustments = 4;
 
-// What Control started and whose end is to be told.
+// The action started by Control whose end is to be reported.
 enum class Action : std::uint8_t { kNone, kSyncIn, kSyncOut, kHome };
 
 struct State {
   Inputs inputs;
-  Inputs before;  // inputs of the cycle before, for their edges
-  Inputs rose;    // levels that rose in this cycle, also if they fell before or behind that
+  Inputs before;  // inputs of the previous cycle, for their edges
+  Inputs rose;    // levels that rose in this cycle, even if they fell before or after that
   Settings settings;
-  std::array<std::uint32_t, kSlots> slots{};  // number of the machine's cam in each, from 1; 0: none
+  std::array<std::uint32_t, kSlots> slots{};  // number of the machine's cam in each slot, from 1; 0: none
   ModuleState state = ModuleState::kInit;
   ErrorId error = ErrorId::kNone;
   ErrorId warning = ErrorId::kNone;
   Action action = Action::kNone;  // in progress
   Ticket action_ticket = 0;
-  Action request = Action::kNone;  // asked for in this cycle
+  Action request = Action::kNone;  // requested in this cycle
   Ticket request_ticket = 0;
-  std::array<Ticket, kAdjustments> adjusting{};  // whose ramps are told when they end; 0: none
+  std::array<Ticket, kAdjustments> adjusting{};  // commands whose ramps are reported when they end; 0: none
   bool done = false;
-  bool holds = false;    // the slave's stop is the module's
-  bool instant = false;  // the cam that is set is to be taken at once
+  bool holds = false;    // the slave's stop is held by the module
+  bool instant = false;  // the selected cam is to be changed at once
   JogKeys jog;
 
   MasterState master;
   Way way;
   KinematicState x;       // over all cycles
-  KinematicState wanted;  // of the slave by Y, over all turns
+  KinematicState wanted;  // position of the slave by Y, over all turns
   ProfilerValue at;
   KinematicState y;       // Y and its derivatives over time
   bool assigned = false;  // X is the master's position
@@ -79,8 +79,8 @@ struct State {
   BoundsState bounds;
   std::array<PendingChange, kPendingChanges> pending;  // [0] is next
   std::uint8_t pending_count = 0;
-  bool gap_known = false;  // between this cam and the next, in the cycle before (without_jump)
-  double gap = 0;          // in place or slope
+  bool gap_known = false;  // the gap between this cam and the next in the previous cycle is known (without_jump)
+  double gap = 0;          // [y or y per x] in position or slope
   std::uint32_t cam_ends = 0;
   bool end_of_profile = false;
 };

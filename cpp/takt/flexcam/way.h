@@ -1,4 +1,4 @@
-// The way from the master's position to the slave's, stage by stage: master -> X -> cam -> Y -> slave.
+// The chain from the master's position to the slave's, stage by stage: master -> X -> cam -> Y -> slave.
 #pragma once
 
 #include "takt/cam/table.h"
@@ -13,8 +13,8 @@ struct Way {
   Conversion to_slave;
 };
 
-// What the slave's place is over the master's: place, slope and bend per the master's unit, with all ramps at their
-// end.
+// Returns position, slope and curvature of the slave over the master's position (per master's u), with all ramps at
+// their end.
 inline KinematicState PlaceAt(const Way& way, const cam::Table& table, double master) noexcept {
   Conversion to_x = way.to_x;
   Conversion to_slave = way.to_slave;

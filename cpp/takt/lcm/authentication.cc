@@ -21,7 +21,7 @@ namespace {
 constexpr std::array<std::uint8_t, 4> kTagMark = {'T', 'K', 'H', '1'};
 constexpr std::size_t kHeadBytes = kTagMark.size() + 3 * 8;
 constexpr std::size_t kMacBytes = kTagBytes - kHeadBytes;
-constexpr std::size_t kMostSenders = 4096;  // then those whose messages are stale anyhow are forgotten
+constexpr std::size_t kMostSenders = 4096;  // above this, senders whose messages would be stale anyhow are forgotten
 
 void AppendNumber(std::vector<std::uint8_t>& bytes, std::uint64_t number) {
   for (int shift = 56; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(number >> shift));
@@ -33,7 +33,7 @@ std::uint64_t ReadNumber(std::span<const std::uint8_t> bytes) {
   return number;
 }
 
-// The distance of any two numbers.
+// Returns the absolute difference without overflow.
 std::uint64_t Apart(std::int64_t a, std::int64_t b) {
   const auto x = static_cast<std::uint64_t>(a), y = static_cast<std::uint64_t>(b);
   return a > b ? x - y : y - x;
@@ -66,7 +66,7 @@ class Mac {
   Mac& operator=(const Mac&) = delete;
 
   using Value = std::array<std::uint8_t, kMacBytes>;
-  // Of message and head of a tag, which lie one behind the other. Nothing where OpenSSL fails.
+  // Returns the code of message and tag head, which are contiguous in `bytes`; nothing if OpenSSL fails.
   std::optional<Value> Of(std::string_view channel, std::span<const std::uint8_t> bytes) {
     constexpr std::uint8_t kZero = 0;
     Value value{};
@@ -136,7 +136,7 @@ TagState Verifier::Open(std::string_view channel, std::span<const std::uint8_t>&
     return mac && CRYPTO_memcmp(mac->data(), tag.data() + kHeadBytes, kMacBytes) == 0;
   });
   if (!good) return TagState::kForeign;
-  // From here on a holder of the key has said it.
+  // From here on the message is known to come from a holder of the key.
   const std::uint64_t number = ReadNumber(tag.subspan(4)), counter = ReadNumber(tag.subspan(12));
   const auto utime = static_cast<std::int64_t>(ReadNumber(tag.subspan(20)));
   if (Apart(utime, heard_us) > kFreshUs) return TagState::kStale;
@@ -182,7 +182,7 @@ class KeyedReceiver : public Receiver {
   KeyedReceiver(std::unique_ptr<Receiver> receiver, const Keys& keys, OnRefused refused)
       : receiver_(std::move(receiver)), keys_(keys), refused_(std::move(refused)) {}
 
-  // One verifier each: a message that several subscriptions take comes to each of them once.
+  // One verifier per subscription: a message that several of them receive reaches each of them once.
   int Subscribe(const std::string& channels, std::size_t capacity, Handler handler) override {
     const auto verifier = std::make_shared<Verifier>(keys_);
     return receiver_->Subscribe(channels, capacity, [this, verifier, handler = std::move(handler)](const Heard& heard) {

@@ -46,12 +46,12 @@ bool IsHeldStop(const engine::CommandBody& body) {
   return stop && stop->hold;
 }
 
-// A held stop is done when what it stops stands, and in force until it is released.
+// A held stop is done when its component is at rest, and in force until it is released.
 bool StaysInForce(const engine::Command& command) {
   return IsHeldStop<axis::Stop, axis::Command>(command.body) || IsHeldStop<group::Stop, group::Command>(command.body);
 }
 
-// The ticket that a release lets go of; 0: it is no release.
+// Returns the ticket that a release refers to; 0 if the command is no release.
 Ticket Released(const engine::Command& command) {
   const auto* machine = std::get_if<engine::MachineCommand>(&command.body);
   const auto* release = machine ? std::get_if<engine::Release>(machine) : nullptr;
@@ -62,8 +62,9 @@ bool IsFinalReply(const msgs::feedback& reply) {
   return IsFinal(static_cast<FeedbackState>(reply.state));
 }
 
-// Whether a held stop holds behind its final feedback, however it ended: power off, a fault or another stop ends the
-// command and leaves the hold. One that was never in control holds nothing, nor does one too many.
+// Returns true if a held stop still holds after its final feedback, however it ended: power off, a fault or another
+// stop ends the command but not the hold. A stop that never took control holds nothing, nor does one that found no room
+// (kBufferFull).
 bool Holds(const FeedbackEvent& end, const msgs::feedback& before) {
   const bool began = static_cast<FeedbackState>(before.state) == FeedbackState::kActive;
   return end.state == FeedbackState::kDone || (began && end.error != ErrorId::kBufferFull);
@@ -194,7 +195,7 @@ void Clients::OnCommand(const msgs::command& message, std::int64_t now_ns, std::
     return Reply(reply);
   }
   Give(*client, message, parsed, now_ns + limit_ns - age_ns, reply);
-  if (IsFinalReply(reply)) Reply(reply);  // what was accepted is answered by the cycle
+  if (IsFinalReply(reply)) Reply(reply);  // accepted commands are answered by the cycle
 }
 
 void Clients::Give(Client& client, const msgs::command& message, const engine::ParsedCommand& parsed,
@@ -250,7 +251,7 @@ void Clients::OnHeartbeat(const msgs::heartbeat& message, std::int64_t now_ns, s
     client = Guest(guest->first, now_ns);
   }
   for (const Ticket ticket : client->level_sensitive) {
-    // A full queue is no harm: the next heartbeat tries again.
+    // A full queue does no harm: the next heartbeat tries again.
     submit_({.target = engine::kMachineTarget, .body = engine::MachineCommand{engine::Renew{ticket}}});
   }
 }
@@ -263,7 +264,7 @@ void Clients::OnMalformed() {
 void Clients::OnFeedback(const FeedbackEvent& event) {
   const std::lock_guard lock(mutex_);
   const auto found = origins_.find(event.ticket);
-  if (found == origins_.end()) return;  // a renewal, or of a session that is gone
+  if (found == origins_.end()) return;  // a renewal, or of an ended session
   const auto [client, id] = found->second;
   Record& record = client->records.at(id);
   msgs::feedback reply = ToMessage(event);

@@ -10,7 +10,7 @@ namespace takt::lcm {
 
 namespace {
 
-constexpr std::size_t kMostSaid = 1000;  // sentences; then silence
+constexpr std::size_t kMostSaid = 1000;  // maximum number of sentences
 
 std::string Number(std::int64_t number) {
   return std::to_string(number);
@@ -90,12 +90,12 @@ std::optional<DriveGate::Refusal> DriveGate::Diagnose(const msgs::drive_feedback
   if (std::string sentence = NotFinite(m); !sentence.empty()) return Refusal{Reason::kNumber, std::move(sentence)};
   if (drive.answered == kNothing) return {};
   if (m.plant != drive.plant) {
-    // Another one may take over only after the engine had to do without the first: it cannot know where that left off.
+    // Another plant may take over only after the engine has run without the first one: it cannot know its state.
     if (sent - drive.answered > drive.missing_cycles) return {};
     return Refusal{Reason::kPlant, "a second plant answers for this axis; the first one is listened to"};
   }
-  // The order is that of the cycles, which are the engine's own numbers: the sender's could be so large that nothing
-  // came after them.
+  // The order is that of the cycles, which the engine numbers: the sender's sequence could jump so far that no later
+  // message would be newer.
   if (m.cycle <= drive.answered) {
     return Refusal{Reason::kOld, "cycle " + Number(m.cycle) + " after cycle " + Number(drive.answered) +
                                      ": old, out of order or twice"};

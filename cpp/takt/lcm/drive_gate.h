@@ -1,5 +1,5 @@
-// What drives in other processes send, looked at before the engine gets it: who sent it, to what it is the answer,
-// whether its numbers are numbers. No LCM in here.
+// Checks the messages of external drives before the engine receives them: sender, set point that they answer, and
+// finite values. Independent of LCM.
 #pragma once
 
 #include <array>
@@ -22,24 +22,25 @@ namespace takt::lcm {
 
 class DriveGate {
  public:
-  // Called for every message that is refused, with a sentence the first time for each channel and reason, else empty.
+  // Called for every refused message, with a sentence the first time for each channel and reason, else with an empty
+  // one.
   using Refuse = std::function<void(const std::string& sentence)>;
 
-  // `machine` must outlive this.
+  // `machine` must outlive this object.
   DriveGate(const engine::Machine& machine, std::int64_t run_id, Refuse refuse);
 
-  std::size_t size() const { return drives_.size(); }  // drives; they have the order of the axes
+  std::size_t size() const { return drives_.size(); }  // number of drives, in the order of their axes
 
-  // A set point went out: any thread.
+  // Records that a set point was sent. Thread-safe.
   void OnSent(const engine::DriveSetPoint& set_point);
-  // A message as it came: the sample in it, or nothing. One thread at a time.
+  // Returns the sample in a received message; nothing if it is refused. One thread at a time.
   std::optional<engine::DriveSample> Take(std::string_view channel, std::span<const std::uint8_t> bytes);
 
-  // The number of the drive of this axis, which is an external one.
+  // Returns the number of the drive of this axis. Requires: its drive is external.
   std::size_t DriveOf(std::uint32_t axis) const;
   std::uint32_t AxisOf(std::size_t drive) const { return drives_[drive].axis; }
   std::uint32_t missing_cycles(std::size_t drive) const { return drives_[drive].missing_cycles; }
-  // Cycle of the newest set point that the drive has answered; less than -1: none.
+  // Returns the cycle of the newest set point that the drive has answered; less than -1: none yet.
   std::int64_t answered(std::size_t drive) const { return drives_[drive].answered; }
 
  private:
@@ -51,10 +52,10 @@ class DriveGate {
     std::uint32_t missing_cycles = 0;
     std::string channel;
     std::int64_t answered = kNothing;
-    std::int64_t plant = 0;  // who gave that answer
+    std::int64_t plant = 0;  // the plant that gave that answer
   };
 
-  // Newest set point that went out; how it was given before.
+  // The newest set point sent, and the set points sent more than once.
   struct Sent {
     Sent() {
       for (auto& cycle_again : again) cycle_again = kNothing;
@@ -62,8 +63,8 @@ class DriveGate {
     std::atomic<std::int64_t>& AgainAt(std::int64_t at) { return again[static_cast<std::size_t>(at) % kAskedAgain]; }
 
     std::atomic<std::int64_t> cycle{kNothing};
-    // Cycles whose set point went out more than once, as may their answers; each at its place. On a busy host an answer
-    // comes when those of later cycles were asked for again, too.
+    // Cycles whose set point was sent more than once, and may be answered more than once; entry cycle % kAskedAgain. On
+    // a busy host an answer may come after set points of later cycles were repeated, too.
     std::array<std::atomic<std::int64_t>, kAskedAgain> again{};
   };
   enum class Reason : std::uint8_t { kChannel, kType, kAxis, kRun, kFuture, kNumber, kPlant, kOld };
@@ -72,7 +73,7 @@ class DriveGate {
     std::string sentence;
   };
 
-  // Why this message must not reach the engine.
+  // Returns why this message must not reach the engine; nothing if it may.
   std::optional<Refusal> Diagnose(const msgs::drive_feedback& message, std::size_t drive) const;
   std::string UnknownChannel(std::string_view channel) const;
   void Say(std::string_view channel, const Refusal& refusal);

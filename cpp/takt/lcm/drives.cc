@@ -15,9 +15,9 @@ namespace takt::lcm {
 namespace {
 
 constexpr std::size_t kDriveQueue = 10'000;        // messages
-constexpr int kDriveWaitMs = 20;                   // real time: between looks at stop; simulated: of one Ready
+constexpr int kDriveWaitMs = 20;                   // real time: interval of checks of stop_; simulated: of one Ready
 constexpr std::int64_t kSendAgainNs = 50'000'000;  // simulated time
-constexpr int kLooksPerCycle = 10;                 // real time: for new set points
+constexpr int kLooksPerCycle = 10;                 // real time: checks for new set points
 constexpr std::int64_t kNsPerMs = 1'000'000;
 
 }  // namespace
@@ -168,7 +168,7 @@ void Drives::SendThread() {
   const auto period_ns = std::llround(engine_.machine().cycle.period_s * 1e9);
   const std::chrono::nanoseconds look(period_ns / kLooksPerCycle);
   for (;;) {
-    const bool last = stop_;  // before the queue is looked at
+    const bool last = stop_;  // read before the queue
     if (SendNewest()) continue;
     if (last) break;
     std::this_thread::sleep_for(look);

@@ -12,17 +12,17 @@
 namespace takt::lcm {
 namespace {
 
-// Messages. LCM's own default of 30 loses commands given at 100 times the cycle's rate.
+// [messages] LCM's default of 30 loses commands given at 100 times the cycle's rate.
 constexpr std::size_t kQueueCapacity = 10'000;
-constexpr int kWaitMs = 50;  // between looks at stop_
+constexpr int kWaitMs = 50;  // interval of checks of stop_
 
-// How long ago a message was given, by this host's clock: since it came to this host, and since its sender stamped it,
-// if it did. A stamp from the future is off by as much.
+// Returns the age of a message by this host's clock: the larger one of the time since its arrival and, if stamped, the
+// difference to its sender's stamp. A stamp in the future counts as age, too.
 std::int64_t AgeNs(const Heard& heard, std::int64_t given_us) {
   const std::int64_t now_us = WallClockUs();
   const std::int64_t waited = std::max<std::int64_t>(0, now_us - heard.utime);
   if (given_us == 0) return waited * 1000;
-  // Stamps are anything: no difference of two of them may overflow.
+  // Stamps may have any value: their difference must not overflow.
   const double apart = std::abs(static_cast<double>(now_us) - static_cast<double>(given_us));
   return std::max(waited, static_cast<std::int64_t>(std::min(apart, 1e15))) * 1000;
 }

@@ -1,5 +1,5 @@
-// Commands and heartbeats from the network (EN-22, EN-23), on a thread of its own. Another engine on the same network
-// is said in one line on stderr: nobody can tell the two engines' states from one another.
+// Receives commands and heartbeats from the network (EN-22, EN-23), on its own thread. Another engine on the same
+// network is reported in one line on stderr: clients cannot distinguish the states of the two engines.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@ namespace takt::lcm {
 
 class Gateway {
  public:
-  // Listens from now on. Both must outlive this; nobody else uses `network`.
+  // Listens from now on. Both must outlive this object; nothing else may use `network`.
   Gateway(Receiver& network, Clients& clients);
   ~Gateway();
   Gateway(const Gateway&) = delete;
@@ -29,7 +29,7 @@ class Gateway {
   Receiver& network_;
   Clients& clients_;
   std::vector<int> subscriptions_;
-  std::uint64_t malformed_ = 0;  // datagrams, as counted last
+  std::uint64_t malformed_ = 0;  // datagrams, at the last check
   bool met_another_engine_ = false;
   std::atomic<bool> stop_{false};
   std::thread thread_;

@@ -15,7 +15,7 @@
 namespace takt::lcm {
 namespace {
 
-constexpr std::size_t kLongestFile = 4096;  // bytes
+constexpr std::size_t kLongestFile = 4096;  // [bytes]
 constexpr std::size_t kDigits = 2 * kKeyBytes;
 constexpr std::size_t kMostKeys = 2;
 
@@ -29,7 +29,7 @@ bool IsSpace(char c) {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
 }
 
-// Why this line, which has no space at its end, is no key; empty: it is.
+// Returns why this line, which has no trailing space, is no key; empty if it is one.
 std::string WhyNoKey(std::string_view line) {
   const std::string expected = "expected one key of " + std::to_string(kDigits) + " hexadecimal digits";
   const bool hex =
@@ -54,7 +54,7 @@ Key FromDigits(std::string_view text) {
   return key;
 }
 
-// The lines with something in them, without spaces at their ends.
+// Returns the non-empty lines, without trailing spaces.
 std::vector<std::string_view> LinesOf(std::string_view text) {
   std::vector<std::string_view> lines;
   while (!text.empty()) {
@@ -67,7 +67,7 @@ std::vector<std::string_view> LinesOf(std::string_view text) {
   return lines;
 }
 
-// The keys in the text of a file; nothing, and why.
+// Returns the keys in the text of a file; nothing, and the reason in `why`, on failure.
 std::optional<Keys> KeysIn(std::string_view text, std::string& why) {
   const std::vector<std::string_view> lines = LinesOf(text);
   if (lines.empty()) why = "it is empty; expected one key of " + std::to_string(kDigits) + " hexadecimal digits";
@@ -93,7 +93,7 @@ std::optional<Keys> ReadKeys(const std::string& path, std::string& problem) {
     problem = "key file " + path + ": " + why;
     return std::nullopt;
   };
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe without a writer hangs nothing
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe without a writer does not block
   if (file < 0 && errno == ENOENT) return refuse("there is none; takt key new " + path + " makes one");
   if (file < 0) return refuse(std::strerror(errno));
   struct stat status {};

@@ -1,4 +1,4 @@
-// The keys that an engine, its clients and its drives share (EN-31), and the file they are in.
+// The keys that an engine, its clients and its drives share (EN-31), and their file.
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@ namespace takt::lcm {
 inline constexpr std::size_t kKeyBytes = 32;
 using Key = std::array<std::uint8_t, kKeyBytes>;
 
-// One key; or two while it is changed, so that programs with the old file and with the new one hear each other.
+// One key; or two while it is being changed, so that programs with the old file and with the new one accept each other.
 struct Keys {
-  Key own{};                 // tags what is sent, and is accepted
+  Key own{};                 // tags sent messages, and is accepted
   std::optional<Key> other;  // is accepted, too
 };
 
-// The keys in a file that its owner alone may read, each a line of 64 hexadecimal digits, the own one first. Nothing:
-// `problem` says why, in one line, without what is in the file.
+// Reads the keys from a file that only its owner may read, one line of 64 hexadecimal digits each, the own one first.
+// Returns nothing on failure; `problem` then says why, in one line, without any content of the file.
 std::optional<Keys> ReadKeys(const std::string& path, std::string& problem);
 
 }  // namespace takt::lcm

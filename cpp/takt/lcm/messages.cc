@@ -42,11 +42,11 @@ msgs::axis_numbers ToMessage(const pickplace::AxisNumbers& n) {
           .aux1 = n.aux1};
 }
 
-constexpr std::size_t kFingerprint = 8;  // bytes
+constexpr std::size_t kFingerprint = 8;  // [bytes]
 
-// Drive processes from before drive_error and later_s go on working: their messages are read as if these were 0.
+// Drive processes from before drive_error and later_s still work: their messages are read as if these were 0.
 constexpr std::uint64_t kFeedbackBefore = 0x21B308B742C4984C;
-constexpr std::size_t kFeedbackAdded = 16;  // bytes at the end
+constexpr std::size_t kFeedbackAdded = 16;  // [bytes] at the end
 
 bool IsFeedbackBefore(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < kFingerprint) return false;
@@ -55,7 +55,7 @@ bool IsFeedbackBefore(std::span<const std::uint8_t> bytes) {
   return fingerprint == kFeedbackBefore;
 }
 
-// The fields behind the fingerprint: 'i' eight bytes of whatever kind, 'b' one byte, 's' a string.
+// Fields after the fingerprint: 'i' eight bytes of any type, 'b' one byte, 's' a string.
 bool FitsLayout(std::span<const std::uint8_t> bytes, std::string_view layout) {
   if (bytes.size() < kFingerprint) return false;
   bytes = bytes.subspan(kFingerprint);

@@ -1,5 +1,5 @@
-// Between the engine's structs and LCM messages. Pure functions; what only the sender knows (utime, sequence, run_id)
-// is left 0.
+// Conversion between the engine's structs and LCM messages. Pure functions; fields that only the sender knows (utime,
+// sequence, run_id) stay 0.
 #pragma once
 
 #include <cstdint>
@@ -50,8 +50,8 @@ msgs::flex_cam_state ToMessage(const engine::FlexCamSnapshot& snapshot, const en
 msgs::group_state ToMessage(const engine::GroupSnapshot& snapshot, const engine::Machine& machine);
 msgs::belt_state ToMessage(const engine::BeltSnapshot& snapshot, const engine::Machine& machine);
 msgs::belt_objects ToMessage(const engine::ObjectsSnapshot& snapshot, const engine::Machine& machine);
-// To the places that came before.
 msgs::cam_piece ToMessage(const cam::CamPiece& piece, const engine::Machine& machine);
+// Appends the points to those that `shape` already holds.
 void Add(const engine::TrackPlaces& places, const engine::Machine& machine, msgs::track_shape& shape);
 msgs::pick_place_state ToMessage(const engine::PickPlaceSnapshot& snapshot, const engine::Machine& machine);
 msgs::mover_state ToMessage(const engine::MoverSnapshot& snapshot, const engine::Machine& machine);
@@ -64,24 +64,24 @@ msgs::environment_state ToMessage(const engine::EnvironmentSnapshot& snapshot, c
 msgs::part_state ToMessage(const engine::PartSnapshot& snapshot, const engine::Machine& machine);
 msgs::histogram ToMessage(const engine::Histogram& histogram);
 msgs::engine_state ToMessage(const engine::EngineFigures& figures, const engine::Machine& machine);
-// Client, session and id are left empty.
+// Client, session and id stay empty.
 msgs::feedback ToMessage(const FeedbackEvent& event);
 msgs::journal_command ToMessage(const engine::JournalEntry& entry, const engine::Machine& machine);
 msgs::drive_setpoint ToMessage(const engine::DriveSetPoint& set_point, const engine::Machine& machine);
-// Plant is left empty, too.
+// Plant stays empty, too.
 msgs::drive_feedback ToMessage(const engine::DriveSample& sample, const engine::Machine& machine);
 msgs::journal_drive ToMessage(const engine::DriveEntry& entry, const engine::Machine& machine);
-// Axis, plant and sequence are not looked at.
+// Axis, plant and sequence of the message are ignored.
 engine::DriveSample ToSample(const msgs::drive_feedback& message, std::uint32_t axis);
 
-// Bytes as they came from the network, whatever they are. Empty: they are no such message. The generated decode() alone
-// is not safe here: a negative length of a string makes it throw or read beyond the end.
+// Decode arbitrary bytes from the network; return nothing if they are no valid message of this type. The generated
+// decode() alone is not safe here: a negative string length makes it throw or read beyond the end.
 std::optional<msgs::command> DecodeCommand(std::span<const std::uint8_t> bytes);
 std::optional<msgs::heartbeat> DecodeHeartbeat(std::span<const std::uint8_t> bytes);
 std::optional<msgs::machine_description> DecodeMachine(std::span<const std::uint8_t> bytes);
 std::optional<msgs::drive_feedback> DecodeDriveFeedback(std::span<const std::uint8_t> bytes);
 
-// Encodes into `buffer`, whose memory is used again from message to message.
+// Encodes into `buffer`, whose memory is reused from message to message.
 template <typename Message>
 void Encode(const Message& message, std::vector<std::uint8_t>& buffer) {
   const int size = message.getEncodedSize();

@@ -16,7 +16,7 @@
 namespace takt::lcm {
 namespace {
 
-// LCM itself answers the same question with a page of advice on stderr.
+// LCM itself would print a page of advice to stderr.
 bool HasRoute(const UdpAddress& network) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -43,7 +43,7 @@ Network OpenNetwork(const std::string& url) {
                          "); with the loopback interface alone it needs: ip route add 224.0.0.0/4 dev lo"};
   }
   Network network{std::make_unique<::lcm::LCM>(url), {}};
-  // Nothing may make it read on UDP: getFileno() alone would (receiver.h).
+  // Nothing may make this member read on UDP: getFileno() alone would (receiver.h).
   if (!network.lcm->good()) {
     return {nullptr,
             "LCM network " + url +

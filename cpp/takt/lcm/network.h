@@ -1,4 +1,4 @@
-// Joins an LCM network, or says in one sentence why not.
+// Joins an LCM network, or says in one sentence why it cannot be joined.
 #pragma once
 
 #include <lcm/lcm-cpp.hpp>
@@ -9,13 +9,13 @@ namespace takt::lcm {
 
 struct Network {
   std::unique_ptr<::lcm::LCM> lcm;  // null: see problem
-  std::string problem;              // one line
+  std::string problem;              // one line; empty if `lcm` is set
 };
 
-// Why this cannot be the URL of an LCM network, in one line; empty: it can.
+// Returns why this cannot be the URL of an LCM network, in one line; empty if it can.
 std::string WhyNotUrl(const std::string& url);
 
-// For sending: "udpm://239.255.76.67:7667?ttl=0"; also tcpq:// and memq://. What is said there hears OpenReceiver.
+// Joins for sending: "udpm://239.255.76.67:7667?ttl=0"; also tcpq:// and memq://. OpenReceiver is for receiving.
 Network OpenNetwork(const std::string& url);
 
 }  // namespace takt::lcm

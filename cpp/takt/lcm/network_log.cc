@@ -9,11 +9,11 @@
 namespace takt::lcm {
 namespace {
 
-constexpr int kQuietMs = 100;                       // after so long a silence what was said stands in the file
-constexpr std::chrono::milliseconds kSayAgain{50};  // the last word: on a busy network that may be lost, too
+constexpr int kQuietMs = 100;                       // after this silence, all received messages are in the file
+constexpr std::chrono::milliseconds kSayAgain{50};  // the end marker may get lost on a busy network
 constexpr std::chrono::milliseconds kLookAgain{1};
 
-// Nobody else's: several may listen to one network.
+// Returns a unique channel: several logs may listen to one network.
 std::string LastWord() {
   std::random_device random;
   return "takt/log_ends/" + std::to_string(random()) + "." + std::to_string(random());
@@ -54,7 +54,7 @@ void NetworkLog::Hear(const Heard& heard) {
   if (heard.channel == last_) {
     heard_all_ = true;
   } else if (!heard_all_) {
-    log_->Send(heard.channel, heard.data, heard.utime);  // remembers itself that it failed
+    log_->Send(heard.channel, heard.data, heard.utime);  // it remembers failures itself
   }
 }
 

@@ -1,5 +1,5 @@
-// Writes down what is said on an LCM network, without gaps: what lcm-logger is for, but that holds 30 messages which it
-// has not got to and forgets the others (1.3.1 and 1.5), so a busy host makes holes in what it writes.
+// Logs an LCM network without gaps. lcm-logger queues 30 messages and drops the others (1.3.1 and 1.5), so its logs
+// have gaps on a busy host.
 #pragma once
 
 #include <atomic>
@@ -16,14 +16,15 @@ namespace takt::lcm {
 
 class NetworkLog {
  public:
-  // Listens at once, on a thread of its own. A log that is there is kept under another name; anything else that is
-  // there is left as it is. Null: `problem` says why, in one line.
+  // Listens at once, on its own thread. An existing log is kept under another name; any other existing file is left
+  // unchanged. Returns null, and one line in `problem`, on failure.
   static std::unique_ptr<NetworkLog> Open(const std::string& url, const std::string& path, std::string& problem);
-  // Closes it, if nobody has, without waiting for what is still to be written.
+  // Closes the log, unless Close was called, without waiting for messages that are still to be written.
   ~NetworkLog();
 
-  // Ends it when all that was said before the call is written, or after `patience`; where the file itself takes
-  // nothing, not before that does. False: that was not enough, the network broke meanwhile, or the file is incomplete.
+  // Ends the log when all messages sent before the call are written, or after `patience`; if the file blocks, not
+  // before it accepts them. Returns false if `patience` was not enough, the network broke meanwhile, or the file is
+  // incomplete.
   bool Close(std::chrono::milliseconds patience);
 
  private:
@@ -31,10 +32,10 @@ class NetworkLog {
   void Hear(const Heard& heard);
   void End();
 
-  Network network_;  // for the last word
+  Network network_;  // sends the end marker
   std::unique_ptr<Receiver> receiver_;
-  std::unique_ptr<LogOutlet> log_;  // of the thread, while that runs
-  const std::string last_;          // the channel of the last word
+  std::unique_ptr<LogOutlet> log_;  // used by the thread while it runs
+  const std::string last_;          // channel of the end marker
   std::atomic<bool> heard_all_{false};
   std::atomic<bool> broken_{false};
   std::atomic<bool> stop_{false};

@@ -25,7 +25,7 @@ bool MayBecomeLog(const std::string& path) {
   return file.gcount() == 0 || begin == kSyncWord;
 }
 
-// Whoever writes a log holds a lock on it: two would write across each other.
+// The writer of a log holds a lock on it: two writers would corrupt it.
 bool IsTaken(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return false;
@@ -36,7 +36,7 @@ bool IsTaken(const std::string& path) {
   return taken;
 }
 
-// Gives a log that is there another name, which nothing has. False: errno says why not.
+// Renames an existing log to an unused name. Returns false, with errno set, on failure.
 bool KeepOld(const std::string& path) {
   std::error_code none;
   const std::filesystem::path old = path;
@@ -70,7 +70,7 @@ bool NetworkOutlet::Send(const std::string& channel, std::span<const std::uint8_
 }
 
 LogOutlet::LogOutlet(const std::string& path) : path_(path), file_(std::make_unique<::lcm::LogFile>(path, "w")) {
-  if (good()) flock(fileno(file_->getFilePtr()), LOCK_EX | LOCK_NB);  // for as long as it is open
+  if (good()) flock(fileno(file_->getFilePtr()), LOCK_EX | LOCK_NB);  // until it is closed
 }
 
 LogOutlet::~LogOutlet() = default;
@@ -84,7 +84,7 @@ bool LogOutlet::Send(const std::string& channel, std::span<const std::uint8_t> b
   event.timestamp = utime;
   event.channel = channel;
   event.datalen = static_cast<std::int32_t>(bytes.size());
-  event.data = const_cast<std::uint8_t*>(bytes.data());  // only read
+  event.data = const_cast<std::uint8_t*>(bytes.data());  // not modified
   if (file_->writeEvent(&event) == 0) return true;
   Fail();
   return false;

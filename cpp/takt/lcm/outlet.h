@@ -1,4 +1,4 @@
-// Where encoded messages go: the network or a log file.
+// Destinations of encoded messages: the network or a log file.
 #pragma once
 
 #include <cstdint>
@@ -20,15 +20,16 @@ namespace takt::lcm {
 class Outlet {
  public:
   virtual ~Outlet() = default;
-  // `utime` is the wall clock in µs. False: not taken. May block; never called by the cycle's thread.
+  // `utime`: wall clock [µs]. Returns false if the message was not accepted. May block; never called by the cycle's
+  // thread.
   virtual bool Send(const std::string& channel, std::span<const std::uint8_t> bytes, std::int64_t utime) = 0;
-  // Lets go of what is held back.
+  // Writes out buffered messages.
   virtual void Flush() {}
 };
 
 class NetworkOutlet : public Outlet {
  public:
-  // `network` must outlive this. With a key, messages of tagged channels are tagged.
+  // `network` must outlive this object. With a key, messages of tagged channels are tagged.
   explicit NetworkOutlet(::lcm::LCM& network, const std::optional<Key>& key = {});
   bool Send(const std::string& channel, std::span<const std::uint8_t> bytes, std::int64_t utime) override;
 
@@ -38,18 +39,17 @@ class NetworkOutlet : public Outlet {
   std::vector<std::uint8_t> tagged_;
 };
 
-// An LCM log, as lcm-logger writes it. The first thing that cannot be written is said
-// in one line on stderr.
+// An LCM log, as lcm-logger writes it. The first write error is reported in one line on stderr.
 class LogOutlet : public Outlet {
  public:
   explicit LogOutlet(const std::string& path);
   ~LogOutlet() override;
-  // The file could be opened.
+  // Returns true if the file could be opened.
   bool good() const;
   bool Send(const std::string& channel, std::span<const std::uint8_t> bytes, std::int64_t utime) override;
-  // Hands what is still held back to the system: it is in the file then, should the program be killed.
+  // Passes buffered data to the operating system, so that it is in the file even if the program is killed.
   void Flush() override;
-  // Something could not be written.
+  // Returns true if something could not be written.
   bool failed() const { return failed_; }
 
  private:
@@ -60,9 +60,9 @@ class LogOutlet : public Outlet {
   bool failed_ = false;
 };
 
-// A log there, where nothing is yet, or an LCM log that nobody writes, or something that is no plain file. A log that
-// is there is kept (EN-36): it gets the next free number, run.lcm becomes run.1.lcm, which is said in one line on
-// stderr. Null: `problem` says why.
+// Opens a log at this path if nothing is there, or an LCM log that no process is writing, or something that is not a
+// regular file. An existing log is kept (EN-36): it gets the next free number, run.lcm becomes run.1.lcm, which is
+// reported in one line on stderr. Returns null, and the reason in `problem`, on failure.
 std::unique_ptr<LogOutlet> OpenLog(const std::string& path, std::string& problem);
 
 }  // namespace takt::lcm

@@ -14,8 +14,8 @@ namespace {
 constexpr auto kIdleWait = std::chrono::milliseconds(1);
 constexpr std::int64_t kMachinePeriodNs = 1'000'000'000;
 constexpr std::size_t kHashesPerMessage = 1000;
-constexpr std::int64_t kFlushNs = 50'000'000;  // a log proves a run to 100 ms before the program was killed (EN-36)
-constexpr int kBatch = 4096;                   // elements of one queue before the next has its turn
+constexpr std::int64_t kFlushNs = 50'000'000;  // a log is complete up to 100 ms before the program was killed (EN-36)
+constexpr int kBatch = 4096;                   // elements of one queue before the next is served
 
 template <typename T, typename Use>
 bool Take(SpscQueue<T>& queue, Use use) {
@@ -71,7 +71,7 @@ void Publisher::Stop() {
 void Publisher::Run() {
   if (log_ != nullptr) StartJournal();
   for (;;) {
-    const bool last = stop_;  // before the queues are looked at: what was put there earlier is not missed
+    const bool last = stop_;  // read before the queues: earlier entries are not missed
     const std::int64_t now_ns = SteadyNs();
     if (now_ns >= next_machine_ns_) PublishMachine();
     if (log_ != nullptr && now_ns >= next_flush_ns_) {
@@ -125,7 +125,7 @@ bool Publisher::DrainStates(const std::tuple<Outputs...>*) {
     const std::size_t kind = (first_kind_ + k) % kDrains.size();
     any |= (this->*kDrains[kind])(state_channels_[kind]);
   }
-  // Who comes last is who a receiver with a small buffer does not hear: another kind every time.
+  // The last kind is the one that a receiver with a small buffer misses: another kind every time.
   if (any) first_kind_ = (first_kind_ + 1) % kDrains.size();
   return any;
 }

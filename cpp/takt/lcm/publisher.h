@@ -1,5 +1,5 @@
-// Takes what the engine put into its queues to the network and into a log file (EN-20, EN-21), on a thread of its own.
-// However slow those are, the cycle goes on: the queues fill up and the engine counts what does not fit.
+// Sends the contents of the engine's queues to the network and to a log file (EN-20, EN-21), on its own thread. The
+// cycle does not wait for them: if they are slow, the queues fill up and the engine counts the dropped entries.
 #pragma once
 
 #include <atomic>
@@ -18,26 +18,26 @@
 namespace takt::lcm {
 
 struct RunInfo {
-  std::string machine_text{};           // the machine file as it was read
+  std::string machine_text{};           // the machine file as read
   std::string version{};                // of the engine
   std::int8_t pace = 0;                 // one of engine_state's PACE_ constants
-  std::int64_t run_id = WallClockUs();  // tells one start of an engine from the next
+  std::int64_t run_id = WallClockUs();  // distinguishes one run of the engine from the next
 };
 
 class Publisher {
  public:
-  // Publishes from now on. `network`, `log` and `authentication` (no key) may be null; all others must outlive this.
-  // All states the engine hands over go to the log, those that are due to the network.
+  // Publishes from now on. `network`, `log` and `authentication` (no key) may be null; everything else must outlive
+  // this object. All states that the engine hands over go to the log, those that are due also to the network.
   Publisher(engine::Engine& engine, Clients& clients, Outlet* network, Outlet* log, RunInfo info,
             const Authentication* authentication = nullptr);
   ~Publisher() { Stop(); }
   Publisher(const Publisher&) = delete;
   Publisher& operator=(const Publisher&) = delete;
 
-  // Publishes what is still queued, then ends the thread. The cycle must have ended.
+  // Publishes the remaining queue entries, then ends the thread. Requires: the cycle has ended.
   void Stop();
 
-  // Messages the network or the log did not take.
+  // Returns the number of messages that the network or the log did not accept.
   std::uint64_t send_failures() const { return send_failures_.load(std::memory_order_relaxed); }
 
  private:
@@ -48,9 +48,9 @@ class Publisher {
   };
 
   void Run();
-  // True if anything was there.
+  // Returns true if any queue had entries.
   bool Drain();
-  // Takes the published states of all components: all to the log, those due to the network.
+  // Drains the published states of all components: all to the log, those due also to the network.
   template <typename... Outputs>
   bool DrainStates(const std::tuple<Outputs...>* kinds);
   template <typename Outputs>
@@ -87,7 +87,7 @@ class Publisher {
   std::vector<Channel> trail_channels_;               // by mover
   std::vector<Channel> route_channels_;               // by mover
   std::vector<Channel> shape_channels_;               // by track
-  std::vector<msgs::track_shape> shapes_;             // complete, by track; sent again for later subscribers
+  std::vector<msgs::track_shape> shapes_;             // complete shapes, by track; sent again for later subscribers
   std::vector<msgs::track_shape> partial_shapes_;     // by track
   Channel engine_channel_, machine_channel_, feedback_channel_, cam_channel_;
   std::int64_t next_machine_ns_ = 0;

@@ -10,7 +10,7 @@ constexpr std::uint32_t kShort = 0x4c433032;     // "LC02"
 constexpr std::uint32_t kFragment = 0x4c433033;  // "LC03"
 constexpr std::size_t kShortHeader = 8;          // magic, sequence
 constexpr std::size_t kFragmentHeader = 20;      // magic, sequence, size, offset, fragment, fragments
-constexpr std::size_t kPerPiece = 64;            // bytes that a piece takes besides its data
+constexpr std::size_t kPerPiece = 64;            // [bytes] overhead of a piece
 
 std::uint32_t Number(std::span<const std::uint8_t> bytes, std::size_t at, std::size_t size) {
   std::uint32_t number = 0;
@@ -18,7 +18,7 @@ std::uint32_t Number(std::span<const std::uint8_t> bytes, std::size_t at, std::s
   return number;
 }
 
-// Takes the channel and the zero behind it off the front. False: there is none.
+// Removes the channel and its terminating zero from the front. Returns false if there is none.
 bool TakeChannel(std::span<const std::uint8_t>& rest, std::string& channel) {
   const auto longest = rest.first(std::min(rest.size(), kLongestChannel + 1));
   const auto end = std::ranges::find(longest, std::uint8_t{0});
@@ -62,7 +62,7 @@ std::optional<Reassembly::Message> Reassembly::TakeFragment(std::uint64_t sender
 
   auto known = by_key_.find(key);
   if (known != by_key_.end() && (known->second->size != size || known->second->fragments != fragments)) {
-    ++unfinished_;  // the sender began another message of this number
+    ++unfinished_;  // the sender began another message with this number
     Drop(known->second);
     known = by_key_.end();
   }
@@ -75,7 +75,7 @@ std::optional<Reassembly::Message> Reassembly::TakeFragment(std::uint64_t sender
   }
   const Partials::iterator partial = known->second;
   partials_.splice(partials_.end(), partials_, partial);
-  if (partial->pieces.contains(fragment)) return {};  // twice
+  if (partial->pieces.contains(fragment)) return {};  // received twice
   partial->pieces[fragment] = {offset, {rest.begin(), rest.end()}};
   partial->held += rest.size() + kPerPiece;
   held_ += rest.size() + kPerPiece;

@@ -41,7 +41,7 @@ class LcmReceiver : public Receiver {
 
   int Handle(int wait_ms) override {
     if (network_.getFileno() >= 0) return network_.handleTimeout(wait_ms);
-    // The server of a tcpq:// network is gone: LCM's own handle() ends the program.
+    // The server of a tcpq:// network is lost: LCM's own handle() would end the program.
     std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
     return -1;
   }
@@ -76,7 +76,7 @@ std::unique_ptr<Receiver> OpenReceiver(const std::string& url, ::lcm::LCM& netwo
   std::unique_ptr<Receiver> receiver;
   if (const std::optional<UdpAddress> address = ParseUdp(url)) {
     receiver = OpenUdpReceiver(*address);
-  } else if (network.getFileno() >= 0) {  // without it LCM sends but cannot receive
+  } else if (network.getFileno() >= 0) {  // otherwise LCM sends but cannot receive
     receiver = ReceiverOf(network);
   }
   if (!receiver) {

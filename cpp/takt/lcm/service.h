@@ -1,4 +1,4 @@
-// Everything an engine needs to be reached over LCM: network, clients, gateway, publisher, log file.
+// Everything that makes an engine reachable over LCM: network, clients, gateway, publisher, log file.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@
 namespace takt::lcm {
 
 struct Losses {
-  std::uint64_t messages = 0;  // that the network or the log did not take
+  std::uint64_t messages = 0;  // messages that the network or the log did not accept
   bool log = false;            // the log is incomplete
 };
 
@@ -24,18 +24,18 @@ struct ServiceOptions {
   std::string url{};       // empty: no network
   std::string log_path{};  // empty: no log
   RunInfo info{};
-  std::shared_ptr<Authentication> authentication{};  // null: no key, anyone on the network may command
+  std::shared_ptr<Authentication> authentication{};  // null: no key, any process on the network may command
   Clients::Explain explain = engine::Sentence;
 };
 
 class Service {
  public:
-  // Serves from now on. Requires: the engine outlives it, and its cycle has ended before this is destroyed. Null, and
-  // `problem` says in one line why, when the network cannot be joined or the log cannot be written, or is a file that
-  // is no log.
+  // Serves from now on. Requires: the engine outlives this object, and its cycle has ended before it is destroyed.
+  // Returns null, and one line in `problem`, if the network cannot be joined, or the log cannot be written or is an
+  // existing file that is no log.
   static std::unique_ptr<Service> Open(engine::Engine& engine, const ServiceOptions& options, std::string& problem);
 
-  // Publishes what is still queued and closes the log. Takes as long as the log takes to be written.
+  // Publishes the remaining queue entries and closes the log; waits until the log is written.
   Losses Close();
 
  private:
@@ -43,7 +43,7 @@ class Service {
 
   const std::shared_ptr<Authentication> authentication_;
   Clients clients_;
-  // Two members of the same network: sending and receiving do not wait for each other.
+  // Two members of the same network, so that sending and receiving do not wait for each other.
   Network sending_;
   std::unique_ptr<Receiver> receiving_;
   std::unique_ptr<NetworkOutlet> network_;

@@ -30,10 +30,10 @@ namespace takt::lcm {
 namespace {
 
 constexpr std::size_t kLongestDatagram = 1 << 16;
-constexpr std::size_t kMostWaiting = 256 << 20;       // bytes in the queue
+constexpr std::size_t kMostWaiting = 256 << 20;       // [bytes] in the queue
 constexpr std::size_t kChannelsKnown = 4096;          // channels whose subscriptions are remembered
 constexpr std::int64_t kLookAgainNs = 1'000'000'000;  // between looks at this host's addresses
-constexpr int kBurst = 256;                           // datagrams between looks at whether to end
+constexpr int kBurst = 256;                           // datagrams between checks of stop_
 
 class FileDescriptor {
  public:
@@ -49,12 +49,12 @@ class FileDescriptor {
   int number_;
 };
 
-// Addresses of this host, looked up anew when one is not known, once a second at most.
+// Addresses of this host, read again if an address is unknown, at most once a second.
 class OwnAddresses {
  public:
   bool Has(in_addr address) {
-    // 0.0.0.0 is the sender where the loopback interface is the only one. From outside the kernel takes neither that
-    // nor 127.x, nor an address of this host's.
+    // 0.0.0.0 is the sender if the loopback interface is the only one. The kernel does not accept it, 127.x, or an
+    // address of this host from outside.
     if (address.s_addr == 0 || (ntohl(address.s_addr) >> 24) == 127 || known_.contains(address.s_addr)) return true;
     const std::int64_t now = SteadyNs();
     if (now < look_again_ns_) return false;
@@ -152,7 +152,7 @@ class UdpReceiver : public Receiver {
   struct Waiting {
     Reassembly::Message message;
     std::int64_t utime = 0;
-    std::vector<int> subscriptions;  // that take it, rising
+    std::vector<int> subscriptions;  // subscriptions that receive it, in ascending order
   };
 
   void Listen() {
@@ -166,7 +166,7 @@ class UdpReceiver : public Receiver {
     }
   }
 
-  // False: there was none.
+  // Returns false if no datagram was waiting.
   bool ReceiveOne(std::vector<std::uint8_t>& buffer) {
     sockaddr_in from{};
     iovec into{buffer.data(), buffer.size()};
@@ -193,7 +193,7 @@ class UdpReceiver : public Receiver {
     return true;
   }
 
-  // When the kernel got it: it may have waited long for this thread.
+  // Returns the arrival time at the kernel: the datagram may have waited long for this thread.
   static std::int64_t ArrivalUs(msghdr& header) {
     for (cmsghdr* part = CMSG_FIRSTHDR(&header); part != nullptr; part = CMSG_NXTHDR(&header, part)) {
       if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_TIMESTAMP) continue;
@@ -222,7 +222,8 @@ class UdpReceiver : public Receiver {
     if (queue_.size() == 1) eventfd_write(*news_, 1);
   }
 
-  // Numbers of the subscriptions that take a channel, rising. What is remembered is bounded: channels may be anything.
+  // Returns the subscriptions that receive a channel, in ascending order. The cache is bounded, as channels may be
+  // arbitrary.
   const std::vector<int>* Route(const std::string& channel) {
     if (const auto known = routes_.find(channel); known != routes_.end()) return &known->second;
     std::vector<int> numbers;
@@ -236,16 +237,16 @@ class UdpReceiver : public Receiver {
   const FileDescriptor socket_, end_, news_;
   const bool this_host_only_;
 
-  // Of the thread.
+  // Used by the thread only.
   Reassembly reassembly_;
   OwnAddresses addresses_;
   std::uint64_t foreign_ = 0;
 
-  std::mutex mutex_;  // guards these
+  std::mutex mutex_;  // guards the members up to last_number_
   std::vector<Subscription> subscriptions_;
   std::unordered_map<std::string, std::vector<int>> routes_;
   std::deque<Waiting> queue_;
-  std::size_t waiting_ = 0;  // bytes in the queue
+  std::size_t waiting_ = 0;  // [bytes] in the queue
   int last_number_ = 0;
 
   std::atomic<std::uint64_t> malformed_{0};
@@ -301,7 +302,7 @@ std::unique_ptr<Receiver> OpenUdpReceiver(const UdpAddress& address) {
   at.sin_port = htons(address.port);
   ip_mreqn group{};
   group.imr_multiaddr = address.group;
-  // As liblcm does, with whose sockets this one shares the port.
+  // As in liblcm, whose sockets share the port with this one.
   if (*socket < 0 || !Set(*socket, SOL_SOCKET, SO_REUSEADDR, 1) || !Set(*socket, SOL_SOCKET, SO_REUSEPORT, 1) ||
       !Set(*socket, SOL_SOCKET, SO_TIMESTAMP, 1) || !Set(*socket, IPPROTO_IP, IP_MULTICAST_ALL, 0) ||
       (address.buffer > 0 && !Set(*socket, SOL_SOCKET, SO_RCVBUF, address.buffer)) ||

@@ -16,12 +16,12 @@ struct UdpAddress {
   in_addr group{};
   std::uint16_t port = 0;
   bool this_host_only = true;  // ttl 0
-  int buffer = 4 << 20;        // bytes of the socket's buffer, as far as the system allows
+  int buffer = 4 << 20;        // [bytes] socket buffer, as far as the system allows
 };
-// Of "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=1000000"; nothing: it is none.
+// Parses "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=1000000"; returns nothing if it is no such URL.
 std::optional<UdpAddress> ParseUdp(const std::string& url);
 
-// Null: errno says why.
+// Returns null on failure; errno says why.
 std::unique_ptr<Receiver> OpenUdpReceiver(const UdpAddress& address);
 
 }  // namespace takt::lcm

@@ -12,18 +12,18 @@ namespace takt::plant {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr int kProbeBisections = 24;  // of a step of the drive: to less than a ns
+constexpr int kProbeBisections = 24;  // of a step of the drive: to less than 1 ns
 
-// How far a first-order motion v' = slope - rate (v - v0) gets in a time: v - v0 = slope * to_velocity, x - x0 - v0 t =
-// slope * to_distance.
+// Solution factors of a first-order motion v' = slope - rate (v - v0) after a time: v - v0 = slope * to_velocity, x -
+// x0 - v0 t = slope * to_distance.
 struct Reach {
-  double to_velocity = 0;  // s
-  double to_distance = 0;  // s²
+  double to_velocity = 0;  // [s]
+  double to_distance = 0;  // [s²]
 };
 
 Reach ReachAfter(double rate, double time) noexcept {
   const double ratio = rate * time;
-  if (ratio < 1e-3) {  // the closed form would lose its digits
+  if (ratio < 1e-3) {  // the closed form would lose precision
     return {time * (1 - ratio / 2 * (1 - ratio / 3 * (1 - ratio / 4))),
             time * time / 2 * (1 - ratio / 3 * (1 - ratio / 4 * (1 - ratio / 5)))};
   }
@@ -31,36 +31,37 @@ Reach ReachAfter(double rate, double time) noexcept {
   return {to_velocity, (time - to_velocity) / rate};
 }
 
-// The time after which to_velocity has the given value.
+// Returns the time after which to_velocity has the given value.
 double TimeToReach(double rate, double to_velocity) noexcept {
   return rate > 0 ? -maths::Log1p(-rate * to_velocity) / rate : to_velocity;
 }
 
-// What moves the axis during one step of the drive, per unit of inertia:
+// The equation of motion during one step of the drive, per unit of inertia:
 // v' = clamp(gain (target - v) + bias, low, high) - load - viscous v - friction sign(v)
 struct Law {
-  double gain = 0;      // 1/s; 0: no power
-  double lag = 0;       // s, 1 / gain
-  double target = 0;    // u/s
-  double bias = 0;      // u/s²
-  double low = 0;       // u/s²
-  double high = 0;      // u/s²
-  double viscous = 0;   // 1/s
-  double friction = 0;  // u/s²
-  double load = 0;      // u/s²
+  double gain = 0;      // [1/s]; 0: no power
+  double lag = 0;       // [s] 1 / gain
+  double target = 0;    // [u/s]
+  double bias = 0;      // [u/s²]
+  double low = 0;       // [u/s²]
+  double high = 0;      // [u/s²]
+  double viscous = 0;   // [1/s]
+  double friction = 0;  // [u/s²]
+  double load = 0;      // [u/s²]
 
   double DriveAt(double v) const noexcept { return std::clamp(gain * (target - v) + bias, low, high); }
 };
 
 struct Motion {
-  double position = 0;  // u, of the motor
-  double velocity = 0;  // u/s, of the motor
-  double load = 0;      // u, position of the load
+  double position = 0;  // [u] of the motor
+  double velocity = 0;  // [u/s] of the motor
+  double load = 0;      // [u] position of the load
 };
 
-// Solved exactly, piece by piece. v' depends on v alone and falls with it, so v runs straight towards its resting value
-// and meets each border (full torque, friction turning round) once at most: four pieces at the most. `whole` is the
-// reach of an undisturbed piece that lasts the whole time. Inlined where every cycle needs it: a fifth of the servo.
+// Exact solution, piece by piece. v' depends on v alone and decreases with it, so v moves monotonically towards its
+// equilibrium and crosses each boundary (torque limit, change of sign of friction) at most once: at most four pieces.
+// `whole` is the reach of an undisturbed piece over the whole time. Inlined where every cycle needs it: a fifth of the
+// servo's time.
 [[gnu::always_inline]] inline void Advance(const Law& law, double time, const Reach& whole, Motion& m) noexcept {
   const bool powered = law.gain > 0;
   const double full_below = powered ? law.target + (law.bias - law.high) * law.lag : -kInfinite;
@@ -103,7 +104,7 @@ double FiniteOrZero(double x) noexcept {
   return std::isfinite(x) ? x : 0;
 }
 
-// Limited to what a 64-bit counter holds with room for an origin.
+// Limited to the range of a 64-bit counter, with room for an origin.
 std::int64_t Whole(double x) noexcept {
   return static_cast<std::int64_t>(std::clamp(x, -4e18, 4e18));
 }
@@ -136,7 +137,7 @@ std::uint32_t OnTheWire(const ServoEncoder& encoder, std::int64_t counter) noexc
   return encoder.coding == ServoEncoderCoding::kGray ? value ^ (value >> 1) : value;
 }
 
-// The csp set point's place in u: the nearest one that the counter, which wraps, can mean.
+// Returns the csp set point in u: the nearest position that the wrapping counter can denote.
 double SetPosition(const ServoEncoder& encoder, const ServoState& s, double position_counts) noexcept {
   const double here = EncoderPosition(encoder, s);
   const int bits = encoder.type == ServoEncoderType::kIncremental ? 32 : encoder.ssi_bits;
@@ -156,7 +157,7 @@ double SetVelocity(const ServoParams& p, const ServoOutputs& commanded, double s
   return sense * acting_mv / 10000 * d.velocity_at_10v;
 }
 
-// Ready once enabled for the power-up time; half a cycle of tolerance for the sum of the periods.
+// Ready once enabled for the power-up time, with a tolerance of half a cycle for the sum of the periods.
 bool PowerOn(const ServoDrive& drive, bool enable, double period_s, ServoState& s) noexcept {
   if (!enable || s.faults.drive_fault) {
     s.enabled_s = 0;
@@ -169,7 +170,7 @@ bool PowerOn(const ServoDrive& drive, bool enable, double period_s, ServoState& 
   return ready;
 }
 
-// How much further than the motor the screw takes the load.
+// Returns the displacement of the load relative to the motor by the screw error.
 double ScrewError(const ServoMechanics& mechanics, double position) noexcept {
   const std::vector<ServoScrewPoint>& screw = mechanics.screw;
   if (screw.empty()) return 0;
@@ -182,8 +183,8 @@ double ScrewError(const ServoMechanics& mechanics, double position) noexcept {
   return screw.back().error;
 }
 
-// The mechanics behind the motor: the load follows at the ends of the play, and no further than the stops, which
-// swallow the speed. True: a stop was hit.
+// The mechanics between motor and load: the load follows at the ends of the backlash, and not beyond the stops, which
+// absorb the velocity. Returns true if a stop was hit.
 bool MoveLoad(const ServoMechanics& mechanics, Motion& m) noexcept {
   const double play = mechanics.backlash / 2;
   bool hit = false;
@@ -211,8 +212,8 @@ bool Reads(const ServoSwitch& sw, double position, double revolution) noexcept {
   return on != sw.normally_closed;
 }
 
-// The wire of the touch probe over one step of the drive that ended `rest` before the end of the cycle. Where it
-// changed, the instant is looked for in the exact motion.
+// Updates the touch probe's signal over one step of the drive that ended `rest` before the end of the cycle. If it
+// changed, the instant is found by bisection of the exact motion.
 [[gnu::noinline]] void WatchProbe(const ServoParams& p, const Law& law, const Motion& begin, double time, double rest,
                                   const Motion& end, ServoState& s) noexcept {
   const ServoSwitch& probe = p.switches.touch_probe;
@@ -233,9 +234,9 @@ bool Reads(const ServoSwitch& sw, double position, double revolution) noexcept {
   (on ? s.probe_rise_age_s : s.probe_fall_age_s) = rest + time - after;
 }
 
-// The law of a torque set point: that torque, but for what a velocity loop at `until` takes from it. While `until` is
-// still of the other sense, the axis is turning round, and friction may be quicker: nothing pushes against the torque.
-// Pushed beyond the largest speed either way, the drive brakes with all it has.
+// The law of a torque set point: that torque, limited by a velocity loop at `until`. While `until` still has the
+// opposite sign, the axis is reversing, and friction may stop it earlier: nothing acts against the torque. Beyond the
+// largest velocity in either direction, the drive brakes with full torque.
 void FollowTorque(double most, double set_torque, double largest_speed, double until, double v, Law& law) noexcept {
   const double sense = set_torque >= 0 ? 1 : -1;
   const bool overhauled = sense * v < -largest_speed;
@@ -277,7 +278,7 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
   s.set_position = end_position;
   s.set_velocity = end_velocity;
 
-  // The motion itself is exact over any time; steps in between only where the drive's own loops are sampled.
+  // The motion itself is exact over any time; steps are only needed where the drive's own loops are sampled.
   const int steps = csp || cst || compensates ? std::max(1, static_cast<int>(period_s / drive.loop_period_s + 0.5)) : 1;
   const double time = period_s / steps;
   const double rate = law.viscous + law.gain;
@@ -308,7 +309,7 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
   Motion motion{s.motor_position, s.faults.stuck ? 0 : s.velocity, s.load_position};
   for (int i = 0; i < steps; ++i) {
     if (csp) {
-      // The error is of the step's beginning, the speed fed forward that of its middle.
+      // The error is that at the begin of the step, the velocity fed forward that at its middle.
       const double set = start_position + set_step * i;
       const double feed_forward = start_velocity + feed_forward_step * (i + 0.5);
       const double error = set - (motor_encoder ? motion.position : motion.load);
@@ -322,12 +323,12 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
       hit = MoveLoad(mechanics, motion);
     }
     if (probe_wired) WatchProbe(p, law, begin, time, time * (steps - 1 - i), motion, s);
-    // What the speed lacks against the bare first-order model is load: the drive learns to add it. Not while the torque
-    // is at its limit or the axis is knocked to a halt, where the model says nothing.
+    // The deviation of the velocity from the bare first-order model is load, which the drive learns to compensate; not
+    // while the torque is at its limit or the axis hits a stop, where the model does not apply.
     const double lag = law.target - begin.velocity;
     const double asked = law.gain * lag + law.bias;
     if (compensates && !hit && asked >= law.low && asked <= law.high) {
-      // With an offset the axis accelerates as it is set to, without lagging: that is no load to be learnt.
+      // With an offset the axis accelerates as commanded, without lag: that is no load to be learnt.
       const double set_change = csp && offset != 0 ? feed_forward_step : 0;
       const double expected = begin.velocity + lag * (law.gain * model.to_velocity) + set_change;
       law.bias = std::clamp(law.bias + learning * (expected - motion.velocity), -most, most);
@@ -338,14 +339,14 @@ void Move(const ServoParams& p, const ServoOutputs& commanded, double period_s, 
   s.load_position = motion.load;
   s.compensation = law.bias - offset;
   s.torque = law.DriveAt(s.velocity) * mechanics.inertia;
-  if (cst) {  // the position loop will take over from where the axis is
+  if (cst) {  // the position loop will take over from the position of the axis
     s.following = true;
     s.set_position = EncoderPosition(p.encoder, s);
     s.set_velocity = s.velocity;
   }
 }
 
-// SplitMix64: a counter and a mixing of its bits.
+// SplitMix64: a counter whose bits are mixed.
 double Uniform(std::uint64_t& state) noexcept {
   state += 0x9E3779B97F4A7C15U;
   std::uint64_t z = state;
@@ -360,17 +361,17 @@ double Normal(std::uint64_t& state) noexcept {
   return radius * maths::Cos(2 * std::numbers::pi * Uniform(state));
 }
 
-// Distance-coded marks: how far the coded mark is behind the fixed one of this pair.
+// Distance-coded marks: returns the distance of the coded mark from the fixed one of this pair.
 double CodedMark(const ServoEncoder& encoder, std::int64_t pair) noexcept {
   return encoder.index_distance / 2 + static_cast<double>(pair + 1) * encoder.index_step;
 }
 
-// A scale has as many pairs as there are codes.
+// The number of pairs is the number of codes.
 std::int64_t CodedPairs(const ServoEncoder& encoder) noexcept {
   return -Floor(-encoder.index_distance / (2 * encoder.index_step)) - 1;
 }
 
-// The number of the last mark below the position, in the sense of the scale.
+// Returns the number of the last mark below the position, in the sense of the scale.
 std::int64_t IndexCell(const ServoEncoder& encoder, double position) noexcept {
   if (encoder.index_distance <= 0) return 0;
   const double way = encoder.index_reversed ? encoder.index_offset - position : position - encoder.index_offset;
@@ -398,7 +399,7 @@ void ReadEncoder(const ServoEncoder& encoder, ServoState& s) noexcept {
   if (!s.faults.encoder_frozen) {
     s.counts = OnTheWire(encoder, CounterAt(encoder, s.counter_origin, position, noise));
     if (cell != s.index_cell) {
-      const std::int64_t passed = cell > s.index_cell ? cell : cell + 1;  // the last one met on the way
+      const std::int64_t passed = cell > s.index_cell ? cell : cell + 1;  // the last one passed
       const double at = IndexMark(encoder, passed);
       s.index_counts = OnTheWire(encoder, CounterAt(encoder, s.counter_origin, at, 0));
       s.index_pulses += static_cast<std::uint32_t>(std::abs(cell - s.index_cell));
@@ -413,7 +414,7 @@ void ReadLoadEncoder(const ServoEncoder& encoder, ServoState& s) noexcept {
   s.load_counts = OnTheWire(encoder, CounterAt(encoder, s.load_counter_origin, s.load_position, noise));
 }
 
-// What the counter shows at position 0: an incremental one begins with its offset wherever the axis is.
+// Returns the value of the counter at position 0: an incremental one starts with its offset at any position.
 std::int64_t CounterOrigin(const ServoEncoder& encoder, double start) noexcept {
   const bool incremental = encoder.type == ServoEncoderType::kIncremental;
   return encoder.offset_counts - (incremental ? Nearest(start * CountsPerUnit(encoder)) : 0);
@@ -532,23 +533,25 @@ double AskTorque(const ServoParams& p, int i, double position, double velocity, 
       const double set = std::clamp(sense * FiniteOrZero(m.commanded.torque_nm) / inertia, -most, most);
       FollowTorque(most, set, largest, until, velocity, law);
     }
-    // What the speed lacks against the first-order model is load: the drive learns to add it, as in Move.
+    // The deviation of the velocity from the first-order model is load, which the drive learns to compensate, as in
+    // Move.
     if (m.expects && drive.load_compensation_s > 0) {
       const double learning = (m.expected_velocity - velocity) / (drive.load_compensation_s + m.time);
       s.compensation = std::clamp(s.compensation + learning, -most, most);
     }
-    // The gain that leads as far within a step as the continuous law does: stable whatever the time constant.
+    // The discrete gain that has the effect of the continuous law over a step: stable for any time constant.
     const double share = 1 - maths::Exp(-m.time / law.lag);
     const double free = share / m.time * (law.target - velocity) + s.compensation + (feed_forward + offset) / inertia;
     asked = std::clamp(free, law.low, law.high);
     m.limited = std::abs(free) > most;
     m.expects = asked == free;
     m.expected_velocity = velocity + share * (law.target - velocity);
-    // With an offset the axis accelerates as it is set to, without lagging: that is no load to be learnt.
+    // With an offset the axis accelerates as commanded, without lag: that is no load to be learnt.
     if (offset != 0 && m.commanded.mode == DriveMode::kCyclicPosition) {
       m.expected_velocity += (m.end_velocity - m.start_velocity) / m.steps;
     }
-    if (m.commanded.mode == DriveMode::kCyclicTorque) {  // the position loop will take over from where the axis is
+    // the position loop will take over from the position of the axis
+    if (m.commanded.mode == DriveMode::kCyclicTorque) {
       s.following = true;
       s.set_position = position;
       s.set_velocity = velocity;
@@ -556,12 +559,12 @@ double AskTorque(const ServoParams& p, int i, double position, double velocity, 
   }
   s.torque = asked * inertia;
 
-  // A brake that has fallen holds the place as a stiff spring does, with no more than its torque.
+  // An applied brake holds its position like a stiff damped spring, up to its torque; beyond it, it slips.
   m.brake = 0;
   if (!m.commanded.release_brake && p.mechanics.brake_torque > 0) {
     if (!m.braked) m.brake_position = position;
     m.braked = true;
-    const double stiffness = 0.3 / m.time;  // 1/s
+    const double stiffness = 0.3 / m.time;  // [1/s]
     const double wanted = stiffness * (stiffness * (m.brake_position - position) - 2 * velocity) * inertia;
     m.brake = std::clamp(wanted, -p.mechanics.brake_torque, p.mechanics.brake_torque);
     if (m.brake != wanted) m.brake_position = position;

@@ -5,7 +5,7 @@ namespace takt::plant {
 
 namespace {
 
-// Wide enough for any machine, narrow enough that no product of them overflows.
+// Wide enough for any machine, narrow enough that products do not overflow.
 constexpr Range kAnySize = between(0, 1e9);
 constexpr Range kAboveZero{.min = 0, .max = 1e9, .without_min = true};
 constexpr Range kPlace = between(-1e9, 1e9);

@@ -9,7 +9,7 @@ namespace {
 
 using kinematics::LinkInfo;
 
-// Names of links share their beginnings: lower_arm_1_a belongs to lower_arm_1 and to lower_arm.
+// Names of links are hierarchical: lower_arm_1_a belongs to lower_arm_1 and to lower_arm.
 bool BeginsWith(const std::string& longer, const std::string& name) {
   return longer.starts_with(name + "_");
 }
@@ -117,7 +117,7 @@ class CellBuilder {
     return names;
   }
 
-  // `name` of `ignore` stands for what is called so; only where nothing is, for all whose names begin with it.
+  // `name` of `ignore` means the object of that name; only if there is none, all whose names begin with it.
   bool Means(const std::string& name, const std::string& known) const {
     const bool exact = std::find(names_.begin(), names_.end(), name) != names_.end();
     return exact ? known == name : BeginsWith(known, name);
@@ -127,14 +127,14 @@ class CellBuilder {
     return Means(name, links_[cell_.bodies[body].link].name) || Means(name, given_names_[body]);
   }
 
-  // `first` and `second` say whether a name means the one and the other.
+  // `first` and `second` return true if a name means the first and the second object.
   bool Ignored(const auto& first, const auto& second) const {
     return std::any_of(params_.ignore.begin(), params_.ignore.end(), [&](const auto& pair) {
       return (first(pair[0]) && second(pair[1])) || (first(pair[1]) && second(pair[0]));
     });
   }
 
-  // What is on the base stands as still as the obstacles.
+  // Bodies on the base are as fixed as the obstacles: they are not checked against them.
   void Introduce() {
     cell_.obstacles_of.resize(cell_.bodies.size());
     for (std::size_t b = 0; b < cell_.bodies.size(); ++b) {
@@ -179,8 +179,8 @@ class CellBuilder {
   std::string_view folder_;
   std::vector<LinkInfo> links_;
   std::vector<Part> parts_;
-  std::vector<std::string> given_names_;  // of the bodies; empty: none
-  std::vector<std::string> names_;        // that `ignore` may refer to
+  std::vector<std::string> given_names_;  // of the bodies; empty: no name
+  std::vector<std::string> names_;        // to which `ignore` may refer
   Cell cell_;
   std::string path_;
   std::string problem_;

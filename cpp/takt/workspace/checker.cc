@@ -15,16 +15,16 @@ using kinematics::Reason;
 using kinematics::Sweep;
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
-// Out of the bounds by rounding. mm
+// [mm] Rounding of positions at the bounds.
 constexpr double kRounding = 1e-6;
-// Where not even so small a part of the way between two samples can be bounded, the mechanism is singular.
+// If the motion over this share of a segment (between two samples) cannot be bounded, the mechanism is singular.
 constexpr double kSmallestShare = 1e-7;
-// Steps as small as this part of the way between two samples do not lead to its end.
+// Steps of this share of a segment do not reach its end.
 constexpr double kNoProgress = 1e-12;
-// What is further away than the margin and this is only known to be. mm
+// [mm] Distances beyond the margin by more than this are not computed exactly.
 constexpr double kLookAhead = 100;
 
-// On the path: behind sample `index` by a share of the way to the next.
+// A position on the path: after sample `index` by a share of the segment to the next one.
 struct Place {
   std::size_t index = 0;
   double share = 0;
@@ -38,7 +38,7 @@ struct Hit {
   Reason reason = Reason::kNone;
 };
 
-// What goes along the path, seen from where.
+// A moving object, and the link in whose frame its motion is measured.
 struct Mover {
   std::size_t link = 0;
   std::size_t seen_from = 0;
@@ -48,11 +48,11 @@ struct Mover {
 
 class Walker {
  public:
-  // `sweeps`: one a sample, the last one without a way.
+  // `sweeps`: one for each sample, the last one without motion.
   Walker(const Cell& cell, std::span<const Sample> path, std::span<const Sweep> sweeps)
       : cell_(cell), path_(path), sweeps_(sweeps), end_{sweeps.size() - 1, 0} {}
 
-  // The first place up to `end` where `distance` of the links' frames is below `keep`.
+  // Returns the first position up to the end at which `distance` of the links' frames is below `keep`.
   std::optional<Hit> Follow(const Mover& mover, double keep, const auto& distance) {
     Place at;
     Reason reason = Reason::kNone;
@@ -90,7 +90,7 @@ class Walker {
     return move;
   }
 
-  // As far as no point of the mover moves by more than `budget`, to the end of the path at most.
+  // Advances as far as no point of the mover moves by more than `budget`, at most to the end of the path.
   Reason GoOn(const Mover& mover, double budget, Place& at) {
     const Place start = at;
     const Sweep* sweep = at.share == 0 ? &sweeps_[at.index] : &ahead_;
@@ -123,7 +123,7 @@ class Walker {
   std::span<const Sample> path_;
   std::span<const Sweep> sweeps_;
   Place end_;
-  Sweep ahead_;  // from the place that was looked at last to the next sample
+  Sweep ahead_;  // from the last checked position to the next sample
 };
 
 struct Bound {
@@ -147,7 +147,7 @@ std::vector<Bound> BoundsOf(const BoundsParams& p) {
   return bounds;
 }
 
-// One check of a path: everything that goes along it, one after the other, each only as far as the first finding.
+// One check of a path: of all moving objects in turn, each only up to the first finding so far.
 class Run {
  public:
   Run(Cell& cell, std::span<const Sample> path, std::span<const Sweep> sweeps)
@@ -250,7 +250,7 @@ std::optional<Finding> Checker::Check(std::span<const Sample> path) {
     if (reason != Reason::kNone) break;
   }
   if (good > 0) {
-    // Where the path ends, or from where on there is no position, there is no way to go either.
+    // At the end of the path, or at the last sample with a position, there is no further motion.
     const Joints& last = path[good - 1].joints;
     MakeSweep(cell_.kinematics, last, last, sweeps_[good - 1]);
     const std::span<const Sweep> sweeps(sweeps_.data(), good);

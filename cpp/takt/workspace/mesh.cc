@@ -18,20 +18,20 @@ namespace {
 
 using KDL::Vector;
 
-constexpr std::size_t kHeader = 84;  // bytes: a text and the number of triangles
-constexpr std::size_t kRecord = 50;  // bytes: a normal, three corners, two bytes more
+constexpr std::size_t kHeader = 84;  // [bytes] a text and the number of triangles
+constexpr std::size_t kRecord = 50;  // [bytes] a normal, three corners, two more bytes
 constexpr std::size_t kMostBytes = 256'000'000;
 constexpr std::string_view kSpaces = " \t\r\n\f\v";
 static_assert(std::endian::native == std::endian::little, "STL counts so");
 
 using Corner = std::array<double, 3>;
 
-// Puts triangles together that share corners.
+// Joins triangles at their common corners.
 class Builder {
  public:
   explicit Builder(double scale) : scale_(scale) {}
 
-  // False: not numbers.
+  // Returns false if a coordinate is not finite.
   bool Add(const std::array<Corner, 3>& corners) {
     std::array<std::size_t, 3> triangle{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -73,7 +73,7 @@ std::uint32_t CountOf(std::string_view bytes) {
   return count;
 }
 
-// Empty: all is well.
+// Returns the error; empty if there is none.
 std::string ReadBinary(std::string_view bytes, Builder& builder) {
   const std::size_t count = CountOf(bytes);
   for (std::size_t i = 0; i < count; ++i) {
@@ -91,7 +91,7 @@ std::string Lowered(std::string word) {
   return word;
 }
 
-// Whether the text begins with 'solid', in any case, behind a byte order mark and blanks.
+// Returns true if the text begins with 'solid', in any case, after a byte order mark and blanks.
 bool BeginsWithSolid(std::string_view text) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   constexpr std::string_view kSolid = "solid";
@@ -100,7 +100,7 @@ bool BeginsWithSolid(std::string_view text) {
   return Lowered(std::string(text.substr(0, kSolid.size()))) == kSolid;
 }
 
-// False: not a number. A sign + may lead it.
+// Returns false if the word is not a number. A leading + is allowed.
 bool ReadNumber(std::string_view word, double& number) {
   if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
   const char* const end = word.data() + word.size();
@@ -132,13 +132,13 @@ class Words {
   int line_ = 1;
 };
 
-// The text may be laid out in any way: only the vertices of each `facet` count. Keywords may be of any case.
+// The layout is free: only the vertices of each `facet` count. Keywords may be of any case.
 std::string ReadText(std::string_view text, Builder& builder) {
   Words words(text);
   std::array<Corner, 3> corners{};
   std::size_t vertices = 0;
   std::size_t triangles = 0;
-  bool in_facet = false;  // else a word may be part of the name
+  bool in_facet = false;  // outside, a word may be part of the name
   for (std::string_view next = words.Next(); !next.empty(); next = words.Next()) {
     const std::string word = Lowered(std::string(next));
     if (word == "facet") {
@@ -168,7 +168,7 @@ std::string ReadText(std::string_view text, Builder& builder) {
 std::optional<Mesh> ReadStl(std::string_view bytes, double scale, std::string& why) {
   why.clear();
   Builder builder(scale);
-  // Binary files may begin with "solid", too: their length tells.
+  // Binary files may begin with "solid", too: their length decides.
   const bool binary = bytes.size() >= kHeader && bytes.size() == kHeader + kRecord * std::size_t{CountOf(bytes)};
   if (binary && CountOf(bytes) > kMaxTriangles) {
     why = "more than " + std::to_string(kMaxTriangles) + " triangles";
@@ -199,7 +199,7 @@ std::optional<Mesh> LoadStl(const std::string& path, double scale, std::string& 
   return ReadStl(*bytes, scale, why);
 }
 
-// The sum of the angles of sight of all triangles: 4 pi inside, 0 outside.
+// Sums the solid angles of all triangles: 4 pi inside, 0 outside.
 bool Encloses(const Mesh& mesh, const Vector& point) noexcept {
   for (int i = 0; i < 3; ++i) {
     if (point(i) < mesh.lower(i) || point(i) > mesh.upper(i)) return false;

@@ -1,7 +1,7 @@
-// Surfaces of triangles from STL files. Not for the cycle.
+// Triangle meshes from STL files. Not for use within the cycle.
 //
-// A reader of our own: of Debian's libraries libadmesh is GPL, libassimp brings 10 MB and two libraries more, and
-// libopenmesh a whole scene graph.
+// Our own reader: of Debian's libraries libadmesh is GPL, libassimp is 10 MB with two more libraries, and libopenmesh
+// is a whole scene graph.
 #pragma once
 
 #include <array>
@@ -17,19 +17,20 @@ namespace takt::workspace {
 inline constexpr std::size_t kMaxTriangles = 1'000'000;
 
 struct Mesh {
-  std::vector<KDL::Vector> vertices;  // mm; each once
+  std::vector<KDL::Vector> vertices;  // [mm] without duplicates
   std::vector<std::array<std::size_t, 3>> triangles;
-  KDL::Vector lower;  // corners of the box around it
+  KDL::Vector lower;  // corners of the bounding box
   KDL::Vector upper;
 };
 
-// From what an STL file holds, binary or text. `scale`: mm for 1 in the file. Triangles without an area are left out.
-// Nothing, and a sentence in `why`, when it is not STL, holds no triangles, or coordinates that are not numbers.
+// Reads the content of an STL file, binary or text. `scale`: [mm] per unit of the file. Triangles without an area are
+// left out. Returns nothing, and a sentence in `why`, if it is not STL, has no triangles, or has coordinates that are
+// not finite.
 std::optional<Mesh> ReadStl(std::string_view bytes, double scale, std::string& why);
 
 std::optional<Mesh> LoadStl(const std::string& path, double scale, std::string& why);
 
-// Whether the surface goes round the point. Surfaces that are not closed go round what they enclose for the most part.
+// Returns true if the surface encloses the point. Surfaces that are not closed enclose it if they do for the most part.
 bool Encloses(const Mesh& mesh, const KDL::Vector& point) noexcept;
 
 }  // namespace takt::workspace

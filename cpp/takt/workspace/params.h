@@ -1,5 +1,5 @@
-// What a machine file says about the workspace of a group: what stands in the cell, what shapes the mechanism's links
-// and its gripper have, and how far they must stay apart.
+// Parameters of the workspace of a group from the machine file: the obstacles in the cell, the shapes of the
+// mechanism's links and of its gripper, and their minimum distance.
 //
 //   workspace:
 //     margin: 5
@@ -25,37 +25,37 @@
 
 namespace takt::workspace {
 
-// All shapes lie with their middle in the origin of their pose.
+// All shapes are centred at the origin of their pose.
 struct BoxParams {
-  double x = 0;  // mm, edges
+  double x = 0;  // [mm] edges
   double y = 0;
   double z = 0;
 };
 
 struct CylinderParams {
-  double radius = 0;  // mm
-  double height = 0;  // mm, along Z
+  double radius = 0;  // [mm]
+  double height = 0;  // [mm] along Z
 };
 
 struct SphereParams {
-  double radius = 0;  // mm
+  double radius = 0;  // [mm]
 };
 
-// A cylinder with half a ball on both ends.
+// A cylinder with a hemisphere on both ends.
 struct CapsuleParams {
-  double radius = 0;               // mm
-  std::optional<double> length{};  // mm, along Z, without the half balls; unset: along the link
+  double radius = 0;               // [mm]
+  std::optional<double> length{};  // [mm] along Z, without the hemispheres; unset: along the link
 };
 
 struct MeshParams {
-  std::string file;  // STL, seen from the machine file
-  double scale = 1;  // mm for 1 in the file
+  std::string file;  // STL, relative to the machine file
+  double scale = 1;  // [mm] per unit of the file
 };
 
-// One shape and where it is: an obstacle in the cell, or part of a link or gripper, which it goes with.
+// One shape and its pose: an obstacle in the cell, or part of a link or gripper, with which it moves.
 struct SolidParams {
   std::string name;  // for messages and `ignore`
-  std::string link;  // links: which one, or what the names of several begin with
+  std::string link;  // links: its name, or the common beginning of the names of several
   std::optional<BoxParams> box{};
   std::optional<CylinderParams> cylinder{};
   std::optional<SphereParams> sphere{};
@@ -65,7 +65,7 @@ struct SolidParams {
 };
 
 struct CornerParams {
-  std::optional<double> x{};  // mm
+  std::optional<double> x{};  // [mm]
   std::optional<double> y{};
   std::optional<double> z{};
 };
@@ -75,11 +75,11 @@ struct BoundsParams {
   CornerParams upper;
 };
 
-// Places are seen from the base of the mechanism.
+// Positions are in the base frame of the mechanism.
 struct WorkspaceParams {
   BoundsParams bounds;
-  double margin = 5;        // mm
-  double resolution = 0.5;  // mm
+  double margin = 5;        // [mm]
+  double resolution = 0.5;  // [mm]
   std::vector<SolidParams> obstacles;
   std::vector<SolidParams> links;
   std::vector<SolidParams> gripper;

@@ -51,9 +51,9 @@ fcl::Transform3d TransformOf(const Frame& frame) {
   return transform;
 }
 
-// What is as far as `within` is not looked at closely, and is `within`.
+// Distances of `within` or more are not computed exactly, and returned as `within`.
 double DistanceOf(const Object& a, const Object& b, double within) {
-  // FCL's other solver is now and then wrong by many mm, and both are by more with metres than with mm.
+  // FCL's other solver is occasionally wrong by many mm, and both are less accurate in metres than in mm.
   fcl::DistanceRequestd request;
   request.enable_nearest_points = false;
   request.enable_signed_distance = false;
@@ -63,7 +63,7 @@ double DistanceOf(const Object& a, const Object& b, double within) {
     const double distance = fcl::distance(&a, &b, request, result);
     if (distance > 0) return std::min(distance, within);
   } catch (const std::exception&) {
-    // It could not find out: what is not known to be free is not.
+    // FCL failed: unknown is treated as touching.
   }
   return 0;
 }
@@ -82,7 +82,7 @@ struct Scene::Inside {
     }
   };
 
-  // All objects at once. The manager's setup() would ask the C library's logarithm how to balance the tree.
+  // Registers all objects at once. The manager's setup() would use the C library's logarithm to balance the tree.
   void MakeTree() {
     std::vector<Object*> objects;
     for (const auto& object : obstacles) objects.push_back(object.get());

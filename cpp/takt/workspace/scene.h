@@ -1,5 +1,5 @@
-// Distances between the shapes of a cell. FCL does the work, in scene.cc and nowhere else. Allocates; not for the
-// cycle, and not for two threads at a time.
+// Distances between the shapes of a cell, computed by FCL, which only scene.cc uses. Allocates; not for use within the
+// cycle, and not thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace takt::workspace {
 
-// How far FCL may be wrong about a distance, mm, for things of up to a few metres.
+// [mm] largest error of FCL's distances, for objects of up to a few metres.
 inline constexpr double kDistanceError = 0.02;
 
 class Scene {
@@ -20,17 +20,17 @@ class Scene {
   Scene& operator=(Scene&&) noexcept;
   ~Scene();
 
-  // Both count from 0. Obstacles stand still where their pose says; bodies are wherever one asks.
+  // Both return numbers from 0. Obstacles are fixed at their pose; bodies are at the frames given in queries.
   std::size_t AddObstacle(const Shape& shape);
   std::size_t AddBody(const Shape& shape);
-  // From now on the two do not see each other.
+  // From now on this pair is not checked.
   void Ignore(std::size_t body, std::size_t obstacle);
 
   struct Nearest {
-    double distance = 0;       // mm, 0: they touch or overlap; at most `within`
-    std::size_t obstacle = 0;  // which, if nearer than `within`
+    double distance = 0;       // [mm] 0: they touch or overlap; at most `within`
+    std::size_t obstacle = 0;  // its number, if nearer than `within`
   };
-  // `at`: the frame of what the body is fixed to. Looking no further than `within` saves time.
+  // `at`: the frame to which the body is fixed. A small `within` saves time.
   Nearest NearestObstacle(std::size_t body, const kinematics::Frame& at, double within);
   double Between(std::size_t a, const kinematics::Frame& a_at, std::size_t b, const kinematics::Frame& b_at,
                  double within);

@@ -13,7 +13,7 @@ MadeShape Refused(std::string path, std::string problem) {
   return {.shape = std::nullopt, .path = std::move(path), .problem = std::move(problem)};
 }
 
-// The points are given in the pose.
+// The points are given in the frame of the pose.
 MadeShape Made(Form form, const Frame& pose, std::vector<Vector> points, double radius, const Vector& inside = {}) {
   for (Vector& point : points) point = pose * point;
   return {.shape = Shape{std::move(form), pose, pose * inside, std::move(points), radius}, .path = {}, .problem = {}};
@@ -31,7 +31,7 @@ std::vector<Vector> Ends(double length) {
   return {{0, 0, -length / 2}, {0, 0, length / 2}};
 }
 
-// In the middle of the way, with Z along it.
+// Returns the frame in the middle of the segment, with Z along it.
 Frame Along(const Vector& way) {
   const Vector z = way / way.Norm();
   const Vector aside = std::abs(z.x()) < 0.5 ? Vector(1, 0, 0) : Vector(0, 1, 0);

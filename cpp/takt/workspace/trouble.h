@@ -1,4 +1,4 @@
-// What can be wrong with a path, and the names of what can be in the way.
+// The possible problems of a path, and the names of the objects involved.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ namespace takt::workspace {
 
 enum class Trouble : std::uint8_t {
   kNone,       // the path is free
-  kCollision,  // two things are nearer than the margin
+  kCollision,  // two objects are nearer than the margin
   kBounds,     // the tool leaves its bounds
-  kNoPose,     // no position of the links there
+  kNoPose,     // the links have no position there
 };
 
-// The names in a Finding, numbered from 0: tool, the six bounds, all parts of the links and of the gripper, obstacles.
-// The parameters must be good; needs no files.
+// Returns the names in a Finding, numbered from 0: tool, the six bounds, all parts of the links and of the gripper,
+// obstacles. Requires: valid parameters; reads no files.
 std::vector<std::string> PartNames(const WorkspaceParams& params, const kinematics::Kinematics& kinematics);
 
 void describe(Enumeration<Trouble>&);

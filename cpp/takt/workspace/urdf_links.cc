@@ -15,7 +15,7 @@ using kinematics::UrdfShape;
 constexpr std::string_view kPackage = "package://";
 constexpr std::string_view kFile = "file://";
 
-// What is wrong with a mesh for us; empty: nothing.
+// Returns why we cannot use a mesh; empty if we can.
 std::string Diagnose(const UrdfShape& shape) {
   std::string extension = std::filesystem::path(shape.mesh).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -33,7 +33,7 @@ std::string FileOfMesh(const std::string& mesh, const std::string& machine_folde
   if (!mesh.starts_with(kPackage)) return (fs::path(urdf_folder) / mesh).string();
   const fs::path inside = mesh.substr(kPackage.size());
   if (inside.empty()) return urdf_folder;
-  // A file found by the relative path keeps one, so that the machine can be moved.
+  // A file found by the relative path keeps a relative path, so that the machine can be moved.
   const fs::path folder = urdf_folder;
   std::error_code unknown;  // no working directory: only the relative path is searched
   const fs::path base = fs::current_path(unknown) / machine_folder;

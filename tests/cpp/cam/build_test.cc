@@ -1,4 +1,4 @@
-// CAM-03: what is refused, and what is worth a warning, each with its path and its numbers.
+// CAM-03: errors and warnings, each with its path and its values.
 #include "takt/cam/build.h"
 
 #include <gmock/gmock.h>
@@ -65,12 +65,12 @@ TEST(BuildPoints, TakesTheLargestNumber) {
   EXPECT_THAT(Errors(Points(kLinear, points)), IsEmpty());
 }
 
-// Not more sentences than anyone reads.
+// No more sentences than a user reads.
 TEST(BuildPoints, StopsComplaining) {
   EXPECT_THAT(Errors(Points(kLinear, std::vector<CamPoint>(1000))), SizeIs(20));
 }
 
-// Closed when cyclic, up to the acceleration.
+// A cyclic cam is closed up to the acceleration.
 TEST(BuildPoints, ClosesCyclicCams) {
   EXPECT_THAT(
       Errors(Points(kQuintic, {{0, 0, 1}, {5, 8}, {10, 3, 2}}, true)),
@@ -81,7 +81,7 @@ TEST(BuildPoints, ClosesCyclicCams) {
       ElementsAre(
           "points[2]: expected the acceleration at the end of a cyclic cam as at its beginning, 0 at x 10, found -4"));
   EXPECT_THAT(Warnings(Points(kQuintic, {{0, 0}, {5, 8}, {10, 3}}, true)), IsEmpty());
-  // Given at one end holds for both.
+  // A value given at one end holds for both.
   for (const bool at_end : {false, true}) {
     CamParams params = Points(kQuintic, {{0, 0}, {5, 8}, {10, 3}}, true);
     (at_end ? params.points.back() : params.points.front()).v = 2;
@@ -129,7 +129,7 @@ TEST(BuildSegments, RefusesJumps) {
   EXPECT_THAT(Errors(Segments({To(10, 5, Law::kCycloid), To(20, 10, Law::kLine)})),
               ElementsAre("segments[1]: expected the velocity of the segment before, 0 at x 10, found 0.5"));
   EXPECT_THAT(Errors(Segments({To(10, 5, Law::kQuintic), To(20, 10, Law::kLine)}, true)),
-              IsEmpty());  // the quintic goes over into the line at both ends
+              IsEmpty());  // the quintic joins the line at both ends
   EXPECT_THAT(Errors(Segments({To(10, 5, Law::kCycloid), To(20, 10, Law::kQuintic)}, true)), IsEmpty());
   EXPECT_THAT(Errors(Segments({To(10, 5, Law::kLine), To(20, 10, Law::kQuintic), To(30, 10, Law::kDwell)}, true)),
               ElementsAre());  // lines that meet at the seam: a warning
@@ -153,7 +153,7 @@ TEST(BuildSegments, WarnsOfWhatLawsCannotHelp) {
               ElementsAre("segments[1]: expected the acceleration of the segment before, 3 at x 10, found 0"));
 }
 
-// CAM-01: a quintic takes what is not given from its neighbours.
+// CAM-01: a quintic takes values that are not given from its neighbours.
 TEST(BuildSegments, FitsQuinticsIn) {
   CamSegment middle = To(30, 20, Law::kQuintic);
   const Table table = Made(Segments({To(10, 5, Law::kLine), middle, To(40, 30, Law::kLine)}));
@@ -172,7 +172,7 @@ TEST(BuildSegments, FitsQuinticsIn) {
   EXPECT_NEAR(joined.At(std::nextafter(10.0, 0.0)).ddy, -0.1, 1e-12);
 }
 
-// As a property: what Build takes without a word of warning has no jump in y and y', nor over the seam.
+// Property: a cam that Build accepts without warnings has no jump in y and y', nor over the seam.
 TEST(Build, LeavesNoJump) {
   Dice dice(7);
   int smooth = 0;

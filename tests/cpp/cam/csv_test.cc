@@ -1,4 +1,4 @@
-// CAM-04: points as CSV. Complaints about files: tests/cpp/engine/load_cams_test.cc.
+// CAM-04: points as CSV. Messages about files: tests/cpp/engine/load_cams_test.cc.
 #include "takt/cam/csv.h"
 
 #include <gmock/gmock.h>
@@ -27,7 +27,7 @@ TEST(Csv, ReadsColumnsInAnyOrder) {
   EXPECT_EQ(PlaceInCsv(csv, "points").line, 1);
 }
 
-// CAM-92: decimal commas, where none stands between the columns; other files with a word on what to do.
+// CAM-92: decimal commas, unless commas separate the columns; for other files, advice what to do.
 TEST(Csv, ReadsDecimalCommas) {
   for (const char* text : {"x;y;v\n0;-1,25;\n1,5e1;2.5;0,125\n", "x\ty\tv\n0\t-1,25\t\n15\t2,5\t,125\n"}) {
     const CsvPoints csv = ReadCsv(text, "f.csv");
@@ -51,7 +51,7 @@ TEST(Csv, ReadsDecimalCommas) {
   }
 }
 
-// What is written reads back as the very same numbers.
+// A written file reads back as the identical numbers.
 TEST(Csv, ReadsWhatItWrote) {
   Dice dice(1);
   for (int run = 0; run < 100; ++run) {
@@ -68,7 +68,7 @@ TEST(Csv, ReadsWhatItWrote) {
   }
 }
 
-// Any bytes: an answer, never more than 20 complaints.
+// Arbitrary bytes give a result, with at most 20 problems.
 TEST(Csv, StandsAnything) {
   Dice dice(2);
   const std::string letters = "xyva,;\t\n\n\r0123456789.-+e# \xC3\xFF";

@@ -33,7 +33,7 @@ TEST(Extremes, OfACycloid) {
   EXPECT_EQ(SlavePeaksOf(table, 0, 0).acceleration.value, 0);
 }
 
-// CAM-24: at a kink of a linear cam both sides count.
+// CAM-24: at a corner of a linear cam both sides count.
 TEST(Extremes, CountBothSidesOfAJump) {
   const Extremes e = ExtremesOf(Made(Points(Interpolation::kLinear, {{0, 0}, {1, 5}, {2, -5}, {3, -4}})));
   EXPECT_EQ(e.y.greatest.x, 1);
@@ -56,7 +56,7 @@ struct Sampled {
   }
 };
 
-// Never below a dense sampling, never above it by more than such a sampling can miss; and attained where they say.
+// Never below a dense sampling, never above it by more than the sampling can miss; and attained at the reported x.
 void Compare(const Bounds& bounds, const Sampled& sampled, double scale) {
   const double rounding = 1e-9 * scale;
   EXPECT_GE(bounds.greatest.value, sampled.greatest - rounding);
@@ -65,7 +65,7 @@ void Compare(const Bounds& bounds, const Sampled& sampled, double scale) {
   EXPECT_GE(bounds.least.value, sampled.least - sampled.largest_step - rounding);
 }
 
-// CAM-24: of random cams, held against dense sampling of every piece.
+// CAM-24: random cams, compared with dense sampling of every piece.
 TEST(Extremes, AgreeWithDenseSampling) {
   Dice dice(3);
   constexpr int kSamples = 500;
@@ -108,7 +108,7 @@ TEST(Extremes, AgreeWithDenseSampling) {
   }
 }
 
-// CAM-71: back from y to x.
+// CAM-71: inverse from y to x.
 TEST(Inverse, FindsEveryX) {
   const Table table =
       Made(Segments({To(90, 100, Law::kModifiedSine), To(180, 100, Law::kDwell), To(360, 0, Law::kPolynomial345)}));
@@ -127,8 +127,8 @@ TEST(Inverse, FindsEveryX) {
   EXPECT_NEAR(NearestX(table, 50, 1000).value(), 270, 1e-12);
 }
 
-// CAM-71, as a property: each x that comes back has this y; the x the y came from is among them, or one where the cam
-// has as good as the same y; the nearest one is the nearest of all.
+// CAM-71, property: each returned x has this y; the x from which y was computed is among them, or one with nearly the
+// same y; the nearest one is the nearest of all.
 TEST(Inverse, LeadsBack) {
   Dice dice(4);
   for (int run = 0; run < 1000; ++run) {

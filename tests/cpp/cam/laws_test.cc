@@ -65,7 +65,7 @@ TEST(Laws, SineConstantCosineHasItsFactors) {
   }
 }
 
-// Each goes from (0, 0) to (1, 1) from rest to rest, is point-symmetric, and has no jump in y and y'.
+// Each law leads from (0, 0) to (1, 1) from rest to rest, is point-symmetric, and has no jump in y and y'.
 TEST(Laws, GoFromRestToRest) {
   for (const Case& c : kCases) {
     const Table table = Made(Segments({To(1, 1, c.law)}));
@@ -87,7 +87,7 @@ TEST(Laws, GoFromRestToRest) {
   }
 }
 
-// Positions on the way, from the formulas as printed (not by integration).
+// Intermediate positions, from the formulas as printed (not by integration).
 TEST(Laws, FollowThePrintedFormulas) {
   const Table cycloid = Made(Segments({To(1, 1, Law::kCycloid)}));
   const Table harmonic = Made(Segments({To(1, 1, Law::kHarmonic)}));

@@ -44,7 +44,7 @@ inline Table Made(const CamParams& params) {
   return std::move(built.table.value());
 }
 
-// "path: message" of each.
+// Returns "path: message" of each.
 inline std::vector<std::string> Texts(const std::vector<Finding>& findings) {
   std::vector<std::string> texts;
   for (const Finding& finding : findings) texts.push_back(finding.path + ": " + finding.message);
@@ -62,7 +62,7 @@ class Dice {
   std::mt19937 engine_;
 };
 
-// Points whose distances differ by a hundred times; some velocities and accelerations given.
+// Points whose distances differ by a factor of a hundred; some velocities and accelerations given.
 inline CamParams RandomPoints(Dice& dice, Interpolation interpolation) {
   std::vector<CamPoint> points;
   double x = dice.Real(-500, 500);
@@ -70,7 +70,7 @@ inline CamParams RandomPoints(Dice& dice, Interpolation interpolation) {
   const bool cyclic = dice.Flip();
   for (std::size_t i = 0; i < n; ++i) {
     CamPoint point{x, dice.Real(-100, 100)};
-    const bool inside = i + 1 < n || !cyclic;  // a cyclic cam takes its first point's for both
+    const bool inside = i + 1 < n || !cyclic;  // a cyclic cam uses its first point's for both
     const bool seam = cyclic && i == 0 && interpolation == Interpolation::kCubicSpline;  // its acceleration would jump
     if (interpolation != Interpolation::kLinear && inside && !seam && dice.Whole(4) == 0) point.v = dice.Real(-5, 5);
     if (interpolation == Interpolation::kQuintic && inside && dice.Whole(4) == 0) point.a = dice.Real(-1, 1);

@@ -11,7 +11,7 @@
 namespace takt::cam {
 namespace {
 
-// y, y', y'', y''', y'''' at an end of a piece.
+// Returns y, y', y'', y''', y'''' at an end of a piece.
 std::array<double, 5> FiveOf(const Table& table, std::size_t i, bool at_end) {
   std::array<double, 5> five{};
   Curve curve = table.CurveOf(i);
@@ -23,7 +23,7 @@ std::array<double, 5> FiveOf(const Table& table, std::size_t i, bool at_end) {
   return five;
 }
 
-// The largest of each in the cam, as a yardstick.
+// Returns the largest magnitude of each in the cam, as a scale.
 std::array<double, 5> Largest(const Table& table) {
   std::array<double, 5> largest{};
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -61,7 +61,7 @@ TEST(Quintic, FromRestToRestIsPolynomial345) {
   for (double x = 10; x <= 30; x += 0.25) EXPECT_NEAR(points.At(x).y, law.At(x).y, 1e-13);
 }
 
-// Two points and no more: a straight line, cyclic or not.
+// Two points only: a straight line, cyclic or not.
 TEST(Quintic, OfTwoPointsIsALine) {
   for (const bool cyclic : {false, true}) {
     const Table table = Made(Points(Interpolation::kQuintic, {{0, 0}, {360, 90}}, cyclic));
@@ -73,7 +73,7 @@ TEST(Quintic, OfTwoPointsIsALine) {
   }
 }
 
-// A parabola is what has no y''' at all: free points reproduce it.
+// A parabola has y''' = 0: free points reproduce it.
 TEST(Quintic, ReproducesAParabola) {
   std::vector<CamPoint> points;
   for (const double x : {0.0, 1.0, 1.1, 4.0, 9.0}) points.push_back({x, 3 - x + 0.5 * x * x});
@@ -81,8 +81,8 @@ TEST(Quintic, ReproducesAParabola) {
   for (double x = 0; x <= 9; x += 0.1) EXPECT_NEAR(table.At(x).dy, x - 1, 1e-11);
 }
 
-// What is free is as smooth as it can be: y''' and y'''' go on where the acceleration and the velocity are free, and
-// y, y', y'' everywhere; the free ends have none, those of a cyclic cam go over into one another.
+// Free values are as smooth as possible: y''' and y'''' are continuous where the acceleration and the velocity are
+// free, and y, y', y'' everywhere; they are 0 at free ends, and continuous over the seam of a cyclic cam.
 TEST(Quintic, IsAsSmoothAsItCanBe) {
   Dice dice(4);
   for (int run = 0; run < 300; ++run) {
@@ -169,7 +169,7 @@ TEST(CubicSpline, HasNoJumpUpToTheAcceleration) {
   }
 }
 
-// 100,000 points, distances from 1 to 1000: still what was given, and without jumps.
+// 100,000 points, distances from 1 to 1000: the given values are met, without jumps.
 TEST(Quintic, TakesManyPoints) {
   Dice dice(6);
   std::vector<CamPoint> points;

@@ -20,7 +20,7 @@ std::vector<double> All(const Curve& curve, double h) {
   return {roots.begin(), roots.end()};
 }
 
-// The polynomial with these zeros.
+// Returns the polynomial with these zeros.
 Curve Product(const std::vector<double>& zeros, double factor) {
   Curve curve{.c = {factor}};
   for (const double zero : zeros) {
@@ -32,7 +32,7 @@ Curve Product(const std::vector<double>& zeros, double factor) {
 
 TEST(Roots, OfSimpleCurves) {
   EXPECT_THAT(All({.c = {1}}, 5), IsEmpty());
-  EXPECT_THAT(All({}, 5), ElementsAre(0, 5));  // zero all over
+  EXPECT_THAT(All({}, 5), ElementsAre(0, 5));  // zero everywhere
   EXPECT_THAT(All({.c = {-2, 1}}, 5), ElementsAre(2));
   EXPECT_THAT(All({.c = {-2, 1}}, 1), IsEmpty());
   EXPECT_THAT(All({.c = {-4, 0, 1}}, 5), ElementsAre(DoubleEq(2)));
@@ -44,7 +44,7 @@ TEST(Roots, OfSimpleCurves) {
               ElementsAre(DoubleEq(pi / 6), DoubleEq(5 * pi / 6)));
 }
 
-// Every zero of a polynomial is found, and nothing else: zeros drawn at least 0.02 apart.
+// Every zero of a polynomial is found, and nothing else: random zeros at least 0.02 apart.
 TEST(Roots, FindAllOfAPolynomial) {
   Dice dice(1);
   for (int run = 0; run < 3000; ++run) {
@@ -64,7 +64,7 @@ TEST(Roots, FindAllOfAPolynomial) {
   }
 }
 
-// A sine with a parabola: each change of sign of a dense walk is found.
+// A sine with a parabola: each change of sign in a dense sampling is found.
 TEST(Roots, FindAllOfASine) {
   Dice dice(2);
   for (int run = 0; run < 500; ++run) {

@@ -1,4 +1,4 @@
-// CAM-88: cams made at run time. Random commands against a model of what names stand for and what is in use.
+// CAM-88: cams made at run time. Random commands against a model of the names and of the cams in use.
 #include "takt/cam/store.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ struct Bench {
             },
             &used};
   }
-  // Carries out a command as the cycle does, without an allocation. The last report.
+  // Carries out a command as the cycle does, without an allocation. Returns the last report.
   template <typename Command>
   FeedbackEvent Tell(const Command& command) {
     sink.Clear();
@@ -31,7 +31,7 @@ struct Bench {
     EXPECT_EQ(AllocationsOfThisThread(), before);
     return sink.events().empty() ? FeedbackEvent{} : sink.events().back();
   }
-  // Sends a cam of two points with this end and has it built. The feedback of the building.
+  // Sends a cam of two points with this end and builds it. Returns the feedback of the building.
   FeedbackEvent Make(std::string_view name, double end) {
     Tell(BeginCam{.name = Name::Of(name)});
     AddCamPoints points{.cam = Name::Of(name), .points = {}};
@@ -56,7 +56,7 @@ struct Bench {
 TEST(Store, NamesStandForTheLastCamAndWhatIsInUseStays) {
   Bench bench;
   Dice dice(88);
-  std::map<std::string, double> ends;  // of the cam that each name stands for
+  std::map<std::string, double> ends;  // of the cam that each name refers to
   std::map<std::uint32_t, double> in_use;
   for (int step = 0; step < 4000; ++step) {
     const std::string name = "cam " + std::to_string(dice.Whole(40));
@@ -68,7 +68,7 @@ TEST(Store, NamesStandForTheLastCamAndWhatIsInUseStays) {
         }
         break;
       case 1:
-        if (!in_use.empty()) {  // and leaves it
+        if (!in_use.empty()) {  // and stops following it
           const auto left = std::next(in_use.begin(), static_cast<long>(dice.Whole(in_use.size())));
           bench.used.erase(left->first);
           in_use.erase(left);
@@ -93,7 +93,7 @@ TEST(Store, NamesStandForTheLastCamAndWhatIsInUseStays) {
     }
     for (const auto& [index, end] : in_use) ASSERT_EQ(bench.store.tables[index].At(1).y, end);
   }
-  EXPECT_EQ(Find(bench.store.tables, "cam"), 0u);  // that of the machine file
+  EXPECT_EQ(Find(bench.store.tables, "cam"), 0u);  // the cam of the machine file
   std::set<std::uint64_t> numbers;
   for (const Table& table : bench.store.tables) {
     const bool is_new = table.size() == 0 || numbers.insert(table.number()).second;
@@ -101,7 +101,7 @@ TEST(Store, NamesStandForTheLastCamAndWhatIsInUseStays) {
   }
 }
 
-// Both drafts are built at a time, in the order of their commands; a draft that is being built does not change.
+// Two drafts can be built at a time, in the order of their commands; a draft that is being built does not change.
 TEST(Store, TwoCamsAreBuiltAtATime) {
   Bench bench;
   for (const char* name : {"a", "b"}) {
@@ -121,7 +121,7 @@ TEST(Store, TwoCamsAreBuiltAtATime) {
   EXPECT_EQ(bench.store.tables[*Find(bench.store.tables, "b")].At(2).y, -2);
 }
 
-// The largest cams there may be are taken without an allocation in the cycle.
+// The largest cams are handled without an allocation in the cycle.
 TEST(Store, TakesTheLargestCams) {
   Bench bench;
   for (int round = 0; round < 2; ++round) {

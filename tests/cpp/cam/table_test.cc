@@ -26,13 +26,13 @@ TEST(Table, ConnectsPointsWithStraightLines) {
   EXPECT_EQ(table.stroke(), 10);
   EXPECT_EQ(table.At(5), (Value{11, 2, 0, 0}));
   EXPECT_EQ(table.At(20), (Value{16, -0.5, 0, 0}));
-  EXPECT_EQ(table.At(10), (Value{21, -0.5, 0, 0}));  // the piece behind the joint
+  EXPECT_EQ(table.At(10), (Value{21, -0.5, 0, 0}));  // the piece after the joint
   EXPECT_EQ(table.At(-1), (Value{1, 2, 0, 0}));
   EXPECT_EQ(table.At(31), (Value{11, -0.5, 0, 0}));
   EXPECT_EQ(table.At(NAN), table.At(0));
 }
 
-// CAM-71: what a table was made from comes along with it.
+// CAM-71: a table keeps its source.
 TEST(Table, KeepsItsSource) {
   const Table table = Made(Points(Interpolation::kLinear, {{0, 1}, {10, 21}}, true));
   EXPECT_EQ(table.name(), "cam");
@@ -44,7 +44,7 @@ TEST(Table, KeepsItsSource) {
   EXPECT_EQ(Made(segments).source().segments.front().law, Law::kCycloid);
 }
 
-// CAM-21: rounding inside the last piece does not get into the stroke, which is added up turn by turn.
+// CAM-21: rounding inside the last piece does not enter the stroke, which accumulates over turns.
 TEST(Table, HasTheStrokeOfItsSource) {
   Dice dice(4);
   for (int run = 0; run < 200; ++run) {
@@ -59,7 +59,7 @@ TEST(Table, HasTheStrokeOfItsSource) {
   }
 }
 
-// CAM-04: the piece is found wherever the points lie: evenly, crowded, at distances a million times apart.
+// CAM-04: the piece is found for any distribution of points: even, clustered, at distances a million times apart.
 TEST(Table, FindsThePieceOfEveryX) {
   Dice dice(1);
   for (int run = 0; run < 200; ++run) {
@@ -84,7 +84,7 @@ TEST(Table, FindsThePieceOfEveryX) {
   }
 }
 
-// EN-06: a look-up allocates nothing, whatever the law.
+// EN-06: a look-up allocates nothing, with any law.
 TEST(Table, AllocatesNothing) {
   Dice dice(2);
   for (int run = 0; run < 20; ++run) {
@@ -97,7 +97,7 @@ TEST(Table, AllocatesNothing) {
   }
 }
 
-// What At says is what the pieces are, in value and all derivatives.
+// At agrees with the pieces, in value and all derivatives.
 TEST(Table, AgreesWithItsPieces) {
   Dice dice(3);
   for (int run = 0; run < 200; ++run) {

@@ -1,5 +1,5 @@
 // CAM-89: laws between any velocities and accelerations at both ends (VDI 2143's tasks), asymmetric laws, laws chosen
-// by themselves, and points that are followed without overshoot.
+// automatically, and points that are followed without overshoot.
 #include "takt/cam/tasks.h"
 
 #include <gmock/gmock.h>
@@ -25,7 +25,7 @@ std::string NameOf(Law law) {
   return std::string(TypeOf<Law>().FindEnumerator(static_cast<std::int64_t>(law))->name);
 }
 
-// Rest, velocity, reversal, motion: which of velocity and acceleration is not 0 at an end.
+// Rest, velocity, reversal, motion: whether velocity and acceleration are nonzero at an end.
 struct EndKind {
   bool v, a;
 };
@@ -45,7 +45,7 @@ TEST(Tasks, MeetTheirEndsInAllSixteenCombinations) {
           s.end_v = of(to.v, 3);
           s.end_a = of(to.a, 0.1);
           s.inflection = law == Law::kPolynomial8 ? dice.Real(0.36, 0.64) : dice.Real(0.1, 0.9);
-          const Table table = Made(Segments({s}));  // which also looks at what jumps inside
+          const Table table = Made(Segments({s}));  // this also checks for jumps inside
           SCOPED_TRACE(NameOf(law));
           const Value begin = table.At(s.from->x), end = table.At(s.to.x);
           EXPECT_NEAR(begin.y, s.from->y, 1e-9);
@@ -65,13 +65,13 @@ TEST(Tasks, MeetTheirEndsInAllSixteenCombinations) {
   }
 }
 
-// What is general is from rest to rest what the textbooks have.
+// From rest to rest, the general laws are those of the textbooks.
 TEST(Tasks, AreTheTextbooksLawsFromRestToRest) {
   for (const Law law : {Law::kModifiedSine, Law::kModifiedTrapezoid, Law::kCycloid, Law::kPolynomial4567,
                         Law::kPolynomial8, Law::kQuintic}) {
     CamSegment s = To(1, 1, law);
     const Table own = Made(Segments({s}));
-    s.inflection = 0.5 + 1e-13;  // the general way
+    s.inflection = 0.5 + 1e-13;  // the general implementation
     const Table general = Made(Segments({s}));
     for (double x = 0; x <= 1; x += 1.0 / 64) {
       EXPECT_NEAR(general.At(x).y, own.At(x).y, 1e-10) << NameOf(law);
@@ -80,8 +80,8 @@ TEST(Tasks, AreTheTextbooksLawsFromRestToRest) {
   }
 }
 
-// From one velocity to the same one the law rides on a straight line: its peak is the textbooks' factor times what is
-// left of the rise.
+// Between equal velocities the law is added to a straight line: its peak is the textbooks' factor times the remaining
+// rise.
 TEST(Tasks, HaveTheirFactorsBetweenEqualVelocities) {
   const std::pair<Law, double> factors[] = {{Law::kModifiedSine, 4 * kHalfTurn * kHalfTurn / (4 + kHalfTurn)},
                                             {Law::kModifiedTrapezoid, 8 * kHalfTurn / (2 + kHalfTurn)},
@@ -97,7 +97,7 @@ TEST(Tasks, HaveTheirFactorsBetweenEqualVelocities) {
   }
 }
 
-// Published: cv = 3 sqrt(3) pi / 8, ca = pi^2 at the reversal and 9 pi^2 / 16 on the way.
+// Published: cv = 3 sqrt(3) pi / 8, ca = pi^2 at the reversal and 9 pi^2 / 16 in between.
 TEST(Tasks, DoubleHarmonicHasItsFactors) {
   for (const Law law : {Law::kDoubleHarmonic, Law::kDoubleHarmonicBack}) {
     const Table table = Made(Segments({To(1, 1, law)}));
@@ -175,7 +175,7 @@ TEST(Tasks, ChooseByTheirEndsAndTakeThemFromTheNeighbours) {
   EXPECT_EQ(Made(Segments({To(40, 20, Law::kLine), between})).size(), 2u);  // quintic
 }
 
-// Asymmetric: the acceleration changes its sign where it is told, and braking over more of the length is gentler.
+// Asymmetric: the acceleration changes its sign at the inflection, and braking over more of the length is gentler.
 TEST(Tasks, TheInflectionIsWhereItIsTold) {
   for (const Law law : {Law::kModifiedSine, Law::kModifiedTrapezoid, Law::kCycloid, Law::kPolynomial8}) {
     CamSegment s = To(200, 35, law);

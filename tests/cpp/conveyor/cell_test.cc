@@ -1,4 +1,4 @@
-// Belts and what else carries in a machine: sections of its file, their order in a cycle, what groups see of them.
+// Belts and other carriers in a machine: sections of its file, their order in a cycle, and what groups see of them.
 #include <gmock/gmock.h>
 
 #include "rig.h"
@@ -51,7 +51,7 @@ TEST(Cell, BeltsOfTheMachineFile) {
               ElementsAre(HasSubstr("upper_limit: must lie above lower_limit")));
 }
 
-// CV-02, PP-40: through the text form of commands, with the number as value.
+// CV-02, PP-40: by the text form of commands; the value of the feedback is the number.
 TEST(Cell, ObjectsByCommand) {
   Cell cell(kCell);
   EXPECT_EQ(cell.Ask("infeed", "locate", "{x: 5}").error, ErrorId::kNoWorkpiece);
@@ -67,7 +67,7 @@ TEST(Cell, ObjectsByCommand) {
   EXPECT_EQ(cell.Ask("table", "detect", "{x: 1}").value, 1);
 }
 
-// CV-01, CV-03: "now" is where the belt is when the command arrives, at any speed.
+// CV-01, CV-03: "now" is the position of the belt when the command is applied, at any speed.
 TEST(Cell, DetectsWhereTheBeltIs) {
   Cell cell(kCell);
   cell.Give("drive", "power");
@@ -81,7 +81,7 @@ TEST(Cell, DetectsWhereTheBeltIs) {
   EXPECT_NEAR(cell.Belt().first_place, 10.8, 1e-9);
 }
 
-// The machine of one cycle, to look at what its groups see.
+// The machine in a single cycle, to inspect the views of its groups.
 struct OneWorld {
   explicit OneWorld(const std::string& text = kCell + kPoses)
       : machine(Cell::Load(text)), world(machine), left(engine::CarriersFor(world.riders[0])) {}
@@ -130,7 +130,7 @@ TEST(Cell, GroupsFindWhatCarries) {
   EXPECT_EQ(w.left.At(99).kind, kinematics::CarrierKind::kNone);
 }
 
-// CV-03: tables are told in radians, as their carriers are.
+// CV-03: tables are in radians, like their carriers.
 TEST(Cell, CarriersAreWhereTheirAxesAre) {
   OneWorld w;
   for (const char* axis : {"drive", "disc"}) w.Give(axis, "power");
@@ -162,7 +162,7 @@ TEST(Cell, AToolCarries) {
   double x = w.world.group_outputs[0].x, y = w.world.group_outputs[0].y;
   kinematics::Carrier at = right.At(tool);
   EXPECT_EQ(at.kind, kinematics::CarrierKind::kFree);
-  EXPECT_NEAR(at.pose.p.p.x(), 1000 - y, 1e-9);  // turned by 90 degrees
+  EXPECT_NEAR(at.pose.p.p.x(), 1000 - y, 1e-9);  // rotated by 90 degrees
   EXPECT_NEAR(at.pose.p.p.y(), x, 1e-9);
   EXPECT_GT(at.pose.p.v.Norm(), 10);
   const KDL::Vector before = at.pose.p.p, speed = at.pose.p.v;
@@ -172,7 +172,7 @@ TEST(Cell, AToolCarries) {
   EXPECT_NEAR((at.pose.p.p - before - 0.001 * mean).Norm(), 0, 1e-4);
 }
 
-// CV-01: belts of set positions have stepped when the groups do, wherever their axes stand in the file.
+// CV-01: belts by set position have stepped before the groups, in any order of the file.
 TEST(Cell, GroupsStepBehindBelts) {
   OneWorld w;
   const auto order = w.world.axis_order.sequence();
@@ -198,7 +198,7 @@ TEST(Cell, GroupsLeadBeltsThatFollowThem) {
 }
 
 // CV-20, CV-21: through the whole engine the tool is on the object in every cycle, to the last bits; on a measured
-// belt, too, against where its drive truly is.
+// belt, too, relative to the true position of its drive.
 TEST(Cell, AToolRidesWithoutLag) {
   for (const char* source : {"set_value", "actual_value"}) {
     Cell cell(R"(
@@ -240,7 +240,7 @@ belts:
   }
 }
 
-// CV-42, EN-03: whoever rides on the tool of another group steps behind it; not both on one another.
+// CV-42, EN-03: a group that rides on the tool of another group steps after it; two groups cannot ride on each other.
 TEST(Cell, GroupsRideOnOneAnotherOneWayOnly) {
   OneWorld w;
   w.Give("left", "set_dyn_coord_transform", "{pcs: 1, carrier: right}");
@@ -265,7 +265,7 @@ TEST(Cell, GroupsRideOnOneAnotherOneWayOnly) {
   EXPECT_GT(place(2), place(0));
 }
 
-// CV-42: a pose that is given goes on as it moves, to the instant of the set points, and stands when it is old.
+// CV-42: a given pose continues at its velocity, to the instant of the set points, and is at rest when it is old.
 TEST(Cell, APoseGoesOnBetweenMessages) {
   OneWorld w;
   const std::uint32_t mover = w.left.Find("mover");

@@ -1,4 +1,4 @@
-// What lies on a belt: from its detection to where it is taken or lost.
+// Objects on a belt: from their detection until they are taken or lost.
 #include "rig.h"
 #include "takt/core/angle.h"
 
@@ -9,7 +9,7 @@ KinematicState At(double position, double velocity = 0) {
   return {position, velocity, 0};
 }
 
-// CV-02, CV-03, PP-40: a pose that comes late is made good to the last bit of what the belt travelled.
+// CV-02, CV-03, PP-40: for a pose that arrives late, the travel of the belt is compensated to the last bit.
 TEST(Objects, LiesWhereItWasTakenToByTheBelt) {
   BeltParams p = Straight();
   p.origin = {100, -50, 20, 0, 0, 90};  // travels along Y of the world
@@ -34,7 +34,7 @@ TEST(Objects, LiesWhereItWasTakenToByTheBelt) {
   EXPECT_NEAR(pose.p.v.x(), 0, 1e-9);
 }
 
-// CV-02: the order in which an object is detected and located does not matter to where it lies.
+// CV-02: the position of an object does not depend on the order in which it is detected and located.
 TEST(Objects, IsTheSameLocatedAtOnceOrLate) {
   Rig rig(Straight());
   rig.Step(At(5));
@@ -47,7 +47,7 @@ TEST(Objects, IsTheSameLocatedAtOnceOrLate) {
   EXPECT_EQ(rig.Place(early), rig.Place(late));
 }
 
-// CV-02: where the belt was, by a touch probe; and several on one picture.
+// CV-02: the position of the belt latched by a touch probe; and several objects in one image.
 TEST(Objects, AreLatchedInThePastAndTogether) {
   Rig rig(Straight());
   rig.params.ratio = 3;
@@ -62,7 +62,7 @@ TEST(Objects, AreLatchedInThePastAndTogether) {
   EXPECT_EQ(rig.state.count, 2u);
 }
 
-// PP-40: without a number it is the one that waits longest.
+// PP-40: without a number, Locate applies to the object that has waited longest.
 TEST(Objects, AreLocatedInTheOrderOfTheirDetection) {
   Rig rig(Straight());
   EXPECT_EQ(rig.Give(Locate{}).error, ErrorId::kNoWorkpiece);
@@ -102,7 +102,7 @@ TEST(Objects, AreThirtyAtMost) {
   }
 }
 
-// PP-40: beyond the range it is deleted and the next is first; a taken one is not.
+// PP-40: an object beyond the range is deleted and the next one is first; a taken one is not.
 TEST(Objects, LeaveTheRange) {
   BeltParams p = Straight();
   p.lower_limit = 50;
@@ -134,7 +134,7 @@ TEST(Objects, LeaveTheRange) {
   EXPECT_EQ(rig.Out().lost_count, 3u);
 }
 
-// CV-01: a belt that goes back takes its objects back with it, out of the range and in again.
+// CV-01: a belt that moves backwards takes its objects back, out of the range and in again.
 TEST(Objects, GoBackWithTheBelt) {
   BeltParams p = Straight();
   p.lower_limit = 50;
@@ -151,7 +151,7 @@ TEST(Objects, GoBackWithTheBelt) {
   EXPECT_EQ(rig.Place(number), 60);
 }
 
-// PP-40: one that nobody locates is forgotten, if that is asked for.
+// PP-40: an object that is never located is forgotten, if configured.
 TEST(Objects, AreForgottenWithoutAPose) {
   BeltParams p = Straight();
   p.upper_limit = 10;
@@ -223,7 +223,7 @@ TEST(Objects, AreForeseen) {
   EXPECT_TRUE(std::isinf(TimeLeft(p, rig.state, object)));
 }
 
-// CV-03, CV-22: on a table an object turns about Z; its place is the angle at which it lies.
+// CV-03, CV-22: on a table an object rotates about Z; its position is its angle.
 TEST(Objects, TurnOnATable) {
   BeltParams p = Table();
   p.origin = {500, 0, 0, 0, 0, 30};
@@ -247,7 +247,7 @@ TEST(Objects, TurnOnATable) {
   EXPECT_EQ(Find(rig.state, number), nullptr);
 }
 
-// CV-02: numbers that are none are refused and change nothing.
+// CV-02: values that are not finite are refused and change nothing.
 TEST(Objects, RefusesNumbersThatAreNone) {
   Rig rig(Straight());
   EXPECT_EQ(rig.Give(Detect{.x = NAN}).error, ErrorId::kParameter);

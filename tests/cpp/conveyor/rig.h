@@ -1,4 +1,4 @@
-// A belt on an axis that is wherever a test says, and a machine with belts on an engine in virtual time.
+// A belt on an axis at positions given by a test, and a machine with belts on an engine in virtual time.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ class Rig {
   }
 
   Context context() { return {params, axis, axis_params, cycle, feedback}; }
-  // The next cycle, with the axis there. A measured axis is where it was when the cycle began.
+  // Steps a cycle, with the axis at this state. A measured axis is at its position at the begin of the cycle.
   void Step(const KinematicState& x) {
     axis.setpoint = axis.actual = x;
     axis.actual.acceleration = 0;
@@ -71,7 +71,7 @@ inline BeltParams Table() {
   return p;
 }
 
-// Of a machine file, with each command's last feedback.
+// An engine with a machine file, and the last feedback of each command.
 class Cell {
  public:
   explicit Cell(const std::string& text) : machine(Load(text)), engine(machine) {}
@@ -86,7 +86,7 @@ class Cell {
     EXPECT_EQ(parsed.error, ErrorId::kNone) << parsed.sentence;
     return engine.Submit(parsed.command);
   }
-  // And what became of it in this cycle.
+  // Also runs the cycle, and returns the feedback.
   FeedbackEvent Ask(const std::string& target, const std::string& verb, const std::string& arguments = "") {
     const Ticket ticket = Give(target, verb, arguments);
     Run(1);

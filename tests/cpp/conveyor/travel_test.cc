@@ -1,4 +1,4 @@
-// Where a belt is: by the set position of its axis or by what is measured of it, over all turns and wraps.
+// The travel of a belt: by the set position of its axis or by the measured one, over all turns and wraps.
 #include "rig.h"
 
 namespace takt::conveyor {
@@ -18,7 +18,7 @@ TEST(Travel, IsTheSetPositionBitForBit) {
   EXPECT_TRUE(rig.Out().known);
 }
 
-// CV-01: what is measured is older than the set points by a cycle; a dead time comes on top.
+// CV-01: measured values are a cycle older than the set points; a dead time is added.
 TEST(Travel, HasNoLagAtConstantSpeed) {
   for (const double period : {0.00025, 0.001, 0.02}) {
     for (const double filter : {0.0, 0.005, 0.2}) {
@@ -41,8 +41,7 @@ TEST(Travel, HasNoLagAtConstantSpeed) {
   }
 }
 
-// CV-01: from rest to speed the filter forgets what it did not know; position, velocity and acceleration fit one
-// another.
+// CV-01: from rest to speed the filter settles; position, velocity and acceleration are consistent.
 TEST(Travel, FindsASpeedAndIsSmooth) {
   BeltParams p = Straight(kActual);
   p.filter_s = 0.01;
@@ -60,8 +59,8 @@ TEST(Travel, FindsASpeedAndIsSmooth) {
   EXPECT_NEAR(rig.state.travel.velocity, 500, 1e-5);
 }
 
-// CV-01, CV-20: a belt at 1 m/s +-10 %: what is wrong stays below acceleration times the dead time squared, halved. The
-// true belt in closed form: x = v t - A cos(w t).
+// CV-01, CV-20: a belt at 1 m/s +-10 %: the error stays below half the acceleration times the square of the dead time.
+// The true belt in closed form: x = v t - A cos(w t).
 TEST(Travel, ChangingSpeedsAreWrongByLessThanTheDeadTimeAllows) {
   for (const double hertz : {0.5, 1.0, 2.0}) {
     const double w = 2 * kPi * hertz, amplitude = 100 / w;
@@ -81,8 +80,7 @@ TEST(Travel, ChangingSpeedsAreWrongByLessThanTheDeadTimeAllows) {
   }
 }
 
-// CV-20, PP-64: a constant acceleration leaves nothing behind, though the velocity is measured as the mean over a
-// cycle.
+// CV-20, PP-64: a constant acceleration causes no lag, though the velocity is measured as the mean over a cycle.
 TEST(Travel, AConstantAccelerationLeavesNothingBehind) {
   for (const double filter : {0.004, 0.01, 0.05}) {
     BeltParams p = Straight(kActual);
@@ -99,7 +97,7 @@ TEST(Travel, AConstantAccelerationLeavesNothingBehind) {
   }
 }
 
-// CV-01: a counter of 32 bits wraps several times a second; the belt goes on.
+// CV-01: a counter of 32 bits wraps several times a second; the travel continues.
 TEST(Travel, GoesOnOverWrapsOfTheEncoder) {
   Cell cell(R"(
 name: m
@@ -125,7 +123,7 @@ belts:
   EXPECT_GT(before * 1e7, 10 * 4294967296.0);
 }
 
-// CV-01: an axis with a modulus takes whole turns out of its positions; the belt counts them all, both ways.
+// CV-01: an axis with a modulus removes whole turns from its positions; the belt counts them all, in both directions.
 TEST(Travel, GoesOnOverWholeTurns) {
   Cell cell(R"(
 name: m
@@ -157,7 +155,7 @@ belts:
   }
 }
 
-// CV-01: new numbers for where the axis is move no belt.
+// CV-01: a new position value for the axis (set_position) does not move the belt.
 TEST(Travel, DoesNotNoticeOtherNumbers) {
   Cell cell(R"(
 name: m
@@ -174,7 +172,7 @@ belts: [{name: belt, axis: drive}]
   EXPECT_NEAR(cell.Belt().position, 100, 1e-9);
 }
 
-// CV-01: while the encoder is not to be believed the belt goes on as it went; then it is where it is measured.
+// CV-01: while the encoder has an error the belt continues at its velocity; then it is at the measured position.
 TEST(Travel, GoesOnWhileTheEncoderIsLost) {
   Rig rig(Straight(kActual));
   for (int k = 0; k < 100; ++k) rig.Step({0.5 * k, 500, 0});
@@ -186,12 +184,12 @@ TEST(Travel, GoesOnWhileTheEncoderIsLost) {
     EXPECT_FALSE(rig.Out().known);
   }
   rig.axis.encoder_error = false;
-  rig.Step({1000, 500, 0});  // it was moved meanwhile
+  rig.Step({1000, 500, 0});  // it was moved in between
   EXPECT_NEAR(rig.state.travel.position, 1000.5, 1e-9);
   EXPECT_TRUE(rig.Out().known);
 }
 
-// CV-01: set points may be filtered, too, if that is asked for.
+// CV-01: set points may be filtered, too, if configured.
 TEST(Travel, FiltersSetPointsOnlyIfAsked) {
   Rig plain(Straight()), filtered(Straight());
   filtered.params.filter_s = 0.02;
@@ -203,7 +201,7 @@ TEST(Travel, FiltersSetPointsOnlyIfAsked) {
   EXPECT_LT(filtered.state.travel.position, 0.5);
 }
 
-// CV-02: a touch probe has a position of the axis as people see it; of one with a modulus the last pass counts.
+// CV-02: a touch probe reports a position of the axis as users see it; of an axis with a modulus the last pass counts.
 TEST(Travel, AtARecordedPosition) {
   Rig linear(Straight());
   linear.params.ratio = 2;

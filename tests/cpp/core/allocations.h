@@ -1,5 +1,5 @@
-// Counts what the calling thread allocates, for tests of code that must not: calls of malloc, which new makes too and
-// Eigen makes without it.
+// Counts the allocations of the calling thread, for tests of code that must not allocate: calls of malloc, which new
+// also makes, and Eigen without new.
 #pragma once
 
 long AllocationsOfThisThread();

@@ -4,7 +4,7 @@
 
 #include <new>
 
-// The helper of other tests: it would prove nothing if it saw nothing.
+// The helper of other tests: it must detect allocations.
 TEST(Allocations, AreSeen) {
   const long before = AllocationsOfThisThread();
   ::operator delete(::operator new(64));

@@ -1,4 +1,4 @@
-// The folders of cpp/takt form a list, and arrows point one way: a folder includes only those the build names as its
+// The dependencies of the folders of cpp/takt are acyclic: a folder includes only those that the build names as its
 // dependencies.
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ Dependencies FromBuild() {
   return dependencies;
 }
 
-// "axis" for a line that includes takt/axis/...; empty for others.
+// Returns "axis" for a line that includes takt/axis/...; empty for others.
 std::string IncludedFolder(const std::string& line) {
   const std::string include = "#include \"takt/";
   if (!line.starts_with(include)) return "";
@@ -56,7 +56,7 @@ TEST(Arrows, PointOneWay) {
     for (std::string line; std::getline(file, line);) {
       const std::string other = IncludedFolder(line);
       if (other.empty() || other == folder) continue;
-      if (other == "msgs") {  // made from lcmtypes: the affair of one folder
+      if (other == "msgs") {  // generated from lcmtypes: only used by one folder
         EXPECT_EQ(folder, "lcm") << entry.path();
         continue;
       }

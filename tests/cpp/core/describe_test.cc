@@ -39,7 +39,7 @@ void describe(Description<Thing>& d) {
   d.defaulted<&Thing::state>("On or off.");
 }
 
-// Members of every kind that counting the members of a struct could stumble over.
+// Members of every kind that may be miscounted.
 struct Inner {
   int a = 0;
   double b = 0;

@@ -40,7 +40,7 @@ struct Limits {
 struct Axis {
   std::string name;
   double velocity = 0;
-  double mounting_angle = 0;  // rad
+  double mounting_angle = 0;  // [rad]
   bool inverted = false;
   std::uint64_t serial = 0;
   std::int64_t shift = 0;
@@ -76,7 +76,7 @@ void describe(Description<Axis>&);
 void describe(Description<Machine>&);
 void describe(Description<MoveAbsolute>&);
 
-// A machine file without problems, every key in it.
+// A machine file without problems that contains every key.
 extern const std::string_view kMachineYaml;
 
 }  // namespace example

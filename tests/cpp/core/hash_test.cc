@@ -150,7 +150,7 @@ TEST(Hash, DependsOnTheSeed) {
   EXPECT_NE(HashOf(example::Limits{}, 1), HashOf(example::Limits{}, 2));
 }
 
-// A journal kept today must agree with a replay made by tomorrow's build.
+// A journal recorded today must agree with a replay by a future build.
 TEST(Hash, StaysWhatItWas) {
   EXPECT_EQ(HashOf(example::Limits{}), 11222554587896004050u);
 }

@@ -1,5 +1,5 @@
-// EN-35: the elementary functions are ours, made of operations that round in one way. Held against the C library's in
-// long double, whose own errors are a thousandth of what is judged.
+// EN-35: the elementary functions are ours, made of operations whose rounding is defined. Compared with the C library's
+// in long double, whose own errors are a thousandth of the tolerance.
 #include "takt/core/maths.h"
 
 #include <gtest/gtest.h>

@@ -39,7 +39,8 @@ struct Item {
   std::uint64_t check = 0;
 };
 
-// EN-21: nothing lost, doubled, torn or out of order between two threads; what finds no room is told to the writer.
+// EN-21: nothing lost, duplicated, torn or out of order between two threads; the writer is notified of dropped
+// elements.
 TEST(SpscQueue, CarriesEverythingBetweenTwoThreads) {
   constexpr std::uint64_t kItems = 200'000;
   SpscQueue<Item> queue(64);
@@ -69,7 +70,7 @@ TEST(SpscQueue, CarriesEverythingBetweenTwoThreads) {
   EXPECT_FALSE(queue.TryPop(item));
 }
 
-// A reader that stalls costs counted drops, and the writer never waits.
+// A reader that stalls causes counted drops, and the writer never waits.
 TEST(SpscQueue, DropsAreExactlyWhatTheWriterWasTold) {
   constexpr std::uint64_t kItems = 100'000;
   SpscQueue<Item> queue(16);

@@ -30,7 +30,7 @@ std::vector<std::string> Problems(std::string_view text) {
   return texts;
 }
 
-// Problems of one axis with `lines` in place of or behind what every axis needs.
+// Problems of one axis with `lines` in place of or after the lines that every axis needs.
 std::vector<std::string> AxisProblems(const std::string& lines) {
   return Problems("axes:\n- name: x\n  velocity: 5\n  drive: {mode: csp}\n" + lines + "\n");
 }
@@ -70,7 +70,8 @@ TEST(YamlReader, ReadsEveryKindOfField) {  // EN-10, EN-11
   EXPECT_EQ(m.spare, 4);
 }
 
-// All errors of a file in one run, in order, each with its place, path, what was expected and the nearest known word.
+// All errors of a file in one run, in order, each with its position, path, the expected value and the nearest known
+// word.
 TEST(YamlReader, TellsAllProblemsAtOnce) {  // EN-10
   EXPECT_THAT(
       Problems(R"(titel: a
@@ -165,7 +166,7 @@ TEST(YamlReader, NumbersAreDecimal) {
 }
 
 TEST(YamlReader, WholeNumbersFitTheirType) {
-  EXPECT_THAT(AxisProblems("  drive: {mode: csp, offset: -32768}"), SizeIs(1));  // the key comes twice, nothing else
+  EXPECT_THAT(AxisProblems("  drive: {mode: csp, offset: -32768}"), SizeIs(1));  // only the key is repeated
   const auto drive = [](const std::string& text) { return Problems<example::Drive>("mode: csp\n" + text + "\n"); };
   EXPECT_THAT(drive("offset: -32768"), IsEmpty());
   EXPECT_THAT(drive("offset: 32767"), IsEmpty());
@@ -359,8 +360,8 @@ TEST(YamlReader, LargeFilesOfOneCharacterEndQuickly) {
   }
 }
 
-// Bytes of a good file are changed at random. Whatever comes out is told or read, never a crash; what is read is
-// written and read back as the very same object.
+// Random bytes of a valid file are changed. The result is read or reported, never a crash; a file that is read is
+// written and read back as the identical object.
 TEST(YamlReader, TenThousandMutationsOfAGoodFile) {
   std::mt19937_64 random(20261101);
   const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };

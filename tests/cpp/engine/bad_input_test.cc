@@ -1,5 +1,5 @@
-// Every number of every command an axis understands, made wrong, in every state an axis can be in: refused, and nothing
-// of the machine is different from its twin that was never asked.
+// Every number of every command of an axis, made invalid, in every state of an axis: refused, and the machine is
+// identical to a twin that did not receive the command.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -12,7 +12,7 @@
 namespace takt::engine {
 namespace {
 
-// One command of each kind that would be fine by itself.
+// One valid command of each kind.
 std::vector<axis::Command> GoodAxisCommands() {
   const Name master = Name::Of("a0");
   return {axis::MoveAbsolute{.position = 10},
@@ -69,7 +69,7 @@ struct AxisSituation {
   void (*bring)(Line&);
 };
 
-// Axis 1 is the one that is asked.
+// Axis 1 receives the commands.
 const AxisSituation kAxisSituations[] = {
     {"disabled", axis::PlcState::kDisabled,
      [](Line& l) {
@@ -141,19 +141,19 @@ TEST_P(BadInput, IsRefusedAndLeavesTheMachineLikeItsTwin) {
     }
   }
   EXPECT_GT(refused, 300);
-  EXPECT_EQ(asked.At(1).state, GetParam().state);  // the situation held to the end
+  EXPECT_EQ(asked.At(1).state, GetParam().state);  // the state was kept to the end
 }
 
 INSTANTIATE_TEST_SUITE_P(AllStates, BadInput, testing::ValuesIn(kAxisSituations),
                          [](const auto& info) { return std::string(info.param.name); });
 
-// Every command is among those that are made wrong, or has no number to be wrong.
+// Every command is among those that are made invalid, or has no number.
 TEST(BadInput, KnowsEveryCommand) {
   std::set<std::size_t> known;
   for (const axis::Command& good : GoodAxisCommands()) known.insert(good.index());
   const auto without_numbers = [](std::size_t index) {
     return index == axis::Command(axis::Power{}).index() || index == axis::Command(axis::Reset{}).index() ||
-           index == axis::Command(axis::Straighten{}).index() ||  // none that must be there: refused as a whole
+           index == axis::Command(axis::Straighten{}).index() ||  // no required number: refused as a whole
            index == axis::Command(axis::GearOut{}).index() || index == axis::Command(axis::CamTableSelect{}).index() ||
            index == axis::Command(axis::CamOut{}).index() || index == axis::Command(axis::CamRemove{}).index() ||
            index == axis::Command(axis::StepAbsolute{}).index() ||

@@ -1,5 +1,5 @@
-// Every number of every command that belts and poses understand, made wrong: refused with a sentence before it gets to
-// the cycle, and what got there anyhow changes nothing.
+// Every number of every command of belts and poses, made invalid: refused with a sentence before it reaches the cycle;
+// if it reaches the cycle, it changes nothing.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ std::vector<conveyor::Command> GoodBeltCommands() {
           conveyor::RemoveObject{1}, conveyor::ClearObjects{}};
 }
 
-// With an object that is visible and one that is not.
+// With one object that is visible and one that is not.
 struct BeltTwin {
   BeltTwin() {
     Give(conveyor::Detect{.x = 1});

@@ -17,7 +17,7 @@ TEST(CamIn, IsTheClosedForm) {
   Line line(WithCams(LineOf(2)));
   const Ticket cam = line.Give(1, Cam("a0", "lift"));
   line.Run(2);
-  EXPECT_TRUE(line.reached[cam]);  // both stand at 0
+  EXPECT_TRUE(line.reached[cam]);  // both are at 0
   EXPECT_EQ(line.At(1).state, PlcState::kSynchronizedMotion);
   EXPECT_EQ(line.At(1).master1, 1u);
   line.Give(0, axis::MoveAbsolute{.position = 120, .velocity = 80});
@@ -61,7 +61,7 @@ TEST_P(CamInAbsoluteRelative, LiesWhereItIsSaidTo) {
   line.Run(500);
   EXPECT_TRUE(line.reached[ticket]);
   const double m0 = master_absolute ? 0 : 30;
-  const double x0 = 2 * (30 - m0) + 5;  // where it was laid
+  const double x0 = 2 * (30 - m0) + 5;  // begin of the cam
   const bool shifted = !slave_absolute || start == axis::CamStart::kRelative;
   const double y0 = shifted ? 7 + 1 - 0.5 * FeedAt(x0) : 1;
   EXPECT_NEAR(line.At(1).set_position, y0 + 0.5 * FeedAt(x0), 1e-9);
@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(All, CamInAbsoluteRelative,
                                           testing::Values(axis::CamStart::kAbsolute, axis::CamStart::kRelative,
                                                           axis::CamStart::kRampIn)));
 
-// AX-48: with the cam laid over a master that stands far out, an absolute slave is in the cam's first cycle.
+// AX-48: with the cam placed for a master at a large position, an absolute slave is in the cam's first cycle.
 TEST(CamIn, BeginsInItsFirstCycle) {
   Line line(WithCams(LineOf(2)));
   line.Give(0, axis::MoveAbsolute{.position = -930});
@@ -89,7 +89,7 @@ TEST(CamIn, BeginsInItsFirstCycle) {
   EXPECT_NEAR(line.At(1).set_position, FeedAt(70), 1e-9);
 }
 
-// AX-48: true for exactly one cycle when the end is reached, or going back the beginning; not when it is left.
+// AX-48: true for exactly one cycle when the end is reached, or moving backwards the beginning; not when it is left.
 TEST(CamIn, SaysWhenItsEndIsPassed) {
   Line line(WithCams(LineOf(2)));
   line.Give(1, Cam("a0", "stroke"));
@@ -107,9 +107,9 @@ TEST(CamIn, SaysWhenItsEndIsPassed) {
     EXPECT_EQ(line.last[move].state, FeedbackState::kDone);
     return where.size();
   };
-  EXPECT_EQ(ends(200), 2u);  // the second one exactly where it stops
+  EXPECT_EQ(ends(200), 2u);  // the second one exactly at its target
   EXPECT_EQ(ends(230), 0u);  // left, not reached
-  EXPECT_EQ(ends(170), 1u);  // the beginning, on the way down
+  EXPECT_EQ(ends(170), 1u);  // the beginning, moving down
   EXPECT_EQ(ends(100), 1u);
   EXPECT_EQ(ends(150), 0u);
   EXPECT_EQ(ends(-100), 3u);  // 100, 0, -100
@@ -135,7 +135,7 @@ TEST(CamIn, HoldsItsEndsIfItIsNotPeriodic) {
   EXPECT_EQ(line.At(1).profile_ends, 2u);
 }
 
-// AX-48, AX-13: a slave that is elsewhere gets onto a moving cam within the limits of the command.
+// AX-48, AX-13: a slave at another position approaches a moving cam within the limits of the command.
 TEST(CamIn, RampsIn) {
   Line line(WithCams(LineOf(2)));
   line.Give(0, axis::MoveVelocity{.velocity = 50});
@@ -169,7 +169,7 @@ TEST(CamIn, RampsIn) {
   }
 }
 
-// AX-48: getting into step begins master_start_distance before master_sync_position, and ends there.
+// AX-48: synchronisation begins master_start_distance before master_sync_position, and ends there.
 TEST(CamIn, IsInStepAtTheSyncPosition) {
   for (const bool absolute : {true, false}) {
     Line line(WithCams(LineOf(2)));
@@ -188,7 +188,7 @@ TEST(CamIn, IsInStepAtTheSyncPosition) {
     }
     line.Run(3);
     EXPECT_TRUE(line.reached[ticket]);
-    const double zero = absolute ? 200 : 230;  // of the cycle it begins in
+    const double zero = absolute ? 200 : 230;  // of the cycle in which it begins
     for (int i = 0; i < 4000; ++i) {
       line.Step();
       ASSERT_TRUE(line.At(1).in_step);
@@ -217,7 +217,7 @@ TEST(CamIn, IsInStepAtItsBeginning) {
   EXPECT_NEAR(line.At(1).set_position, -5 + FeedAt(line.At(0).set_position - begin), 1e-9);
 }
 
-// AX-48: the next cam begins exactly where the one before ends, without a second getting into step.
+// AX-48: the next cam begins exactly at the end of the previous one, without another synchronisation.
 TEST(CamIn, IsFollowedByAnotherAtItsEnd) {
   for (const double sense : {1.0, -1.0}) {
     Line line(WithCams(LineOf(2)));
@@ -255,7 +255,7 @@ TEST(CamIn, IsFollowedByAnotherAtItsEnd) {
   }
 }
 
-// What waits behind a cam begins at its end, whatever it is; behind one that is over, at once.
+// A buffered command begins at the end of a cam, whatever it is; after a cam that is over, at once.
 TEST(CamIn, IsFollowedByAMove) {
   Line line(WithCams(LineOf(2)));
   line.Give(1, Cam("a0", "lift"));
@@ -283,7 +283,7 @@ TEST(CamIn, IsFollowedByAMove) {
   EXPECT_EQ(line.last[late].state, FeedbackState::kDone);
 }
 
-// AX-48: another cam, given anew, takes over without a step.
+// AX-48: another CamIn takes over without a step.
 TEST(CamIn, ChangesAtOnce) {
   Line line(WithCams(LineOf(2)));
   line.Give(0, axis::MoveVelocity{.velocity = 60});
@@ -298,7 +298,7 @@ TEST(CamIn, ChangesAtOnce) {
   EXPECT_NEAR(line.At(1).set_position, -1.5 * StrokeAt(line.At(0).set_position), 1e-9);
 }
 
-// AX-48: rotary axes: the turn that is nearest, whatever the cam's cycle.
+// AX-48: rotary axes: the nearest turn is used, whatever the cam's cycle.
 TEST(CamIn, TakesTheNearestTurn) {
   Line line(WithCams(WithStrong(LineOf(2, axis::AxisKind::kRotary), 1, 4)));
   line.Give(0, axis::MoveVelocity{.velocity = 300});
@@ -306,7 +306,7 @@ TEST(CamIn, TakesTheNearestTurn) {
   line.Run(5000);
   axis::CamIn cam = Cam("a0", "feed");
   cam.master_scaling = 100.0 / 360;
-  cam.slave_scaling = 18;  // a turn for a turn
+  cam.slave_scaling = 18;  // one turn per turn
   const Ticket ticket = line.Give(1, cam);
   line.Run(3000);
   EXPECT_TRUE(line.reached[ticket]);
@@ -318,7 +318,7 @@ TEST(CamIn, TakesTheNearestTurn) {
   }
 }
 
-// AX-48: after a million cycles of the cam nothing has crept in. (CAM-21: 1e-6 of a cycle.)
+// AX-48: no drift after a million cycles of the cam. (CAM-21: 1e-6 of a cycle.)
 TEST(CamIn, DoesNotDrift) {
   Machine machine = WithCams(LineOf(2, axis::AxisKind::kRotary));
   for (axis::AxisParams& a : machine.axes) {
@@ -332,7 +332,7 @@ TEST(CamIn, DoesNotDrift) {
   cam.slave_scaling = 0.01;
   line.Give(1, cam);
   line.Give(0, axis::MoveVelocity{.velocity = 36000});
-  double first = 0;  // the master's way
+  double first = 0;  // the master's displacement
   double before = line.At(0).set_position;
   for (int i = 0; i < 1100; ++i) {
     line.Step();
@@ -340,7 +340,7 @@ TEST(CamIn, DoesNotDrift) {
     first += step - 360 * std::round(step / 360);
     before = line.At(0).set_position;
   }
-  // From there on 36 degrees a cycle of the engine: 360/367 of the cam.
+  // From there on 36 degrees per cycle of the engine: 360/367 of the cam.
   const std::uint64_t cycles = 1020000;
   for (std::uint64_t i = 1; i <= cycles; ++i) {
     line.engine.RunCycle();
@@ -351,7 +351,7 @@ TEST(CamIn, DoesNotDrift) {
   EXPECT_GT(line.At(1).profile_ends, 1000000u);
 }
 
-// AX-48, AX-44: on with the velocity there is.
+// AX-48, AX-44: continues at its present velocity.
 TEST(CamOut, LetsGo) {
   Line line(WithCams(LineOf(2)));
   line.Give(1, Cam("a0", "feed"));
@@ -370,7 +370,7 @@ TEST(CamOut, LetsGo) {
   EXPECT_EQ(line.last[again].error, ErrorId::kState);
 }
 
-// AX-06, AX-48, AX-71: what cannot be is refused, and what moves goes on.
+// AX-06, AX-48, AX-71: invalid commands are refused, and motions continue.
 TEST(CamIn, IsRefused) {
   Machine machine = WithCams(LineOf(3));
   machine.axes[2].requires_reference = true;
@@ -441,7 +441,7 @@ TEST(CamIn, HasAPhase) {
   }
 }
 
-// AX-13: a cam that leads out of the SW limits stops inside them.
+// AX-13: a cam that would lead beyond the SW limits stops within them.
 TEST(CamIn, StaysInsideTheSoftLimits) {
   Machine machine = WithCams(LineOf(2));
   machine.axes[1].limits.upper = 15;

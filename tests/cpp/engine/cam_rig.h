@@ -7,7 +7,7 @@
 
 namespace takt::engine {
 
-// y and its derivatives over the share s of a way of 1, raised by 1: the polynomial 3-4-5.
+// y and its derivatives over the share s of a length of 1, raised by 1: the polynomial 3-4-5.
 struct Polynomial345 {
   static double Y(double s) { return s * s * s * (10 - 15 * s + 6 * s * s); }
   static double Dy(double s) { return 30 * s * s * (1 - s) * (1 - s); }
@@ -17,21 +17,21 @@ struct Polynomial345 {
 inline cam::CamPoint Rest(double x, double y) {
   return {x, y, 0.0, 0.0};
 }
-// Up by 20 within 100.
+// Rises by 20 within 100.
 inline cam::CamParams Lift() {
   cam::CamParams p;
   p.name = "lift";
   p.points = {Rest(0, 0), Rest(100, 20)};
   return p;
 }
-// Over and over; each time 20 further.
+// Cyclic; each cycle advances by 20.
 inline cam::CamParams Feed() {
   cam::CamParams p = Lift();
   p.name = "feed";
   p.cyclic = true;
   return p;
 }
-// Up by 20 within 50, and down again within 50.
+// Rises by 20 within 50, and falls again within 50.
 inline cam::CamParams Stroke() {
   cam::CamParams p;
   p.name = "stroke";

@@ -11,7 +11,7 @@ namespace {
 
 using axis::PlcState;
 
-// AX-55: a chain against the order of the axes has no lag, though it was made at run time and from its end.
+// AX-55: a chain against the order of the axes has no lag, though it was made at run time, beginning at its end.
 TEST(Chain, HasNoLag) {
   Line line(LineOf(5));
   for (std::size_t i = 0; i < 4; ++i) line.Give(i, Gear(("a" + std::to_string(i + 1)).c_str(), -1));
@@ -24,7 +24,7 @@ TEST(Chain, HasNoLag) {
   EXPECT_EQ(line.At(0).set_position, 100);
 }
 
-// AX-55: nobody follows himself, neither at once nor through others, nor through what still waits.
+// AX-55: no axis follows itself, neither directly nor through other axes, nor through buffered commands.
 TEST(Chain, MakesNoLoop) {
   Line line(LineOf(3));
   line.Give(1, Gear("a0"));
@@ -40,14 +40,14 @@ TEST(Chain, MakesNoLoop) {
   EXPECT_EQ(line.last[itself].error, ErrorId::kParameter);
   EXPECT_EQ(line.last[nobody].error, ErrorId::kUnknownTarget);
   EXPECT_EQ(line.At(0).state, PlcState::kStandstill);
-  line.Give(1, axis::Halt{});  // now there is no loop any more
+  line.Give(1, axis::Halt{});  // now there is no loop
   line.Run(50);
   const Ticket good = line.Give(0, Gear("a2"));
   line.Run(3);
   EXPECT_EQ(line.last[good].state, FeedbackState::kActive);
 }
 
-// AX-55: what is coupled stops together, whoever fails.
+// AX-55: coupled axes stop together, whichever of them fails.
 TEST(Chain, StopsTogether) {
   for (std::size_t failing = 0; failing < 3; ++failing) {
     SCOPED_TRACE(failing);
@@ -60,7 +60,7 @@ TEST(Chain, StopsTogether) {
     for (std::size_t i = 0; i < 3; ++i) begin[i] = line.At(i).set_position;
     line.engine.faults(failing).drive_fault = true;
     line.Run(500);
-    // The jerk alone: 5000 u/s2 are not reached, and it takes 2 sqrt(v / j) with v / 2 on average.
+    // Limited by jerk alone: 5000 u/s2 are not reached, and it takes 2 sqrt(v / j) with v / 2 on average.
     const double stop = 100 * std::sqrt(100 / 100000.0);
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_EQ(line.At(i).set_velocity, 0) << i;
@@ -72,7 +72,7 @@ TEST(Chain, StopsTogether) {
   }
 }
 
-// AX-13, AX-35, AX-55: random couplings, cams, moves, what lies on top of them, stops and faults: no step, no limit
+// AX-13, AX-35, AX-55: random couplings, cams, moves, superimposed motions, stops and faults: no step, no limit
 // exceeded.
 TEST(Coupling, KeepsTheLimitsInARandomWalk) {
   for (unsigned seed = 0; seed < 20; ++seed) {

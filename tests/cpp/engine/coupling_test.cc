@@ -11,7 +11,7 @@ namespace {
 
 using axis::PlcState;
 
-// AX-43: the velocity is locked; what is lost until then is not made up, and from then on nothing is lost.
+// AX-43: the velocity is locked; the displacement lost until then is not recovered, and nothing is lost from then on.
 TEST(Gear, LocksTheVelocityAndKeepsWhatWasLost) {
   Line line(WithStrong(LineOf(2), 1, 2));
   line.Give(0, axis::MoveVelocity{.velocity = 100});
@@ -43,7 +43,7 @@ TEST(Gear, LocksTheVelocityAndKeepsWhatWasLost) {
   }
 }
 
-// AX-43: another ratio on the fly takes over without a step.
+// AX-43: another ratio in motion takes over without a step.
 TEST(Gear, ChangesItsRatioOnTheFly) {
   Line line(LineOf(2));
   line.Give(0, axis::MoveVelocity{.velocity = 100});
@@ -56,7 +56,8 @@ TEST(Gear, ChangesItsRatioOnTheFly) {
   EXPECT_NEAR(line.At(1).set_velocity, -50, 1e-9);
 }
 
-// AX-43: a master beyond what the slave can do: as fast as it can, and in step again, at its place, once it can.
+// AX-43: a master beyond the slave's limits: the slave moves as fast as it can, and synchronises again, at its
+// position.
 TEST(Gear, FallsOutOfStepWithinItsLimitsOnly) {
   Line line(LineOf(2));
   line.Give(1, Gear("a0", 2));
@@ -74,7 +75,7 @@ TEST(Gear, FallsOutOfStepWithinItsLimitsOnly) {
   EXPECT_EQ(line.At(1).limited_by, LimitedBy::kNothing);
 }
 
-// The ramps are those asked for, each in its own direction, also where they differ.
+// The ramps are those of the command, each in its own direction, also if they differ.
 TEST(Gear, KeepsEachOfItsRamps) {
   Line line(LineOf(2));
   line.Give(0, axis::MoveVelocity{.velocity = 200});
@@ -100,8 +101,8 @@ TEST(Gear, KeepsEachOfItsRamps) {
   EXPECT_NEAR(smallest, -200, 1e-6);
 }
 
-// AX-43, AX-47: nothing is lost to a master that is measured, and moves by fits and starts. Where increments are coarse
-// its velocity has to be filtered.
+// AX-43, AX-47: nothing is lost to a measured master with irregular motion. With coarse increments its velocity must be
+// filtered.
 TEST(Gear, KeepsItsPlaceBehindAMeasuredMaster) {
   for (const double coarse : {10000.0, 1000.0, 100.0}) {
     SCOPED_TRACE(coarse);
@@ -130,7 +131,7 @@ TEST(Gear, KeepsItsPlaceBehindAMeasuredMaster) {
   }
 }
 
-// AX-55: what is measured of a master with a fault means nothing, until it was reset and someone couples anew.
+// AX-55: the measured position of a master with a fault is invalid, until it is reset and a new coupling is made.
 TEST(Gear, LeavesAMeasuredMasterThatFails) {
   for (const bool powered : {true, false}) {
     SCOPED_TRACE(powered);
@@ -167,7 +168,7 @@ TEST(Gear, LeavesAMeasuredMasterThatFails) {
   }
 }
 
-// AX-43: a slave no stronger than its measured master does not run past where that stops by more than it must.
+// AX-43: a slave no faster than its measured master overshoots its stopping position by no more than necessary.
 TEST(Gear, StopsWithAMeasuredMaster) {
   Line line(LineOf(2));
   axis::GearIn gear = Gear("a0");
@@ -185,7 +186,7 @@ TEST(Gear, StopsWithAMeasuredMaster) {
   EXPECT_TRUE(line.At(1).in_step);
 }
 
-// A master whose set position means nothing is none, and what the axis does goes on.
+// A master without a valid set position is refused, and the motion of the axis continues.
 TEST(Gear, NeedsAMasterThatIsOn) {
   Line line(LineOf(2));
   line.Give(0, axis::Power{.enable = false});
@@ -202,7 +203,7 @@ TEST(Gear, NeedsAMasterThatIsOn) {
   EXPECT_EQ(line.last[good].state, FeedbackState::kActive);
 }
 
-// AX-44: the axis goes on with the velocity it has, and belongs to no one.
+// AX-44: the axis continues at its velocity, without a master.
 TEST(Gear, LetsGo) {
   Line line(LineOf(2));
   line.Give(0, axis::MoveVelocity{.velocity = 100});
@@ -227,7 +228,8 @@ TEST(Gear, CannotBeLetGoWhereThereIsNone) {
   EXPECT_EQ(line.last[out].error, ErrorId::kState);
 }
 
-// AX-12: a buffered gear waits for its turn; nothing waits behind a gear, but behind one with a place.
+// AX-12: a buffered gear waits for its turn; nothing can be buffered after a gear, except after one with a sync
+// position.
 TEST(Gear, TakesItsTurn) {
   Line line(LineOf(2));
   line.Give(0, axis::MoveVelocity{.velocity = 50});
@@ -255,8 +257,8 @@ TEST(Gear, TakesItsTurn) {
   EXPECT_EQ(line.At(1).state, PlcState::kStandstill);
 }
 
-// AX-45, the diagram of PLCopen Part 1 in numbers: the master passes 150 with 100 u/s; the slave begins at 150 - 100
-// and is at 40 with 50 u/s when the master is at 150, and in step from there.
+// AX-45, the diagram of PLCopen Part 1 in numbers: the master passes 150 at 100 u/s; the slave begins at 150 - 100 and
+// is at 40 with 50 u/s when the master is at 150, and in step from there.
 TEST(GearInPos, IsInStepAtTheSyncPosition) {
   Line line(LineOf(2));
   line.Give(0, axis::MoveVelocity{.velocity = 100});
@@ -286,8 +288,8 @@ TEST(GearInPos, IsInStepAtTheSyncPosition) {
   }
 }
 
-// AX-45: on rotary axes the next turn ahead counts; the sync mode says which turn of the slave, alike in both senses
-// and with both signs of the ratio.
+// AX-45: on rotary axes the next turn ahead is used; the sync mode selects the turn of the slave, in both senses and
+// with both signs of the ratio.
 TEST(GearInPos, ChoosesTheTurn) {
   for (const axis::SyncMode mode : {axis::SyncMode::kShortest, axis::SyncMode::kCatchUp, axis::SyncMode::kSlowDown}) {
     for (const auto& [sense, ratio] : {std::pair{1, 1}, {-1, 1}, {1, -1}, {-1, -1}}) {
@@ -314,7 +316,7 @@ TEST(GearInPos, ChoosesTheTurn) {
       EXPECT_TRUE(line.reached[ticket]);
       const double apart = sense * ratio * line.At(1).set_position - sense * line.At(0).set_position;
       EXPECT_NEAR(std::fmod(apart + 1080, 360), 70, 1e-6);
-      // Both begin at the same place: 70 ahead is nearer than 290 behind.
+      // Both begin at the same position: 70 ahead is nearer than 290 behind.
       const bool ahead = mode != axis::SyncMode::kSlowDown;
       EXPECT_EQ(fastest > 210, ahead);
       EXPECT_EQ(slowest < 190, !ahead);
@@ -322,7 +324,7 @@ TEST(GearInPos, ChoosesTheTurn) {
   }
 }
 
-// AX-45: a master that stands between the beginning and the place, or turns round on a circle.
+// AX-45: a master at rest between the begin and the sync position, or one that reverses on a circle.
 TEST(GearInPos, BeginsWhereverTheMasterComesFrom) {
   axis::GearInPos gear;
   gear.master = Name::Of("a0");
@@ -340,7 +342,7 @@ TEST(GearInPos, BeginsWhereverTheMasterComesFrom) {
     EXPECT_NEAR(line.At(1).set_position, 150, 1e-9);
   }
   {
-    Line line(LineOf(2));  // it has passed the place: when it comes back
+    Line line(LineOf(2));  // it has passed the position: when it returns
     line.Give(0, axis::MoveAbsolute{.position = 180});
     line.Run(1500);
     const Ticket ticket = line.Give(1, gear);
@@ -379,7 +381,7 @@ TEST(GearInPos, HasItsPlaceInsideTheLimits) {
   EXPECT_EQ(line.last[ticket].error, ErrorId::kTargetBehindLimit);
 }
 
-// AX-46: a shift that begins while the axis is getting into step counts in full, and only the shift.
+// AX-46: a shift that begins during the synchronisation counts in full, and only the shift.
 TEST(Phasing, CountsInFullOnTheWayIntoStep) {
   double lead[2] = {0, 0};
   for (const bool shifts : {false, true}) {
@@ -399,7 +401,7 @@ TEST(Phasing, CountsInFullOnTheWayIntoStep) {
   EXPECT_NEAR(lead[1] - lead[0], 10, 1e-9);
 }
 
-// AX-46: the slave goes by the shift times the ratio, and keeps it.
+// AX-46: the slave moves by the shift times the ratio, and keeps it.
 TEST(Phasing, ShiftsTheSlaveByTheRatio) {
   Line line(WithStrong(LineOf(2), 1, 2));
   line.Give(0, axis::MoveVelocity{.velocity = 50});

@@ -1,4 +1,4 @@
-// An engine in lock step with drives in another process, axis by axis.
+// An engine in lock step with external drives, axis by axis.
 #pragma once
 
 #include <map>
@@ -8,9 +8,9 @@
 
 namespace takt::engine {
 
-inline constexpr std::uint32_t kMissing = 5;  // answers in a row
+inline constexpr std::uint32_t kMissing = 5;  // consecutive answers
 
-// Three axes, each with another kind of drive, and one that has nothing to do with them.
+// Three axes, each with another kind of drive, and an independent one.
 inline Machine AxisPerMode() {
   const char* text = R"(
 name: modes
@@ -33,7 +33,7 @@ axes:
   return *loaded.machine;
 }
 
-// An engine with its plant elsewhere.
+// An engine with an external plant.
 class DriveRig {
  public:
   explicit DriveRig(const Machine& m = WithExternalDrives(AxisPerMode(), kMissing), bool journal = false)
@@ -59,12 +59,12 @@ class DriveRig {
     for (std::size_t i = 0; i < machine.axes.size(); ++i) Give(i, axis::Power{});
     Run(200);
   }
-  // All at 100 u/s.
+  // Moves all at 100 u/s.
   void Move() {
     for (std::size_t i = 0; i < machine.axes.size(); ++i) Give(i, axis::MoveVelocity{.velocity = 100});
     Run(300);
   }
-  // From now on nothing is heard of this axis.
+  // From now on the drive of this axis does not answer.
   void Silence(std::size_t axis) {
     plant.answers = [axis](const DriveSample& s) { return s.axis != axis; };
   }

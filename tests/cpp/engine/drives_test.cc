@@ -1,4 +1,4 @@
-// Drives in other processes, from the engine's side (AX-87, EN-26): what they answer, in time, late or wrongly.
+// External drives, from the engine's side (AX-87, EN-26): answers in time, late or invalid.
 #include "takt/engine/drives.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ bool Same(const axis::Outputs& a, const axis::Outputs& b) {
   return HashOf(a) == HashOf(b);
 }
 
-// AX-87, EN-26: in lock step an axis does not know where its drive is: the same numbers, bit for bit.
+// AX-87, EN-26: in lock step an external drive makes no difference: identical values, bit for bit.
 TEST(ExternalDrives, InLockStepAreTheBuiltInOnes) {
   const Machine machine = FullMachine();
   const auto commands = Scenario(machine);
@@ -43,8 +43,7 @@ TEST(ExternalDrives, InLockStepAreTheBuiltInOnes) {
   EXPECT_GT(moving, 3000u);
 }
 
-// AX-87: one answer less than the machine file says, again and again: nothing happens, and what is measured goes on
-// where the axis is.
+// AX-87: repeatedly one missing answer less than missing_cycles: no error, and the actual position is extrapolated.
 TEST(ExternalDrives, FewAnswersMissingAreNothing) {
   DriveRig rig;
   rig.PowerOn();
@@ -57,13 +56,13 @@ TEST(ExternalDrives, FewAnswersMissingAreNothing) {
       ASSERT_EQ(rig.At(i).state, axis::PlcState::kContinuousMotion) << i;
       ASSERT_NEAR(rig.At(i).set_velocity, 100, 1e-9) << i;
       ASSERT_NEAR(rig.At(i).actual_velocity, 100, 5) << i;
-      // 4 cycles at 100 u/s are 0.4 u: the axis is not where it was heard last.
+      // 4 cycles at 100 u/s are 0.4 u: the axis is not at its last received position.
       ASSERT_NEAR(rig.At(i).actual_position, rig.plant.states[i].load_position, 0.15) << i << " in cycle " << c;
     }
   }
 }
 
-// AX-87: answers that always come late: by their number, the axis knows how late.
+// AX-87: answers that are always late: their cycle number tells the axis their age.
 TEST(ExternalDrives, LateAnswersAreCarriedOn) {
   DriveRig rig;
   std::vector<DriveSample> held;
@@ -83,12 +82,13 @@ TEST(ExternalDrives, LateAnswersAreCarriedOn) {
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(rig.At(i).state, axis::PlcState::kContinuousMotion) << i;
     EXPECT_NEAR(rig.At(i).actual_velocity, 100, 1) << i;
-    // Each cycle of delay unaccounted for would be 0.1 u. What the drives themselves lag behind is less.
+    // Each unknown cycle of delay would be 0.1 u. The lag of the drives themselves is less.
     EXPECT_NEAR(rig.At(i).following_error, 0, 0.06) << i;
   }
 }
 
-// AX-87: engine and plants may be started in any order: a drive not heard yet is no fault, but cannot be switched on.
+// AX-87: engine and plants may be started in any order: a drive that has not answered yet is no fault, but cannot be
+// switched on.
 TEST(ExternalDrives, NotHeardYetIsNoFault) {
   DriveRig rig;
   rig.Silence(0);
@@ -100,7 +100,7 @@ TEST(ExternalDrives, NotHeardYetIsNoFault) {
   EXPECT_EQ(rig.At(0).state, axis::PlcState::kErrorStop);
   rig.Done(0, axis::Reset{});
 
-  rig.plant.states[0].counter_origin = 4'000'000;  // far away from where it counts as 0
+  rig.plant.states[0].counter_origin = 4'000'000;  // far away from its zero
   rig.HearAll();
   rig.Run(5);
   EXPECT_EQ(rig.At(0).error, ErrorId::kNone);
@@ -109,7 +109,7 @@ TEST(ExternalDrives, NotHeardYetIsNoFault) {
   EXPECT_EQ(rig.last[again].state, FeedbackState::kDone);
 }
 
-// AX-87: samples that are old, come twice, answer what was not asked yet, or are nobody's change nothing.
+// AX-87: samples that are old, repeated, answer a future set point, or belong to no axis change nothing.
 TEST(ExternalDrives, WrongSamplesHaveNoEffect) {
   DriveRig rig, plain;
   for (DriveRig* r : {&rig, &plain}) {
@@ -136,7 +136,7 @@ TEST(ExternalDrives, WrongSamplesHaveNoEffect) {
   EXPECT_EQ(plain.engine.figures().samples_refused, 0u);
 }
 
-// EN-07, AX-87: what was heard is in the journal: the run comes out the same without any plant, losses and all.
+// EN-07, AX-87: received samples are in the journal: the run is reproduced without any plant, losses included.
 TEST(ExternalDrives, AJournalNeedsNoPlant) {
   DriveRig rig(WithExternalDrives(AxisPerMode(), kMissing), true);
   std::mt19937 random(2);
@@ -169,7 +169,7 @@ TEST(ExternalDrives, AJournalNeedsNoPlant) {
   }
 }
 
-// EN-10: the machine file names axes that are there, each once.
+// EN-10: the machine file names existing axes, each once.
 TEST(ExternalDrives, TheMachineFileIsChecked) {
   const std::string axes = "name: m\naxes:\n  - {name: x, limits: {velocity: 1, acceleration: 1, jerk: 1}}\n";
   const auto problems = [&](const std::string& external) {

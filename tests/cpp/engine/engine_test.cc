@@ -1,4 +1,4 @@
-// The engine as a whole: its descriptions, its first cycles, the order of axes.
+// The whole engine: its descriptions, its first cycles, the order of axes.
 #include "takt/engine/engine.h"
 
 #include <gmock/gmock.h>
@@ -13,8 +13,7 @@
 namespace takt::engine {
 namespace {
 
-// EN-11: nothing of the machine file, the commands, the published state and the hashed state is left out of its
-// description.
+// EN-11: the descriptions of the machine file, the commands, the published state and the hashed state are complete.
 TEST(Descriptions, AreComplete) {
   EXPECT_THAT(Verify(TypeOf<Machine>()), testing::IsEmpty());
   EXPECT_THAT(Verify(TypeOf<axis::Outputs>()), testing::IsEmpty());
@@ -25,8 +24,8 @@ TEST(Descriptions, AreComplete) {
   for (const Verb& verb : Verbs()) EXPECT_THAT(Verify(*verb.arguments), testing::IsEmpty()) << verb.name;
 }
 
-// EN-03: the follower stands first in the file and still sees its master's set point of the same cycle, not of the one
-// before.
+// EN-03: the follower is first in the file and still uses its master's set point of the same cycle, not of the previous
+// one.
 TEST(Order, FollowersSeeTheirMastersValueOfTheSameCycle) {
   const Machine machine = FullMachine();
   Engine engine(machine);
@@ -56,7 +55,7 @@ TEST(Order, FollowersSeeTheirMastersValueOfTheSameCycle) {
   EXPECT_EQ(engine.outputs(master).set_velocity, 0);
 }
 
-// An axis that was told to switch on is not disabled, though its drive is not ready yet.
+// An axis that is being switched on is not disabled, though its drive is not ready yet.
 TEST(Engine, IsNotDisabledWhileADriveGetsReady) {
   const Machine machine = FullMachine();
   Engine engine(machine);
@@ -67,7 +66,7 @@ TEST(Engine, IsNotDisabledWhileADriveGetsReady) {
   EXPECT_FALSE(engine.all_disabled());
 }
 
-// The first cycle sees what the machine is like, not zeros.
+// The first cycle has the state of the machine, not zeros.
 TEST(Engine, SeesTheMachineInItsFirstCycle) {
   Machine machine = FullMachine();
   machine.simulation.servos[0].switches.limit_positive.from = -1;

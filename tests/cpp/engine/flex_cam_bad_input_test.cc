@@ -1,5 +1,5 @@
-// Every number of every command a cam module understands, made wrong: refused with a sentence before it gets to the
-// cycle, and what got there anyhow moves no axis out of its limits.
+// Every number of every command of a cam module, made invalid: refused with a sentence before it reaches the cycle; if
+// it reaches the cycle, it moves no axis out of its limits.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A web that turns, a knife that follows it, two more cams to change to.
+// A rotary web, a knife that follows it, two more cams.
 const char* kWebText = R"(
 name: bad
 axes:
@@ -46,7 +46,7 @@ std::vector<flexcam::Command> GoodModuleCommands() {
 
 constexpr std::size_t kKnife = 0, kWeb = 1;
 
-// The web turns and the module is on its cam.
+// The web rotates and the module is on its cam.
 void Synchronise(Line& line) {
   line.Give(kWeb, axis::MoveVelocity{.velocity = 100});
   line.engine.Submit(ToModule(line.machine, flexcam::Control{.regulator_on = true}));
@@ -113,8 +113,8 @@ TEST(FlexCamBadInput, SaysWhatWasExpected) {
   EXPECT_THAT(ParseCommand(machine, "cuter", "control", "").sentence, HasSubstr("did you mean cutter?"));
 }
 
-// CAM-10, AX-13: C++ programs may give what texts cannot say. Set points stay numbers within the axis' limits, whatever
-// the module is then told to do with it.
+// CAM-10, AX-13: C++ programs may give values that texts cannot express. Set points stay finite and within the axis'
+// limits, whatever commands follow.
 TEST(FlexCamBadInput, MovesNoAxisOutOfItsLimits) {
   using flexcam::Control;
   const std::vector<flexcam::Command> then = {Control{.offset_slave = 3.0},
@@ -152,7 +152,7 @@ TEST(FlexCamBadInput, MovesNoAxisOutOfItsLimits) {
   }
 }
 
-// Every command is among those that are made wrong, or has no real number to be wrong.
+// Every command is among those that are made invalid, or has no real number.
 TEST(FlexCamBadInput, KnowsEveryCommand) {
   std::set<std::size_t> known;
   for (const flexcam::Command& good : GoodModuleCommands()) known.insert(good.index());
@@ -163,7 +163,8 @@ TEST(FlexCamBadInput, KnowsEveryCommand) {
   EXPECT_EQ(known.size(), std::variant_size_v<flexcam::Command>);
 }
 
-// CAM-10, EN-22: a slot that no module has is refused, and nothing is different from a twin that was never asked.
+// CAM-10, EN-22: a slot that no module has is refused, and the state is identical to that of a twin without the
+// command.
 TEST(FlexCamBadInput, RefusesSlotsThatAreNotThere) {
   Line asked(BadMachine());
   Line twin(BadMachine());
@@ -185,7 +186,7 @@ TEST(FlexCamBadInput, RefusesSlotsThatAreNotThere) {
   }
 }
 
-// The same for numbers that no text could give: refused as axes refuse them.
+// The same for values that are not finite: refused as axes refuse them.
 TEST(FlexCamBadInput, RefusesNumbersThatAreNone) {
   Line asked(BadMachine());
   Line twin(BadMachine());

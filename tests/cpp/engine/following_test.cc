@@ -1,4 +1,4 @@
-// Axes that follow a master: coupling, the way of their set points, faults on either side.
+// Axes that follow a master: coupling, their set points, faults on either side.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,7 +33,7 @@ Machine Pair(double ratio) {
   return machine;
 }
 
-// Both axes turn fast; one turn of the master is one of the follower.
+// Both axes rotate fast; one turn of the master is one of the follower.
 Machine FastPair(axis::AxisKind follower) {
   Machine machine = Pair(1);
   for (axis::AxisParams& a : machine.axes) {
@@ -74,8 +74,8 @@ class Couple {
   FeedbackEvent last;
 };
 
-// AX-10: it takes no motion commands of its own and does not let itself be disturbed by one. (Halt and stop of a
-// follower are the master's: AX-101.)
+// AX-10: it refuses motion commands of its own and is not disturbed by them. (Halt and stop of a follower apply to the
+// master: AX-101.)
 TEST(Following, RefusesCommandsOfItsOwn) {
   Couple c(Pair(2));
   c.PowerOn();
@@ -110,7 +110,8 @@ TEST(Following, MovesAsTheMasterTimesTheRatio) {
   }
 }
 
-// AX-101: the master does not move until its follower is powered, well and where it belongs; then at once, in step.
+// AX-101: the master does not move until its follower is powered, without a fault and in position; then at once, in
+// step.
 TEST(Following, TheMasterWaitsForItsFollower) {
   for (const int pause : {0, 1, 2, 3, 5, 50}) {
     Couple c(Pair(1));
@@ -138,7 +139,7 @@ TEST(Following, TheMasterWaitsForItsFollower) {
   }
 }
 
-// AX-02: over thousands of turns of either, which are taken out of their positions now and then.
+// AX-02: over thousands of turns of either, which are removed from their positions from time to time.
 TEST(Following, GoesOnOverThousandsOfTurns) {
   for (const axis::AxisKind kind : {axis::AxisKind::kLinear, axis::AxisKind::kRotary}) {
     Couple c(FastPair(kind));
@@ -154,13 +155,13 @@ TEST(Following, GoesOnOverThousandsOfTurns) {
       ASSERT_LT(std::abs(c.follower().following_error), 1) << i;
       ASSERT_EQ(c.follower().state, PlcState::kSynchronizedMotion);
     }
-    // And coupled anew after that it stays where it is.
+    // Coupled again after that, it keeps its position.
     c.Give(kMaster, axis::Halt{});
     c.Run(1000);
     c.Give(kFollower, axis::Power{.enable = false});
     c.Run(100);
     ASSERT_EQ(c.follower().state, PlcState::kDisabled);
-    ASSERT_EQ(c.master().state, PlcState::kDisabled);  // AX-101: what switches one off switches all off
+    ASSERT_EQ(c.master().state, PlcState::kDisabled);  // AX-101: switching one off switches all off
     const double stands = c.follower().actual_position;
     c.PowerOn();
     EXPECT_EQ(c.follower().state, PlcState::kSynchronizedMotion);
@@ -169,7 +170,7 @@ TEST(Following, GoesOnOverThousandsOfTurns) {
   }
 }
 
-// The master's loop opens in motion: the follower comes to rest along its own ramp, and couples again later.
+// The master's loop opens in motion: the follower stops along its own ramp, and couples again later.
 TEST(Following, ComesToRestWhenTheMasterIsLost) {
   Couple c(Pair(1));
   c.PowerOn();
@@ -198,8 +199,8 @@ TEST(Following, ComesToRestWhenTheMasterIsLost) {
   EXPECT_EQ(c.follower().state, PlcState::kSynchronizedMotion);
 }
 
-// A fault of the follower: the master stops with error 7, its loop closed; one that stands has no fault, and does not
-// begin to move (AX-101). After a reset of both they are coupled again.
+// A fault of the follower: the master stops with error 7, its loop closed; a master at rest has no fault, and does not
+// start to move (AX-101). After a reset of both they are coupled again.
 TEST(Following, FaultStopsTheMaster) {
   Couple c(Pair(1));
   c.PowerOn();
@@ -223,7 +224,7 @@ TEST(Following, FaultStopsTheMaster) {
   c.Give(kMaster, axis::MoveAbsolute{.position = 50});
   c.Run(1000);
   EXPECT_NEAR(c.follower().set_position - c.master().set_position, 0, 0.01);
-  // AX-113: in motion the one whose fault it was is named.
+  // AX-113: in motion, the axis with the fault is named.
   c.Give(kMaster, axis::MoveVelocity{.velocity = 400});
   c.Run(300);
   c.engine.faults(kFollower).drive_fault = true;
@@ -236,7 +237,7 @@ TEST(Following, FaultStopsTheMaster) {
   EXPECT_TRUE(c.master().loop_closed);
 }
 
-// AX-83: a follower that was switched on while it stood on a limit switch is not taken further out by its master.
+// AX-83: a follower that was switched on while on a limit switch is not moved further out by its master.
 TEST(Following, DoesNotFollowFurtherOntoALimitSwitch) {
   for (const double side : {1.0, -1.0}) {
     Machine machine = Pair(1);
@@ -261,7 +262,7 @@ TEST(Following, DoesNotFollowFurtherOntoALimitSwitch) {
   }
 }
 
-// AX-05: the narrower limit of the following error at rest holds for a follower when it had time to settle, too.
+// AX-05: the narrower limit of the following error at rest holds for a follower once it had time to settle, too.
 TEST(Following, HasTimeToSettle) {
   Machine machine = Pair(1);
   axis::AxisParams& f = machine.axes[kFollower];
@@ -307,7 +308,7 @@ TEST(Following, FaultInMotionBrakesTheMasterSmoothly) {
   EXPECT_EQ(c.master().set_velocity, 0);
 }
 
-// AX-101: whatever stops one of them, all stop together, along the master's ramp and in step.
+// AX-101: if one of them is stopped for any reason, all stop together, along the master's ramp and in step.
 TEST(Following, WhatStopsOneStopsAll) {
   struct Cause {
     const char* name;
@@ -329,7 +330,7 @@ TEST(Following, WhatStopsOneStopsAll) {
       {"limit switch of the follower", [](Couple&) {}, PlcState::kErrorStop, PlcState::kErrorStop, kFollower},
       {"limit switch of the master", [](Couple&) {}, PlcState::kErrorStop, PlcState::kSynchronizedMotion, kMaster},
   };
-  constexpr double kSwitch = 150;  // u of the master, further than it is when the others happen
+  constexpr double kSwitch = 150;  // [u] of the master, further than its position at the other stops
   for (const double ratio : {1.0, 2.0}) {
     for (const Cause& cause : causes) {
       SCOPED_TRACE(cause.name);
@@ -364,12 +365,12 @@ TEST(Following, WhatStopsOneStopsAll) {
   }
 }
 
-// AX-101: where a follower stands elsewhere when it is powered anew, that is a skew, and no new zero. Nothing moves
+// AX-101: if a follower is at another position when it is powered again, that is a skew, and no new zero. Nothing moves
 // until a command straightens it, at its velocity.
 TEST(Following, ASkewSurvivesPowerOff) {
   Machine machine = Pair(1);
   machine.axes[kFollower].follows->skew_warning = 0.5;
-  machine.axes[kFollower].follows->offset = 5;  // and it stands at 0
+  machine.axes[kFollower].follows->offset = 5;  // and it is at 0
   Couple c(machine);
   for (int times = 0; times < 3; ++times) {
     c.PowerOn();
@@ -407,7 +408,7 @@ TEST(Following, ASkewSurvivesPowerOff) {
   EXPECT_TRUE(c.follower().in_step);
 }
 
-// AX-101: a follower that does not keep up stops all.
+// AX-101: a follower that lags too far stops all.
 TEST(Following, SupervisesTheSkew) {
   Machine machine = Pair(1);
   machine.axes[kFollower].follows->largest_skew = 1;

@@ -11,7 +11,7 @@ namespace {
 
 using planar::ObjectState;
 
-// A lift beside each of two levels; the planet is the first mover of the file, the star comes behind it.
+// A lift beside each of two levels; the planet is the first mover of the file, the star comes after it.
 const std::string kLevelsText = R"(
 name: levels
 axes:
@@ -32,7 +32,7 @@ movers:
 constexpr ObjectInfo kPlanet{ObjectKind::kMover, 1};
 constexpr ObjectInfo kStar{ObjectKind::kMover, 2};
 
-// All movers turn as far as they like.
+// All movers may rotate without limit.
 std::string Levels() {
   const std::string name = "WIDE",
                     window = "{maximum: {velocity: 360, acceleration: 3600, jerk: 72000}, lower: -90, upper: 90}";
@@ -59,13 +59,13 @@ TEST(Formations, GoOverThePartsAndWithThem) {
   rig.each_cycle = [&] { ASSERT_NEAR(Apart(rig), 120, 1e-9); };
   EXPECT_EQ(rig.ErrorOf("planet", "join_formation", "{star: high}"), ErrorId::kCommandMode);
   EXPECT_EQ(rig.ErrorOf("high", "join_formation", "{star: star}"), ErrorId::kReference);
-  // The planet would leave the stators, the star would not; and straight or turning.
+  // The planet would leave the stators, the star would not; with translation and rotation.
   EXPECT_EQ(rig.ErrorOf("star", "move_to_position", "{x: 310, y: 60, reference: lower}"), ErrorId::kOffStators);
   EXPECT_EQ(rig.ErrorOf("star", "move_c", "{position: -45}"), ErrorId::kOffStators);
   EXPECT_EQ(rig.ErrorOf("star", "move_to_position", "{x: 180, y: 180, reference: lower}"), ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("star", "move_c", "{position: 90}"), ErrorId::kNone);
   EXPECT_NEAR(rig.Mover("planet").y, 300, 1e-9);
-  // The lift would take the planet away from the star.
+  // The lift would carry the planet away from the star.
   EXPECT_EQ(rig.Mover("planet").part, 3u);
   EXPECT_EQ(rig.Mover("star").part, 1u);
   FeedbackEvent refused = rig.Do("three", "activate_position", "{index: 2}");
@@ -81,7 +81,7 @@ TEST(Formations, GoOverThePartsAndWithThem) {
   EXPECT_NEAR(rig.Mover("planet").y, 220, 1e-9);
 }
 
-// A part under a planet that fails stops all of the body.
+// A part under a planet that fails stops the whole formation.
 TEST(Formations, StopWhereAPartFails) {
   PartsRig rig(Levels());
   Form(rig);
@@ -99,7 +99,7 @@ TEST(Formations, StopWhereAPartFails) {
   EXPECT_GT(rig.Mover("star").x, 60);
 }
 
-// EN-22: whatever stops the machine stops formations as one body.
+// EN-22: whatever stops the machine stops formations as a whole.
 TEST(Formations, StopWithTheMachine) {
   for (const char* how : {"emergency_stop", "stop_all"}) {
     PartsRig rig(Levels());
@@ -117,8 +117,8 @@ TEST(Formations, StopWithTheMachine) {
   }
 }
 
-// An axis that follows a coordinate of a planet is where that is in the same cycle, which stands behind that of the
-// star, though it comes before it in the file.
+// An axis that follows a coordinate of a planet has its value of the same cycle, which depends on that of the star,
+// though the planet is first in the file.
 TEST(Formations, LeadAxesInTheSameCycle) {
   PartsRig rig(Levels());
   Form(rig);

@@ -1,6 +1,5 @@
-// Every number of every command a group understands, made wrong: refused with a sentence before it gets to the cycle;
-// given past the reader, refused in the cycle, and nothing of the machine is different from its twin that was never
-// asked.
+// Every number of every command of a group, made invalid: refused with a sentence before it reaches the cycle; given
+// without the reader, refused in the cycle, and the machine is identical to a twin that did not receive the command.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// One command of each kind that would be fine by itself.
+// One valid command of each kind.
 std::vector<group::Command> GoodGroupCommands() {
   using group::CoordinateSystem;
   const Name square = Name::Of("square");
@@ -66,7 +65,7 @@ TEST(GroupBadInput, IsRefusedAsTextWithASentence) {
   EXPECT_GT(refused, 1100);
 }
 
-// GR-02, GR-20, EN-22: numbers that do not fit together, whole numbers, names, misspelt arguments.
+// GR-02, GR-20, EN-22: inconsistent numbers, whole numbers, names, misspelt arguments.
 TEST(GroupBadInput, SaysWhatWasExpected) {
   const Machine machine = PortalMachine();
   const struct {
@@ -230,20 +229,20 @@ TEST_P(GroupBadInputIn, IsRefusedAndLeavesTheMachineLikeItsTwin) {
       ASSERT_EQ(asked.engine.StateHash(), twin.engine.StateHash()) << wrong.what;
     }
   }
-  EXPECT_EQ(asked.group().state, GetParam().state);  // the situation held to the end
+  EXPECT_EQ(asked.group().state, GetParam().state);  // the state was kept to the end
 }
 
 INSTANTIATE_TEST_SUITE_P(AllStates, GroupBadInputIn, testing::ValuesIn(kGroupSituations),
                          [](const auto& info) { return std::string(info.param.name); });
 
-// Every command is among those that are made wrong, or has no real number to be wrong.
+// Every command is among those that are made invalid, or has no real number.
 TEST(GroupBadInput, KnowsEveryCommand) {
   std::set<std::size_t> known;
   for (const group::Command& good : GoodGroupCommands()) known.insert(good.index());
   for (const group::Command& plain : std::vector<group::Command>{
            group::Continue{}, group::AddAxis{}, group::RemoveAxis{}, group::UngroupAllAxes{}, group::Enable{},
            group::Disable{}, group::Reset{}, group::Power{}, group::Home{}, group::SetKinTransform{},
-           group::PathChecked{}, group::PathPlanned{}}) {  // no user's
+           group::PathChecked{}, group::PathPlanned{}}) {  // not given by users
     known.insert(plain.index());
   }
   EXPECT_EQ(known.size(), std::variant_size_v<group::Command>);

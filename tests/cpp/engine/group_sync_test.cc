@@ -1,5 +1,5 @@
-// GR-20, GR-25: paths of the machine file, paths that follow a master, axes that follow the way of a group: on an
-// engine, where masters step before who follows them.
+// GR-20, GR-25: paths of the machine file, paths that follow a master, axes that follow the path of a group: on an
+// engine, where masters step before their followers.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,8 +14,8 @@ namespace {
 
 using group::GroupState;
 
-// A gantry of x and y; m leads, f and three more follow. Path "hook" goes on smoothly from (0, 0): 100 mm along X, half
-// a circle of 50 mm radius up to (100, 100), 60 mm back. "step" has corners. "fast" has speeds of its own.
+// A gantry of x and y; m leads, f and three more follow. Path "hook" is smooth from (0, 0): 100 mm along X, half a
+// circle of 50 mm radius up to (100, 100), 60 mm back. "step" has corners. "fast" has its own speeds.
 const char* kFollowers = R"(
 name: followers
 axes:
@@ -51,13 +51,13 @@ paths:
       - {shape: spline, points: [{x: 330, y: 10, z: 0}, {x: 350, y: 50, z: 0}, {x: 330, y: 90, z: 0}, {x: 300, y: 100, z: 0}], velocity: 120}
 )";
 constexpr std::size_t kX = 0, kY = 1, kM = 2, kF = 3;
-constexpr double kHook = 160 + 50 * std::numbers::pi;  // mm, its length
+constexpr double kHook = 160 + 50 * std::numbers::pi;  // [mm] its length
 
 struct PathPlace {
   double x = 0, y = 0;
 };
 
-// Of "hook" at a way along it.
+// Returns the position on "hook" at an arc length.
 PathPlace OnHook(double way) {
   constexpr double kTurned = 100 + 50 * std::numbers::pi;
   way = std::clamp(way, 0.0, kHook);
@@ -66,12 +66,12 @@ PathPlace OnHook(double way) {
   const double angle = (way - 100) / 50;
   return {100 + 50 * std::sin(angle), 50 - 50 * std::cos(angle)};
 }
-// Of "step".
+// Likewise on "step".
 PathPlace OnStep(double way) {
   return {std::clamp(way, 0.0, 50.0) + std::clamp(way - 100, 0.0, 50.0), std::clamp(way - 50, 0.0, 50.0)};
 }
 
-// The way on "hook" whose place is nearest, and how far that is away.
+// Returns the arc length on "hook" of the nearest position, and its distance.
 struct Nearest {
   double way = 0, off = 1e99;
 };
@@ -104,12 +104,12 @@ class Followers : public Line, public testing::Test {
   const group::Outputs& bench() const { return engine.group_outputs(0); }
   double x() const { return At(kX).set_position; }
   double y() const { return At(kY).set_position; }
-  // How far the tool is from where the master wants it.
+  // Returns the distance of the tool from the position that the master commands.
   double FromMaster(double begin, double ratio = 1) const {
     const PathPlace p = OnHook(ratio * (At(kM).set_position - begin));
     return std::hypot(p.x - x(), p.y - y());
   }
-  // Cycle by cycle: the tool stays on its path and never goes back.
+  // Each cycle: the tool stays on its path and never moves back.
   void Step() {
     Line::Step();
     ++cycle;
@@ -126,7 +126,7 @@ class Followers : public Line, public testing::Test {
     before = now;
     if (!on_hook) return;
     const Nearest nearest = OnHookAt(x(), y());
-    // Where a line meets an arc without a blend its curvature makes a step, which the axes' jerk rounds.
+    // Where a line meets an arc without a blend its curvature has a step, which the axes' jerk rounds.
     EXPECT_LE(nearest.off, 2e-4) << "beside the path at " << x() << ", " << y();
     EXPECT_GE(nearest.way, way - 1e-6) << "back on the path";
     way = std::max(way, nearest.way);
@@ -141,7 +141,7 @@ class Followers : public Line, public testing::Test {
   KinematicState Of(std::size_t axis) const {
     return {At(axis).set_position, At(axis).set_velocity, At(axis).set_acceleration};
   }
-  // A path on its way behind its master.
+  // Starts a path that follows its master.
   Ticket Follow(double ratio = 1, const char* path = "hook") {
     const Ticket move = Tell(group::MovePathSynchronized{.path = Name::Of(path),
                                                          .master = Name::Of("m"),
@@ -158,7 +158,7 @@ class Followers : public Line, public testing::Test {
   double way = 0;
 };
 
-// GR-20: lines, arcs and splines of a path, no element faster than its own speed, and just as fast where there is room.
+// GR-20: lines, arcs and splines of a path: no element exceeds its own speed, and reaches it if it is long enough.
 TEST_F(Followers, EveryElementHasItsSpeed) {
   const Ticket move = Tell(group::MovePath{.path = Name::Of("fast"), .velocity = 300});
   std::array<double, 4> fastest{};
@@ -184,7 +184,7 @@ TEST_F(Followers, EveryElementHasItsSpeed) {
 TEST_F(Followers, APathGoesAsItsMaster) {
   on_hook = true;
   const Ticket move = Follow();
-  EXPECT_EQ(way, 0);  // as the master stands
+  EXPECT_EQ(way, 0);  // as the master is at rest
   const double begin = At(kM).set_position;
   Give(kM, axis::MoveVelocity{.velocity = 100});
   double worst = 0;
@@ -199,11 +199,11 @@ TEST_F(Followers, APathGoesAsItsMaster) {
   EXPECT_EQ(last[move].state, FeedbackState::kDone);
   EXPECT_NEAR(x(), 40, 1e-9);
   EXPECT_EQ(bench().state, GroupState::kStandby);
-  Run(100);  // the master goes on alone
+  Run(100);  // the master continues alone
   EXPECT_NEAR(x(), 40, 1e-9);
 }
 
-// GR-25: a master that stops, goes on, goes back, and stops at its end: the tool waits where it is furthest.
+// GR-25: a master that stops, continues, reverses, and stops at its end: the tool waits at its furthest position.
 TEST_F(Followers, APathWaitsForItsMaster) {
   on_hook = true;
   const Ticket move = Follow(-1);
@@ -230,7 +230,7 @@ TEST_F(Followers, APathWaitsForItsMaster) {
   EXPECT_NEAR(x(), 40, 1e-9);
 }
 
-// GR-25: a master that comes to its end first.
+// GR-25: a master that reaches its end first.
 TEST_F(Followers, APathStopsWhereItsMasterDoes) {
   on_hook = true;
   const Ticket move = Follow(0.5);
@@ -247,7 +247,7 @@ TEST_F(Followers, APathStopsWhereItsMasterDoes) {
   EXPECT_EQ(bench().state, GroupState::kStandby);
 }
 
-// GR-25: faster than the path may be gone it falls behind within the limits, and makes up what it lost.
+// GR-25: a master faster than the path allows: the tool lags within the limits, and catches up.
 TEST_F(Followers, APathMakesUpWhatItLost) {
   on_hook = true;
   Follow(3);
@@ -264,7 +264,7 @@ TEST_F(Followers, APathMakesUpWhatItLost) {
   EXPECT_TRUE(bench().synchronized);
 }
 
-// GR-25, GR-20: interrupted, the path rests; continued, it makes up for that.
+// GR-25, GR-20: interrupted, the path rests; continued, it catches up.
 TEST_F(Followers, AnInterruptedPathComesBackIntoStep) {
   on_hook = true;
   const Ticket move = Follow();
@@ -282,7 +282,7 @@ TEST_F(Followers, AnInterruptedPathComesBackIntoStep) {
   EXPECT_EQ(last[move].state, FeedbackState::kDone);
 }
 
-// GR-25: also a path with corners, where the tool stops: behind them it is in step again.
+// GR-25: also a path with corners, at which the tool stops: after them it is in step again.
 TEST_F(Followers, APathWithCornersIsInStepBehindThem) {
   const Ticket move = Follow(1, "step");
   const double begin = At(kM).set_position;
@@ -297,7 +297,7 @@ TEST_F(Followers, APathWithCornersIsInStepBehindThem) {
   EXPECT_NEAR(x(), 100, 1e-9);
 }
 
-// GR-25: what comes behind a path that follows is gone by the clock.
+// GR-25: moves after a path that follows a master are timed by the clock.
 TEST_F(Followers, WhatComesBehindDoesNotFollow) {
   for (const auto mode : {axis::BufferMode::kBuffered, axis::BufferMode::kBlendingNext}) {
     ASSERT_TRUE(RunToEnd(Tell(group::MoveDirectAbsolute{.a1 = 0, .a2 = 0})));
@@ -317,8 +317,8 @@ TEST_F(Followers, WhatComesBehindDoesNotFollow) {
   }
 }
 
-// GR-25: an axis follows the way along everything that the group does: two moves behind one another, a whole circle,
-// a move of axes, an interrupt, a halt, a stop.
+// GR-25: an axis follows the arc length along all motions of the group: two consecutive moves, a whole circle, a move
+// of axes, an interrupt, a halt, a stop.
 TEST_F(Followers, AnAxisFollowsTheWay) {
   const Ticket sync = Tell(group::SyncAxis{.axis = Name::Of("f"), .ratio_numerator = -3, .ratio_denominator = 2});
   Run(5);
@@ -368,7 +368,7 @@ TEST_F(Followers, AnAxisFollowsTheWay) {
   EXPECT_EQ(At(kF).state, axis::PlcState::kStandstill);
 }
 
-// GR-25: taken up on the way, it gets into step, and what it lost until then it makes up.
+// GR-25: started during a path, it synchronises, and recovers the displacement lost until then.
 TEST_F(Followers, AnAxisGetsIntoStepOnTheWay) {
   Tell(group::MoveLinearAbsolute{.x = 300, .y = 400, .velocity = 200});
   Run(400);
@@ -383,7 +383,7 @@ TEST_F(Followers, AnAxisGetsIntoStepOnTheWay) {
   EXPECT_NEAR(At(kF).set_velocity, bench().velocity, 1e-6);
 }
 
-// GR-25: four at once, each once; a command of its own or a fault of its own ends that.
+// GR-25: four at the same time, each once; a command or a fault of the axis ends that.
 TEST_F(Followers, AxesComeAndGo) {
   const auto sync = [&](const char* name) { return Tell(group::SyncAxis{.axis = Name::Of(name)}); };
   const std::array<Ticket, 5> tickets = {sync("f"), sync("f2"), sync("f3"), sync("f4"), sync("f5")};
@@ -411,13 +411,13 @@ TEST_F(Followers, AxesComeAndGo) {
   EXPECT_NEAR(At(4).set_position, 300, 1e-9);
 }
 
-// GR-25, GR-03: along the path also while a fault brings the group to rest.
+// GR-25, GR-03: along the path also while a fault stops the group.
 TEST_F(Followers, AnAxisFollowsIntoAFault) {
   const Ticket sync = Tell(group::SyncAxis{.axis = Name::Of("f"), .ratio_numerator = 2});
   Tell(group::MoveLinearAbsolute{.x = 300});
   Run(300);
   ASSERT_GT(x(), 20);
-  engine.faults(kY).drive_fault = true;  // y stands
+  engine.faults(kY).drive_fault = true;  // y stops
   for (int i = 0; i < 400; ++i) {
     Step();
     EXPECT_NEAR(At(kF).set_position, 2 * x(), 1e-6);

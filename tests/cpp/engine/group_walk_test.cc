@@ -1,7 +1,7 @@
-// GR-01, GR-02, GR-03, GR-10, GR-25: a random walk over two groups of one machine, whose axes come and go between them,
-// with free axes that lead and follow, and faults. In every cycle: no transition outside the table, members as
-// table 8.1 of the manual says, every axis with one master at most, every set point within the limits and without a
-// jump, every command ended once.
+// GR-01, GR-02, GR-03, GR-10, GR-25: a random walk over two groups of one machine, whose axes change between them, with
+// free axes that lead and follow, and faults. In every cycle: no transition outside the table, members as in table 8.1
+// of the manual, every axis with at most one master, every set point within the limits and without a jump, every
+// command ended once.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@
 #include "takt/axis/guidance.h"
 #include "takt/engine/cycle.h"
 
-// GCC 12 takes optionals that go into a variant for uninitialised.
+// GCC 12 reports optionals that are moved into a variant as uninitialised.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 
@@ -69,7 +69,7 @@ Machine TwoGroups() {
 
 constexpr std::size_t kGroups = 2;
 
-// Any command, sensible or not.
+// Any command, valid or not.
 class Fancy {
  public:
   explicit Fancy(std::uint64_t seed) : random_(seed) {}
@@ -285,7 +285,7 @@ class RandomGroups {
       Run(static_cast<int>(fancy_.Under(100)));
     }
   }
-  // Whatever it was, it ends.
+  // Whatever the motion, it ends.
   void End() {
     Mend();
     for (const auto& [ticket, life] : lives_) Release(ticket);
@@ -387,7 +387,8 @@ class RandomGroups {
       if (member == 0) continue;
       const axis::State& axis = world_.axis_states[member - 1];
       SCOPED_TRACE(machine_.axes[member - 1].name);
-      // What fails in this very cycle the group sees in the next one; an axis that was switched off by itself, too.
+      // Faults of this very cycle are seen by the group in the next one; likewise an axis that was switched off by
+      // itself.
       const bool fails = axis.plc == PlcState::kErrorStop || !axis.loop_closed;
       failed_before |= before[member - 1].plc == PlcState::kErrorStop && axis.plc == PlcState::kErrorStop;
       const bool still = axis.plc == PlcState::kStandstill || axis.plc == PlcState::kDisabled;
@@ -438,8 +439,8 @@ class RandomGroups {
     EXPECT_LE(std::abs(b.velocity), limits.velocity * (1 + 1e-9));
     EXPECT_LE(std::abs(b.acceleration), limits.acceleration * (1 + 1e-9));
     EXPECT_LE(std::abs(b.acceleration - a.acceleration), limits.jerk * period * (1 + 1e-6));
-    const double step = b.position + now.origin - a.position - before.origin;  // other numbers are no motion
-    // What a jerk that changes within the cycle makes of it.
+    const double step = b.position + now.origin - a.position - before.origin;  // a new origin is no motion
+    // The effect of a jerk that changes within the cycle.
     const double inside = limits.jerk * period * period * period / 6;
     EXPECT_NEAR(step,
                 0.5 * period * (a.velocity + b.velocity) - period * period / 12 * (b.acceleration - a.acceleration),

@@ -1,4 +1,4 @@
-// Groups of axes among what else a machine has: whom their members obey, in which order they step, who stops them.
+// Groups of axes within a machine: the commands of their members, their step order, what stops them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ TEST(Members, TakeWhatMovesNothing) {
   }
 }
 
-// GR-25: the master of a path steps before the group, what follows the path behind it; no loop.
+// GR-25: the master of a path steps before the group, followers of the path after it; no loop.
 TEST(Members, FollowInNoLoop) {
   Portal portal;
   const auto error_of = [&](const group::Command& command) {
@@ -81,7 +81,7 @@ TEST(Members, FollowInNoLoop) {
   EXPECT_EQ(portal.last[gear].error, ErrorId::kCouplingLoop);
 }
 
-// GR-02: from one group to another, and back: each moves with those that it has, and no other.
+// GR-02: from one group to another, and back: each moves its present members only.
 TEST(Members, MoveToAnotherGroup) {
   Machine machine = PortalMachine();
   group::GroupParams other = machine.groups[0];
@@ -100,7 +100,7 @@ TEST(Members, MoveToAnotherGroup) {
   const group::AddAxis add{Name::Of("a2"), 3};
   EXPECT_EQ(tell(1, add), ErrorId::kOtherGroupMember);
   EXPECT_EQ(tell(0, group::RemoveAxis{3}), ErrorId::kNone);
-  // Between two groups it is nobody's: it takes commands of its own, and may join only at rest.
+  // Between two groups it is free: it accepts commands of its own, and may join only at rest.
   const Ticket own = line.Give(2, axis::MoveAbsolute{.position = 20, .velocity = 200});
   line.Run(20);
   EXPECT_EQ(tell(1, add), ErrorId::kState);
@@ -124,7 +124,7 @@ TEST(Members, MoveToAnotherGroup) {
   EXPECT_NEAR(line.At(2).set_position, 0, 1e-9);
 }
 
-// GR-12: the limits of a URDF hold for moves of the tool and of the axes, where the axes have none themselves.
+// GR-12: the limits of a URDF apply to moves of the tool and of the axes, if the axes have no limits of their own.
 TEST(Members, KeepTheLimitsOfTheirUrdf) {
   const std::string urdf = std::string(TAKT_SOURCE_DIR) + "/tests/cpp/kinematics/cobra.urdf";
   const std::string limits = "limits: {velocity: 300, acceleration: 3000, jerk: 60000}}\n";
@@ -156,7 +156,7 @@ TEST(Members, KeepTheLimitsOfTheirUrdf) {
   EXPECT_NEAR(line.At(2).set_position, -209, 1e-9);
 }
 
-// EN-42, GR-20: who is told to stop everything stops groups on their paths.
+// EN-42, GR-20: StopAll stops groups on their paths.
 TEST(StopAllOfGroups, StopsThemOnTheirPath) {
   Portal portal;
   const Ticket move = portal.Tell(group::MoveLinearAbsolute{.x = 200, .y = 100});
@@ -202,7 +202,7 @@ TEST(StopAllOfGroups, EmergencyStopSwitchesMembersOff) {
   EXPECT_EQ(portal.last[move].state, FeedbackState::kError);
 }
 
-// EN-22: a held stop is let go of by its ticket, by a lease that runs out, or stays.
+// EN-22: a held stop is released by its ticket, by an expired lease, or stays.
 TEST(HeldStop, IsLetGoOf) {
   Portal portal;
   const Ticket stop = portal.Tell(group::Stop{.hold = true});
@@ -227,7 +227,7 @@ TEST(HeldStop, IsLetGoOf) {
   EXPECT_EQ(portal.group().state, GroupState::kStandby);
 }
 
-// A command for a target that is no group, handed in from C++ past the parser.
+// A command for a target that is no group, given in C++ without the parser.
 TEST(GroupTarget, MustBeAGroup) {
   Portal portal;
   const auto axes = static_cast<std::uint32_t>(portal.machine.axes.size());

@@ -1,4 +1,4 @@
-// The same commands give the same bits: hashes of the state, and journals that can be replayed.
+// The same commands give the same bits: hashes of the state, and replays of journals.
 #include "takt/engine/engine.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace takt::engine {
 namespace {
 
-// Runs the scenario and gives the hash after every cycle.
+// Runs the scenario and returns the hash after every cycle.
 std::vector<std::uint64_t> HashesOf(const Machine& machine, std::uint64_t cycles, const EngineOptions& options = {}) {
   Engine engine(machine, options);
   const auto commands = Scenario(machine);
@@ -24,7 +24,7 @@ std::vector<std::uint64_t> HashesOf(const Machine& machine, std::uint64_t cycles
   return hashes;
 }
 
-// EN-06: the same commands give the same bits, with and without anybody looking on.
+// EN-06: the same commands give the same bits, with and without readers.
 TEST(Engine, IsBitForBitReproducible) {
   const Machine machine = FullMachine();
   const auto first = HashesOf(machine, 3000);
@@ -35,8 +35,8 @@ TEST(Engine, IsBitForBitReproducible) {
   EXPECT_NE(first, HashesOf(other, 3000));  // and the hash sees the smallest difference
 }
 
-// Gives what is in the journal of `engine` to another one, through its text, and compares the hash of every cycle. The
-// journalled commands.
+// Replays the journal of `engine` in another one, through its text form, and compares the hash of every cycle. Returns
+// the journalled commands.
 std::vector<JournalEntry> ExpectReplayBitForBit(Engine& engine) {
   const Machine& machine = engine.machine();
   Engine again(machine, {.journal = true, .snapshot_queue = 1 << 13});
@@ -61,7 +61,7 @@ std::vector<JournalEntry> ExpectReplayBitForBit(Engine& engine) {
   return entries;
 }
 
-// EN-06: the hash is one of axes and of servos, and another one every cycle.
+// EN-06: the hash depends on axes and servos, and changes every cycle.
 TEST(Engine, HashesEverything) {
   const Machine machine = FullMachine();
   World one(machine), axis(machine), servo(machine);
@@ -77,7 +77,7 @@ TEST(Engine, HashesEverything) {
   EXPECT_NE(first.hash, second.hash);
 }
 
-// EN-07: a replay's own commands are numbered behind those of the journal.
+// EN-07: a replay's own commands are numbered after those of the journal.
 TEST(Journal, TicketsGoOnBehindIt) {
   const Machine machine = FullMachine();
   Engine engine(machine);
@@ -102,13 +102,13 @@ TEST(Journal, ReplaysBitForBit) {
   EXPECT_EQ(ExpectReplayBitForBit(engine).size(), commands.size() + 1);  // and the stop of the shutdown
 }
 
-// EN-05, EN-07: also a cycle that applies all it can of everything: overruns, renewals, commands, shutdown.
+// EN-05, EN-07: also a cycle with the maximum of everything: overruns, renewals, commands, shutdown.
 TEST(Journal, ReplaysTheFullestCycleBitForBit) {
   Machine machine = FullMachine();
   machine.cycle.overruns_in_a_row = 1;
   Engine engine(machine, {.journal = true, .snapshot_queue = 1 << 13});
   engine.Submit(ToAxis(machine, "y1", axis::Power{}));
-  engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // which follows it
+  engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // its follower
   for (int i = 0; i < 300; ++i) engine.RunCycle();
   Command jog = ToAxis(machine, "y1", axis::Jog{.forward = true, .velocity = 100});
   jog.lease_s = 0.1;
@@ -120,7 +120,7 @@ TEST(Journal, ReplaysTheFullestCycleBitForBit) {
     for (std::size_t i = 0; i < kRenewalsPerCycle; ++i) engine.Submit({.body = MachineCommand(Renew{jogging})});
   };
   fill();
-  engine.RunCycle();  // the jog is renewed before its lease is over
+  engine.RunCycle();  // the jog is renewed before its lease ends
   for (int i = 0; i < 50; ++i) engine.RunCycle();
   EXPECT_EQ(engine.outputs(AxisNamed(machine, "y1")).set_velocity, 100);
   fill();
@@ -140,7 +140,7 @@ TEST(Journal, ReplaysAnOverrunInACycleFullOfCommandsBitForBit) {
   engine.Submit(ToAxis(machine, "y1", axis::Power{}));
   for (int i = 0; i < 300; ++i) engine.RunCycle();
   for (std::size_t i = 0; i < kCommandsPerCycle - 1; ++i) engine.Submit(ToAxis(machine, "z", axis::Reset{}));
-  engine.Submit(ToAxis(machine, "y1", axis::Reset{}));  // the last one the cycle takes
+  engine.Submit(ToAxis(machine, "y1", axis::Reset{}));  // the last one that the cycle takes
   engine.RunCycle({0, 0, true});
   for (int i = 0; i < 50; ++i) engine.RunCycle();
   const auto entries = ExpectReplayBitForBit(engine);
@@ -148,7 +148,7 @@ TEST(Journal, ReplaysAnOverrunInACycleFullOfCommandsBitForBit) {
   EXPECT_EQ(entries.back().cycle, 300u);
 }
 
-// EN-07: a journal that lost something says so.
+// EN-07: a journal with losses reports them.
 TEST(Journal, CountsWhatItLost) {
   const Machine machine = FullMachine();
   Engine engine(machine, {.journal = true, .snapshot_queue = 64});

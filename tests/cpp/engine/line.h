@@ -1,4 +1,4 @@
-// A line of equal axes on an engine in virtual time, with what became of each command.
+// A line of equal axes on an engine in virtual time, with the result of each command.
 #pragma once
 
 #include <map>
@@ -23,7 +23,7 @@ inline Machine LineOf(int axes, axis::AxisKind kind = axis::AxisKind::kLinear) {
   return machine;
 }
 
-// With an axis so many times stronger than the others: one that can follow them at that ratio.
+// Multiplies the limits of one axis, so that it can follow the others at that ratio.
 inline Machine WithStrong(Machine machine, std::size_t axis, double times) {
   axis::AxisLimits& limits = machine.axes[axis].limits;
   limits.velocity *= times;

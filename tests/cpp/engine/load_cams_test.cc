@@ -25,7 +25,7 @@ std::vector<std::string> CamProblems(const std::string& cams) {
   return LoadMachine(kAxis + cams, "m.yaml").problems;
 }
 
-// A folder with files, gone afterwards.
+// A temporary folder with files.
 class LoadCamFiles : public testing::Test {
  protected:
   LoadCamFiles()
@@ -101,7 +101,7 @@ TEST(LoadCams, ReadsSegments) {
               ElementsAre(HasSubstr("must be the only one of points, segments and file")));
 }
 
-// CAM-03: a warning hinders nothing.
+// CAM-03: a warning does not prevent loading.
 TEST(LoadCams, WarnsOfLinearCams) {
   const LoadResult loaded = LoadMachine(
       kAxis + "  - {name: a, interpolation: linear, points: [{x: 0, y: 0}, {x: 1, y: 1}, {x: 2, y: 0}]}\n", "m.yaml");
@@ -116,7 +116,7 @@ TEST_F(LoadCamFiles, ReadsFilesBesideTheMachineFile) {
   const World world(*loaded.machine);
   EXPECT_EQ(world.cams.tables[0].At(90).y, 10);
   EXPECT_TRUE(loaded.names_files);
-  // What is written out needs no file any more.
+  // A written machine needs no file any more.
   const LoadResult again = LoadMachine(WriteYaml(*loaded.machine), "nowhere/m.yaml");
   ASSERT_THAT(again.problems, IsEmpty());
   EXPECT_FALSE(again.names_files);

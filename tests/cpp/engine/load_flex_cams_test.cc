@@ -1,4 +1,4 @@
-// CAM-01: cam modules of a machine file; each mistake has its place and a sentence.
+// CAM-01: cam modules of a machine file; each mistake is reported with its position and a sentence.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -76,7 +76,7 @@ TEST(LoadFlexCams, FollowsNoLoop) {
   EXPECT_THAT(FlexCamProblems("  - {name: a, slave: knife, master: web, cams: [hill]}\n"
                               "  - {name: b, slave: web, master: knife, cams: [hill]}\n"),
               ElementsAre("m.yaml:4:5: axes[1]: " + begin + "web -> knife -> web"));
-  // Over an axis that follows another from load on.
+  // Through an axis that follows another by the machine file.
   EXPECT_THAT(FlexCamProblems("  - {name: a, slave: web, master: second, cams: [hill]}\n"),
               ElementsAre("m.yaml:6:5: axes[3]: " + begin + "second -> web -> second"));
   EXPECT_THAT(FlexCamProblems("  - {name: a, slave: knife, master: knife, cams: [hill]}\n"),
@@ -98,7 +98,7 @@ TEST(LoadFlexCams, ChecksSettings) {
                           HasSubstr("flex_cams[0].settings.jerk: expected ")));
 }
 
-// EN-20: a module can have a rate of its own.
+// EN-20: a module can have its own rate.
 TEST(LoadFlexCams, IsPublishedAtARateOfItsOwn) {
   const std::string module = "  - {name: cutter, slave: knife, cams: [hill]}\n";
   EXPECT_THAT(FlexCamProblems(module + "lcm: {rates: [{axis: cutter, rate_hz: 5}, {axis: web, rate_hz: 5}]}\n"),

@@ -1,4 +1,5 @@
-// GR-02, GR-11, GR-20: groups of axes and paths of a machine file; each mistake has its place and a sentence.
+// GR-02, GR-11, GR-20: groups of axes and paths of a machine file; each mistake is reported with its position and a
+// sentence.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-// What is added begins in line 13.
+// Added text begins in line 13.
 const std::string kWithAxes = R"(name: m
 axes:
   - {name: a, limits: {velocity: 1, acceleration: 1, jerk: 1, lower: -5, upper: 5}}
@@ -63,7 +64,7 @@ TEST(LoadGroups, HasEachAxisOnce) {
               ElementsAre(AllOf(StartsWith("m.yaml:14:"), HasSubstr("groups[1].axes[0]: expected each axis once"))));
 }
 
-// A member goes by its group alone.
+// A member must not be moved by anything but its group.
 TEST(LoadGroups, LeavesOtherMastersTheirAxes) {
   EXPECT_THAT(
       GroupProblems(Group("robot", "a, second")),
@@ -140,7 +141,7 @@ TEST(LoadPaths, SayWhatAnElementNeeds) {
               ElementsAre(HasSubstr("paths[0].elements[0].velocity: expected a number in mm")));
 }
 
-// GR-12, GR-20: what can be known of the geometry is.
+// GR-12, GR-20: the geometry is checked as far as possible.
 TEST(LoadPaths, RefusePointsThatMakeNoPath) {
   EXPECT_THAT(PathProblems("{shape: line, to: {x: 3, y: 0, z: 0}}, {shape: line, to: {x: 3, y: 0, z: 0}}"),
               ElementsAre(HasSubstr("paths[0].elements[1]: ")));
@@ -199,7 +200,7 @@ TEST_F(PathFiles, HoldElements) {
   EXPECT_EQ(path.elements[1].velocity, 5);
   EXPECT_EQ(path.elements[2].points.size(), 3u);
   EXPECT_EQ(path.elements[2].velocity, 7);
-  // The text says all of it, for a journal.
+  // The text is complete, for a journal.
   EXPECT_EQ(LoadMachine(WriteYaml(*loaded.machine), "again.yaml").machine->paths.front().elements.size(), 4u);
 }
 
@@ -239,7 +240,7 @@ TEST(LoadGroups, AreComponents) {
   const LoadResult loaded = LoadMachine(kWithAxes + Group("robot", "a, b"), "m.yaml");
   ASSERT_TRUE(loaded.machine);
   const std::optional<std::uint32_t> robot = FindComponent(*loaded.machine, "robot");
-  ASSERT_EQ(robot, 6u);  // behind five axes and a cam module
+  ASSERT_EQ(robot, 6u);  // after five axes and a cam module
   EXPECT_EQ(PlaceOf(*loaded.machine, *robot).kind->name, "group");
 }
 

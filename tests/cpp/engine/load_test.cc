@@ -1,4 +1,4 @@
-// Machine files: every problem with its place, nothing started.
+// Machine files: every problem with its position, nothing started.
 #include "takt/engine/load.h"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ std::string FileOf(const std::string& axes, const std::string& rest = "") {
   return "name: m\n" + rest + "axes:\n" + axes;
 }
 
-// EN-10: written out and read again, a machine is the same.
+// EN-10: a machine that is written and read again is the same.
 TEST(LoadMachine, ReadsWhatWasWritten) {
   const Machine machine = FullMachine();
   const LoadResult again = LoadMachine(WriteYaml(machine, Comments::kUnits), "again.yaml");
@@ -27,8 +27,8 @@ TEST(LoadMachine, ReadsWhatWasWritten) {
   EXPECT_EQ(WriteYaml(*again.machine), WriteYaml(machine));
 }
 
-// EN-10: all errors of a file in one run, each with file:line:column, key path, what was expected, what was found, and
-// the nearest word.
+// EN-10: all errors of a file in one run, each with file:line:column, key path, expected and found value, and the
+// nearest word.
 TEST(LoadMachine, ReportsEverythingAtOnceWithItsPlace) {
   const LoadResult result = LoadMachine(
       "name: m\n"
@@ -68,7 +68,7 @@ TEST(LoadMachine, NamesTheMembersOfALoop) {
   EXPECT_THAT(result.problems[0], HasSubstr("in no loop, found b -> c -> a -> b"));
 }
 
-// EN-03: a follower that could not keep up with its master's limits is refused at load.
+// EN-03: a follower that could not keep up with its master's limits is refused.
 TEST(LoadMachine, RefusesAFollowerThatCannotKeepUp) {
   const LoadResult result = LoadMachine(FileOf("  - name: a\n    limits: {velocity: 10, acceleration: 1, jerk: 1}\n"
                                                "  - name: b\n    limits: {velocity: 10, acceleration: 9, jerk: 9}\n"
@@ -78,7 +78,7 @@ TEST(LoadMachine, RefusesAFollowerThatCannotKeepUp) {
               ElementsAre(AllOf(HasSubstr("m.yaml:7:21: axes[1].follows.axis"), HasSubstr("velocity"))));
 }
 
-// EN-03: each limit of its own counts, and a jerk limit is none that a master without one could keep.
+// EN-03: each limit of the follower is checked, and a jerk limit cannot be kept with a master without one.
 TEST(LoadMachine, LooksAtEveryLimitOfAFollower) {
   const auto problems = [](const std::string& master, const std::string& follower) {
     return LoadMachine(FileOf("  - name: a\n    limits: " + master + "\n  - name: b\n    limits: " + follower +
@@ -101,7 +101,7 @@ TEST(LoadMachine, LooksAtEveryLimitOfAFollower) {
               ElementsAre(HasSubstr("limit of jerk")));
 }
 
-// Whatever names an axis must name one that is there, each once; problems come in the order of the file.
+// References to axes must name existing ones, each once; problems are in the order of the file.
 TEST(LoadMachine, ChecksWhatRefersToAxes) {
   const std::string limits = "    limits: {velocity: 1, acceleration: 1, jerk: 1}\n";
   const LoadResult result =
@@ -118,7 +118,7 @@ TEST(LoadMachine, ChecksWhatRefersToAxes) {
                   AllOf(HasSubstr("simulation.servos[1].axis"), HasSubstr("again"))));
 }
 
-// A name that is missing is one problem, not two.
+// A missing name is one problem, not two.
 TEST(LoadMachine, ReportsAMissingNameOnce) {
   EXPECT_THAT(LoadMachine(FileOf("  - limits: {velocity: 1, acceleration: 1, jerk: 1}\n"), "m.yaml").problems,
               ElementsAre(HasSubstr("name")));
@@ -132,7 +132,7 @@ TEST(LoadMachine, TakesEveryGoodName) {
   }
 }
 
-// AX-83: nor has a follower SW limits of its own, which its master would lead it out of.
+// AX-83: a follower has no SW limits of its own, as its master could lead it out of them.
 TEST(LoadMachine, RefusesAFollowerWithSoftLimits) {
   const LoadResult result =
       LoadMachine(FileOf("  - name: a\n    limits: {velocity: 10, acceleration: 1, jerk: 1}\n"
@@ -156,7 +156,7 @@ TEST(LoadMachine, RefusesNamesThatCannotBeAddressed) {
   }
 }
 
-// AX-02: SW limits on an axis that goes round and round mean nothing.
+// AX-02: SW limits are refused on rotary axes.
 TEST(LoadMachine, RefusesSoftLimitsOnRotaryAxes) {
   const LoadResult result = LoadMachine(
       FileOf("  - name: c\n    kind: rotary\n    limits: {velocity: 1, acceleration: 1, jerk: 1, lower: 0}\n"),
@@ -168,7 +168,7 @@ TEST(LoadMachineFile, SaysWhatCannotBeRead) {
   EXPECT_THAT(LoadMachineFile("/nowhere/m.yaml").problems, ElementsAre(HasSubstr("/nowhere/m.yaml: ")));
 }
 
-// EN-22: what is wrong with a command is said in a sentence; the nearest word is offered.
+// EN-22: problems of a command are reported in a sentence, with the nearest word.
 TEST(ParseCommand, SaysWhatIsWrong) {
   const Machine machine = FullMachine();
   EXPECT_EQ(ParseCommand(machine, "y1", "move_absolute", "{position: 10, velocity: 50}").sentence, "");
@@ -188,7 +188,7 @@ TEST(ParseCommand, SaysWhatIsWrong) {
   }
 }
 
-// EN-22: the machine has verbs of its own, and only them; the sentence lists what this target has.
+// EN-22: the machine has its own verbs only; the sentence lists those of the target.
 TEST(ParseCommand, KnowsWhoseVerbItIs) {
   const Machine machine = FullMachine();
   const ParsedCommand axis = ParseCommand(machine, "y1", "stop_all", "");
@@ -200,7 +200,7 @@ TEST(ParseCommand, KnowsWhoseVerbItIs) {
   EXPECT_THAT(ParseCommand(machine, "y11", "halt", "").sentence, HasSubstr("did you mean y1"));
 }
 
-// EN-23: what needs a heartbeat over LCM.
+// EN-23: verbs that need a heartbeat over LCM.
 TEST(ParseCommand, SaysWhatIsLevelSensitive) {
   const Machine machine = FullMachine();
   EXPECT_TRUE(ParseCommand(machine, "y1", "jog", "{forward: true}").level_sensitive);
@@ -208,7 +208,7 @@ TEST(ParseCommand, SaysWhatIsLevelSensitive) {
   EXPECT_FALSE(ParseCommand(machine, "y1", "halt", "").level_sensitive);
 }
 
-// EN-07: text and command are two forms of the same thing.
+// EN-07: text and command are equivalent.
 TEST(ParseCommand, IsTheInverseOfToText) {
   const Machine machine = FullMachine();
   for (const auto& [when, command] : Scenario(machine)) {
@@ -227,7 +227,7 @@ auto From(const std::vector<std::vector<std::uint32_t>>& masters) {
   };
 }
 
-// EN-03: the order itself, as a property over random graphs without loops.
+// EN-03: the order itself, as a property over random acyclic graphs.
 TEST(Order, PutsMastersFirst) {
   std::uint32_t seed = 1;
   const auto random = [&](std::uint32_t n) { return (seed = seed * 1664525u + 1013904223u) / 65536u % n; };
@@ -250,16 +250,16 @@ TEST(Order, PutsMastersFirst) {
   }
 }
 
-// EN-03: only the members of the loop are named, not what lies on the way to it or was done before.
+// EN-03: only the members of the loop are named, not components on the path to it or completed before.
 TEST(Order, GivesTheMembersOfALoopOnly) {
   const std::vector<std::vector<std::uint32_t>> masters = {{2}, {}, {3}, {1, 4}, {2}};
   Order order(masters.size());
   EXPECT_FALSE(order.Make(From(masters)));
-  EXPECT_THAT(order.sequence(), ElementsAre(0, 1, 2, 3, 4));  // as it was
+  EXPECT_THAT(order.sequence(), ElementsAre(0, 1, 2, 3, 4));  // unchanged
   EXPECT_THAT(order.loop(), ElementsAre(4, 3, 2));            // each a master of the next, the last one of the first
 }
 
-// The machine's own name: anything people can read, not too long; missing is one problem.
+// The machine's own name: anything readable, of limited length; a missing one is one problem.
 TEST(LoadMachine, ChecksTheNameOfTheMachine) {
   const auto problems = [](const std::string& name) {
     return LoadMachine(name + "axes: [{name: x, limits: {velocity: 1, acceleration: 1, jerk: 1}}]\n", "m.yaml")
@@ -274,7 +274,7 @@ TEST(LoadMachine, ChecksTheNameOfTheMachine) {
   EXPECT_THAT(problems(""), ElementsAre(HasSubstr("name")));
 }
 
-// CAM-72: the list is good for another axis.
+// CAM-72: the list is valid for another axis.
 TEST(ParseCommand, SaysWhichListsOfCamSwitchesAnAxisCannotHave) {
   const LoadResult loaded = LoadMachine(
       "name: m\naxes:\n  - {name: x, limits: {velocity: 1, acceleration: 1, jerk: 1}}\n"
@@ -289,7 +289,7 @@ TEST(ParseCommand, SaysWhichListsOfCamSwitchesAnAxisCannotHave) {
   EXPECT_EQ(refused("x", "{switches: a}"),
             "switches: 'a': expected last_on_position not below first_on_position, as axis x is linear and the list "
             "has no modulus, found 10 below 350");
-  EXPECT_EQ(refused("x", "{switches: b}"), "");  // the cycle says that there is none
+  EXPECT_EQ(refused("x", "{switches: b}"), "");  // the cycle reports that it does not exist
 }
 
 // AX-50: lists of cam switches.

@@ -1,4 +1,4 @@
-// Drives in other processes that are not heard any more (AX-82, AX-87): a drive error and a controlled stop.
+// External drives that no longer answer (AX-82, AX-87): a drive error and a controlled stop.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,8 +10,8 @@
 namespace takt::engine {
 namespace {
 
-// AX-82, AX-87: the answer that makes it as many as the machine file says: ErrorStop 3002; the set point brakes within
-// the axis' limits, the drive is told so, then it is off and the brake falls. Other axes go on.
+// AX-82, AX-87: with missing_cycles missing answers: ErrorStop 3002; the set point brakes within the axis' limits and
+// is sent to the drive, then it is off and the brake is applied. Other axes continue.
 TEST(LostDrives, ALostDriveIsStoppedInAControlledWay) {
   for (std::size_t lost = 0; lost < 3; ++lost) {
     DriveRig rig;
@@ -38,7 +38,7 @@ TEST(LostDrives, ALostDriveIsStoppedInAControlledWay) {
       EXPECT_LE(o.set_velocity, velocity + 1e-9);
       EXPECT_LE(std::abs(o.set_acceleration), 5000 * (1 + 1e-9));
       EXPECT_LE(std::abs(o.set_acceleration - acceleration), 100000 * 0.001 * (1 + 1e-6));
-      // The drive follows without a jolt, although nobody measures it any more.
+      // The drive follows smoothly, although it is not measured any more.
       EXPECT_LE(std::abs(rig.plant.states[lost].velocity - driven), 10) << "mode " << lost << ", cycle " << cycles;
       velocity = o.set_velocity;
       acceleration = o.set_acceleration;
@@ -59,7 +59,7 @@ TEST(LostDrives, ALostDriveIsStoppedInAControlledWay) {
   }
 }
 
-// AX-87: heard again and reset, it runs again; not before. Its reference is lost.
+// AX-87: when it answers again and is reset, it runs again; not before. Its reference is lost.
 TEST(LostDrives, HeardAgainAndResetItRunsAgain) {
   DriveRig rig;
   rig.PowerOn();
@@ -88,7 +88,7 @@ TEST(LostDrives, HeardAgainAndResetItRunsAgain) {
   EXPECT_NEAR(rig.plant.states[0].load_position, 20, 0.01);
 }
 
-// AX-87: a plant that was started anew counts from 0 again. That is no motion.
+// AX-87: a restarted plant counts from 0 again. That is no motion.
 TEST(LostDrives, ANewPlantIsTakenAsItIs) {
   DriveRig rig;
   rig.PowerOn();
@@ -109,7 +109,7 @@ TEST(LostDrives, ANewPlantIsTakenAsItIs) {
   EXPECT_NEAR(rig.At(0).following_error, 0, 0.01);
 }
 
-// AX-82, AX-87: an axis at rest has nothing to brake: off at once.
+// AX-82, AX-87: an axis at rest needs no braking: off at once.
 TEST(LostDrives, AtRestItIsSwitchedOffAtOnce) {
   DriveRig rig;
   rig.PowerOn();
@@ -139,7 +139,7 @@ TEST(LostDrives, ADisabledAxisJustHasTheFault) {
   EXPECT_EQ(rig.At(0).error, ErrorId::kNone);
 }
 
-// AX-55, AX-87: what is coupled to it does not go on alone; the rest does.
+// AX-55, AX-87: coupled axes stop, too; the others continue.
 TEST(LostDrives, WhatIsCoupledStopsToo) {
   for (const bool follower_is_lost : {true, false}) {
     DriveRig rig;
@@ -168,7 +168,7 @@ TEST(LostDrives, WhatIsCoupledStopsToo) {
   }
 }
 
-// AX-87, CV-01: an encoder alone that others follow, as that of a belt: with it lost, they come to rest.
+// AX-87, CV-01: an encoder without a drive that others follow, e.g. of a belt: if it is lost, they come to rest.
 TEST(LostDrives, WhatFollowsALostEncoderComesToRest) {
   DriveRig rig;
   double counts = 0;
@@ -197,7 +197,7 @@ TEST(LostDrives, WhatFollowsALostEncoderComesToRest) {
   EXPECT_EQ(rig.At(3).error, ErrorId::kDrive);
   EXPECT_EQ(rig.At(0).error, ErrorId::kNone);
   EXPECT_NEAR(rig.At(0).set_velocity, 0, 1e-9);
-  // Heard again it is followed by nobody: that needs a reset and a new command.
+  // When it answers again, it has no followers: that needs a reset and a new command.
   const double at_rest = rig.At(0).set_position;
   rig.HearAll();
   rig.Run(500);
@@ -205,8 +205,8 @@ TEST(LostDrives, WhatFollowsALostEncoderComesToRest) {
   EXPECT_EQ(rig.At(0).state, axis::PlcState::kStandstill);
 }
 
-// AX-87: heard again while it brakes, it is stopped and switched off all the same; a fault it reports ends that at
-// once, and so does the emergency stop.
+// AX-87: if it answers again while it brakes, it is stopped and switched off all the same; a fault that it reports ends
+// that at once, as does the emergency stop.
 TEST(LostDrives, WhatComesDuringTheStop) {
   for (const bool fault : {false, true}) {
     DriveRig rig;
@@ -248,7 +248,7 @@ TEST(LostDrives, AResetDuringTheStopWaits) {
   EXPECT_FALSE(rig.At(0).loop_closed);
 }
 
-// AX-49, AX-87: an edge of the touch probe that came while nobody listened is nobody's.
+// AX-49, AX-87: an edge of the touch probe while the drive was lost is not captured.
 TEST(LostDrives, EdgesWhileItWasLostAreNotCaptured) {
   DriveRig rig;
   rig.PowerOn();
@@ -265,8 +265,8 @@ TEST(LostDrives, EdgesWhileItWasLostAreNotCaptured) {
   EXPECT_EQ(rig.At(0).probe_captures, 1u);
 }
 
-// AX-10, AX-13, AX-87: answers get lost at random, for any number of cycles, under motion of all kinds: every set point
-// of a closed loop follows from the one before within the axis' limits, and no axis that nobody hears stays on.
+// AX-10, AX-13, AX-87: answers get lost at random, for any number of cycles, during all kinds of motion: every set
+// point of a closed loop follows from the previous one within the axis' limits, and no axis of a lost drive stays on.
 TEST(LostDrives, AnyPatternOfLossesKeepsTheLimits) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     DriveRig rig;
@@ -305,7 +305,8 @@ TEST(LostDrives, AnyPatternOfLossesKeepsTheLimits) {
       for (std::size_t i = 0; i < 4; ++i) {
         const axis::Outputs &b = before[i], &o = rig.At(i);
         ASSERT_TRUE(axis::IsLegal(b.state, o.state) || b.state == axis::PlcState::kErrorStop) << i;
-        // v/a + a/j = 150 ms from full speed, 50 ms to end an acceleration before, and the cycles until it is noticed.
+        // v/a + a/j = 150 ms from full speed, 50 ms to end a preceding acceleration, and the cycles until it is
+        // detected.
         if (gone[i] > 210) {
           ASSERT_FALSE(o.loop_closed) << "seed " << seed << ", axis " << i << ", cycle " << c;
         }

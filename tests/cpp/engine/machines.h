@@ -9,8 +9,8 @@
 
 namespace takt::engine {
 
-// Linear and rotary, all three kinds of drives, an absolute encoder, a follower, a cam module, a group, belts, a pose,
-// tracks, switches and a real-looking servo.
+// Linear and rotary axes, all three kinds of drives, an absolute encoder, a follower, a cam module, a group, belts, a
+// pose, tracks, switches and a realistic servo.
 inline const char* kFullMachine = R"(
 name: full
 cycle: {period_s: 0.001}
@@ -112,7 +112,7 @@ inline Command ToModule(const Machine& machine, const flexcam::Command& body) {
   return command;
 }
 
-// The first group.
+// To the first group.
 inline Command ToGroup(const Machine& machine, const group::Command& body) {
   Command command;
   command.target = static_cast<std::uint32_t>(machine.axes.size() + machine.flex_cams.size() + 1);
@@ -120,7 +120,7 @@ inline Command ToGroup(const Machine& machine, const group::Command& body) {
   return command;
 }
 
-// A belt of the machine.
+// To a belt of the machine.
 inline Command ToBelt(const Machine& machine, std::size_t index, const conveyor::Command& body) {
   Command command;
   command.target =
@@ -137,14 +137,14 @@ inline Command ToPart(const Machine& machine, std::string_view name, const part:
   return {.target = FindComponent(machine, name).value() + 1, .body = body};
 }
 
-// The first pose.
+// To the first pose.
 inline Command ToPose(const Machine& machine, const conveyor::PoseCommand& body) {
   Command command = ToBelt(machine, machine.belts.size(), {});
   command.body = body;
   return command;
 }
 
-// Something for every axis to do, spread over the first seconds.
+// Commands for every axis, spread over the first seconds.
 inline std::vector<std::pair<std::uint64_t, Command>> Scenario(const Machine& m) {
   using namespace axis;
   std::vector<std::pair<std::uint64_t, Command>> commands;

@@ -1,4 +1,4 @@
-// PL-01 to PL-03, PL-13, EN-22: planar movers in a machine: loading, commands as text, what stops everything.
+// PL-01 to PL-03, PL-13, EN-22: planar movers in a machine: loading, commands as text, stopping everything.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -99,24 +99,24 @@ TEST(MoverMachine, SaysWhatWasExpected) {
   EXPECT_THAT(ProblemOf(kPlaneText, "jerk: 200000}}", "jerk: 0}}"), HasSubstr("jerk: expected"));
 }
 
-// A machine may be made of movers alone.
+// A machine may consist of movers only.
 TEST(MoverMachine, NeedsNoAxes) {
   EXPECT_TRUE(LoadMachine("name: plane\naxes: []\nmovers: [{name: one}]\n", "plane.yaml").machine.has_value());
 }
 
-// PL-87: a mover placed on another one is an error that names both and says by how much.
+// PL-87: a mover placed on another one is an error that names both and the overlap.
 TEST(MoverMachine, NoMoverIsPlacedOnAnother) {
   const struct {
-    const char *one, *other, *by;  // by: nothing where they lie beside each other
+    const char *one, *other, *by;  // by: null if they are adjacent
   } rows[] = {
       {"initial: {x: 40, y: 7}", "initial: {x: 40, y: 7}", "113.0 mm"},
       {"initial: {x: 40}", "initial: {x: 141.5}", "11.5 mm"},
       {"initial: {x: 40}", "initial: {x: 153}", ""},
       {"initial: {x: 40}", "initial: {x: 40, y: -113}", ""},
-      // A long one beside another, and turned across.
+      // A long one beside another, and rotated across it.
       {"width: 240, initial: {x: 0}", "initial: {x: 150}", "26.5 mm"},
       {"width: 240, initial: {x: 0, c: 90}", "initial: {x: 150}", ""},
-      // A corner turned towards a side reaches 79.903 mm from its middle; two sides at 45 deg clear at 79.903 mm in X
+      // A corner rotated towards a side reaches 79.903 mm from its centre; two sides at 45 deg clear at 79.903 mm in X
       // and Y.
       {"initial: {c: 45}", "initial: {x: 136}", "0.404 mm"},
       {"initial: {c: 45}", "initial: {x: 136.5}", ""},
@@ -135,7 +135,7 @@ TEST(MoverMachine, NoMoverIsPlacedOnAnother) {
   }
 }
 
-// PL-87: places count from parts; two coordinate systems have nothing to do with each other.
+// PL-87: positions are relative to parts; two coordinate systems are independent.
 TEST(MoverMachine, NoMoverIsPlacedOnAnotherAcrossParts) {
   const std::string text = R"(
 name: halls
@@ -155,7 +155,7 @@ movers:
   EXPECT_EQ(ProblemOf(text, "right, initial: {x: 60", "top, initial: {x: 180"), "");
 }
 
-// PL-81: no gap may be smaller than the mover, however it is turned; one that is not written grows with it.
+// PL-81: no gap may be smaller than the mover in any orientation; the default gap depends on its size.
 TEST(MoverMachine, NoGapIsSmallerThanTheMover) {
   const std::string text = "name: plane\naxes: []\nmovers:\n  - {name: one, width: 150, height: 230, gap: 155}\n";
   EXPECT_EQ(ProblemOf(text, "gap: 155", "gap: 150"), "");
@@ -167,7 +167,7 @@ TEST(MoverMachine, NoGapIsSmallerThanTheMover) {
                 "149.5 mm"));
 }
 
-// EN-22, PL-02: every number made wrong is refused with a sentence.
+// EN-22, PL-02: every number made invalid is refused with a sentence.
 TEST(MoverMachine, BadNumbersAreRefusedAsText) {
   const Machine machine = PlaneMachine();
   ASSERT_EQ(GoodMoverCommands().size(), std::variant_size_v<mover::Command>);
@@ -193,7 +193,7 @@ TEST(MoverMachine, BadNumbersAreRefusedAsText) {
               HasSubstr("must be absolute or relative"));
 }
 
-// The same commands made in C++, past the reader: nothing of them gets into the state.
+// The same commands given in C++, without the reader: they do not change the state.
 TEST(MoverMachine, BadNumbersAreRefusedInTheCycle) {
   Engine engine(PlaneMachine());
   engine.Submit(To(0, mover::Enable{}));
@@ -213,10 +213,10 @@ TEST(MoverMachine, BadNumbersAreRefusedInTheCycle) {
   EXPECT_EQ(engine.mover_outputs(0).x, 60);
 }
 
-// What stops everything stops movers, with their maximum dynamics.
+// Whatever stops everything stops movers, with their maximum dynamics.
 TEST(MoverMachine, WhatStopsEverythingStopsMovers) {
   const auto stops = [](const auto& how, ObjectState then) {
-    std::string text = kPlaneText;  // with nobody in the way
+    std::string text = kPlaneText;  // without obstacles
     text.replace(text.find("x: 300, y: 60"), 13, "x: 300, y: 900");
     Engine engine(MachineOf(text));
     engine.Submit(To(0, mover::Enable{}));
@@ -245,17 +245,17 @@ TEST(MoverMachine, WhatStopsEverythingStopsMovers) {
   stops([](Engine& engine) { engine.RequestShutdown(); }, ObjectState::kDisabled);
 }
 
-// EN-22: what stops a mover finds room in a queue that is full of others.
+// EN-22: a command that stops a mover finds room in a full queue.
 TEST(MoverMachine, WhatStopsAMoverLetsGo) {
   std::size_t lets_go = 0;
   for (const mover::Command& command : GoodMoverCommands()) lets_go += LetsGo(To(0, command)) ? 1 : 0;
-  EXPECT_EQ(lets_go, 10u);  // those of one coordinate and on the track, too
+  EXPECT_EQ(lets_go, 10u);  // including those of one coordinate and on the track
   EXPECT_TRUE(LetsGo(To(0, mover::Halt{})));
   EXPECT_TRUE(LetsGo(To(0, mover::Disable{})));
   EXPECT_TRUE(LetsGo(To(0, mover::StopExternalSetpointGeneration{})));
 }
 
-// A mover in Error does not keep the engine from its end.
+// A mover in Error does not prevent the engine from shutting down.
 TEST(MoverMachine, AFaultDoesNotHinderShutdown) {
   Engine engine(PlaneMachine());
   engine.Submit(To(0, mover::Enable{}));
@@ -269,7 +269,7 @@ TEST(MoverMachine, AFaultDoesNotHinderShutdown) {
   EXPECT_TRUE(engine.all_disabled());
 }
 
-// EN-07: what a mover does is in the hash of the state.
+// EN-07: the state of a mover is in the hash.
 TEST(MoverMachine, IsPartOfTheHash) {
   Engine one(PlaneMachine());
   Engine other(PlaneMachine());

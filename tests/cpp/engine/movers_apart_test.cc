@@ -1,5 +1,5 @@
-// PL-81: whatever movers are told, no two of them ever overlap. Random worlds and commands; what watches them in every
-// cycle knows rectangles alone.
+// PL-81: with any commands, no two movers ever overlap. Random worlds and commands; the check in every cycle only uses
+// rectangles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,11 +16,11 @@ namespace takt::engine {
 namespace {
 
 struct Box {
-  double x = 0, y = 0, c = 0;  // mm, deg
+  double x = 0, y = 0, c = 0;  // [mm], [deg]
   double width = 0, height = 0;
 };
 
-// How far two rectangles are apart along one of their sides; below 0: they overlap by so much.
+// Returns the distance of two rectangles along one of their sides; below 0: overlap.
 double Apart(const Box& a, const Box& b) {
   double most = -1e9;
   for (const double c : {a.c, a.c + 90, b.c, b.c + 90}) {
@@ -34,11 +34,11 @@ double Apart(const Box& a, const Box& b) {
   return most;
 }
 
-// Lines and a ring that cross one another without a node, a fork and a way back across them all; movers of many sizes,
-// turned, on tracks and beside them.
+// Lines and a ring that cross one another without a node, a fork and a track back across them all; movers of many
+// sizes, rotated, on tracks and beside them.
 class RandomWorld {
  public:
-  // Every other one with a group of all movers, whose moves wait for their area in turn.
+  // Every second world has a group of all movers, whose moves wait for their area in turn.
   explicit RandomWorld(std::uint32_t seed) : waits_(seed % 2 == 0), random_(seed), rig(MachineText()) {
     rig.each_cycle = [this] { Look(); };
     for (const track::TrackParams& track : rig.machine.tracks) rig.Give(track.name, "enable");
@@ -63,11 +63,11 @@ class RandomWorld {
   }
 
   int in_turn = 0;  // cycles in which a command waited for its area
-  int held = 0;     // cycles in which a mover in the plane was held by another one
-  int waits = 0;    // the same on tracks
+  int held = 0;     // cycles in which a mover in the plane waited for another one
+  int waits = 0;    // likewise on tracks
   int near = 0;     // cycles with two movers less than 5 mm apart
   int done = 0, refused = 0;
-  double closest = 1e9;  // mm
+  double closest = 1e9;  // [mm]
 
  private:
   double Uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random_); }
@@ -211,7 +211,7 @@ class RandomWorld {
     }
   }
 
-  // Set points from outside: forth and back along a line.
+  // External set points: back and forth along a line.
   void StartLeading() {
     if (led_ >= 0) return;
     led_ = Whole(0, static_cast<int>(rig.machine.movers.size()) - 1);
@@ -282,8 +282,8 @@ class RandomWorld {
   double amplitude_ = 0, angle_ = 0;
 };
 
-// One behind the other on a track keep apart by their sizes as they are turned, not by the gap alone: the one ahead has
-// turned after the one behind was told a gap that fits it as it was.
+// Consecutive movers on a track keep a distance by their sizes in their orientations, not by the gap alone: the leader
+// has rotated after the follower was given a gap that fits its former orientation.
 TEST(MoversApart, OneAheadThatHasTurned) {
   for (const double turn : {30.0, 45.0, 90.0}) {
     PartsRig rig(R"(

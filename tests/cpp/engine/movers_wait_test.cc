@@ -1,4 +1,4 @@
-// PL-80, PL-81: what is refused in advance, and what waits on its way.
+// PL-80, PL-81: commands that are refused in advance, and motions that wait.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Without a group, in the plane: a mover brakes before another one, says so, and goes on once that has left.
+// Without a group, in the plane: a mover brakes before another one, reports it, and continues once that has left.
 TEST(MoversWait, InThePlane) {
   PartsRig rig("name: plane\naxes: []\nmovers: [{name: one}, {name: two, initial: {x: 500, y: 20}}]\n");
   for (const char* mover : {"one", "two"}) rig.Do(mover, "enable");
@@ -20,14 +20,14 @@ TEST(MoversWait, InThePlane) {
   EXPECT_EQ(rig.Mover("one").delay, mover::Delay::kMover);
   EXPECT_EQ(rig.Mover("one").velocity_x, 0);
   EXPECT_LE(rig.Mover("one").x, 500 - 113);
-  EXPECT_GT(rig.Mover("one").x, 500 - 113 - 10);  // no sooner than it has to
+  EXPECT_GT(rig.Mover("one").x, 500 - 113 - 10);  // no earlier than necessary
   EXPECT_EQ(rig.ErrorOf("two", "move_to_position", "{x: 500, y: 200}"), ErrorId::kNone);
   EXPECT_EQ(rig.End(move).state, FeedbackState::kDone);
   EXPECT_EQ(rig.Mover("one").waits_for, 0u);
   EXPECT_EQ(rig.Mover("one").x, 900);
 }
 
-// Both on their ways towards each other: both brake, and stand apart.
+// Moving towards each other: both brake, and stop apart.
 TEST(MoversWait, HeadOn) {
   PartsRig rig("name: plane\naxes: []\nmovers: [{name: one}, {name: two, initial: {x: 800}}]\n");
   for (const char* mover : {"one", "two"}) rig.Do(mover, "enable");
@@ -38,7 +38,7 @@ TEST(MoversWait, HeadOn) {
   EXPECT_EQ(rig.Mover("two").waits_for, 1u);
   EXPECT_GE(rig.Mover("two").x - rig.Mover("one").x, 113 - 1e-6);
   EXPECT_LE(rig.Mover("two").x - rig.Mover("one").x, 113 + 20);
-  // A halt takes the command away, and with it the reason.
+  // A halt ends the command, and with it the reported reason.
   rig.Do("one", "halt");
   EXPECT_EQ(rig.Mover("one").waits_for, 0u);
 }
@@ -54,7 +54,7 @@ TEST(MoversWait, NotForATurn) {
   EXPECT_EQ(rig.ErrorOf("one", "move_c", "{position: 12}"), ErrorId::kNone);
 }
 
-// Set points from outside end before another mover.
+// External set points end before another mover.
 TEST(MoversWait, NotForSetPointsFromOutside) {
   PartsRig rig("name: plane\naxes: []\nmovers: [{name: one}, {name: two, initial: {x: 160, y: 30}}]\n");
   for (const char* mover : {"one", "two"}) rig.Do(mover, "enable");
@@ -74,7 +74,7 @@ TEST(MoversWait, NotForSetPointsFromOutside) {
   EXPECT_GT(rig.Mover("one").x, 160 - 113 - 5);
 }
 
-// Where tracks cross without a node the second one waits, and says for which mover.
+// Where tracks cross without a node the second mover waits, and reports the other mover.
 TEST(MoversWait, WhereTracksCross) {
   PartsRig rig(R"(
 name: cross
@@ -110,12 +110,12 @@ movers: [{name: one, reference: left, initial: {x: 120, y: 120}}, {name: two, re
 tracks: [{name: line, part: left, elements: [{from: {x: 60, y: 120}, to: {x: 960, y: 120}}]}]
 )";
 
-// PL-80: all of a mover counts on a track, not its middle: at a part that is away, and before one may leave.
+// PL-80: the whole mover counts on a track, not its centre: at a part that is away, and before a part may leave.
 TEST(MoversWait, ForTheWholeMoverOnParts) {
   PartsRig rig(kHall);
   for (const char* name : {"line", "one", "two"}) rig.Do(name, "enable");
   ASSERT_EQ(rig.ErrorOf("one", "join_track", "{track: line}"), ErrorId::kNone);
-  // Its way leads over the border of the lift, which has to stay as long as that is so.
+  // Its route leads over the border of the lift, which must stay until it has passed.
   const Ticket move = rig.Give("one", "move_on_track", "{position: 850, velocity: 200}");
   rig.Run(50);
   const FeedbackEvent leaves = rig.Do("lift", "activate_position", "{index: 2}");
@@ -127,11 +127,11 @@ TEST(MoversWait, ForTheWholeMoverOnParts) {
   ASSERT_EQ(rig.ErrorOf("lift", "activate_position", "{index: 2}"), ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("one", "move_on_track", "{position: 850}"), ErrorId::kOffStators);
   EXPECT_EQ(rig.ErrorOf("one", "move_on_track", "{position: 843.5}"), ErrorId::kNone);  // flush with the border
-  // A rotation there would reach over it.
+  // A rotation there would extend beyond it.
   EXPECT_EQ(rig.ErrorOf("one", "move_c", "{position: 10}"), ErrorId::kOffStators);
 }
 
-// PL-81: a collision range shorter than the movers of the track need is an error with the least that would do.
+// PL-81: a collision range shorter than the movers of the track need is an error with the smallest sufficient range.
 TEST(MoversWait, WithinRangesThatAreLongEnough) {
   const auto problem = [](const std::string& range) {
     const LoadResult loaded = LoadMachine(R"(
@@ -154,7 +154,7 @@ tracks:
               HasSubstr("movers of 155.0 mm by 155.0 mm on tracks that meet there can touch, found 60.0 mm"));
 }
 
-// PL-87: a mover off the stators of the environment of its group is an error, with what it covers.
+// PL-87: a mover off the stators of the environment of its group is an error, with the area that it covers.
 TEST(MoversWait, NotOffTheirEnvironment) {
   const auto problem = [](const std::string& place) {
     const LoadResult loaded = LoadMachine("name: x\naxes: []\nmovers:\n  - {name: a, initial: {" + place +

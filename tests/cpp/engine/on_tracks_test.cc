@@ -1,4 +1,4 @@
-// Commands to movers on tracks, as a machine carries them out: PL-11, PL-12, PL-15.
+// Commands to movers on tracks, carried out by a machine: PL-11, PL-12, PL-15.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct OnTracks : ::testing::Test {
     rig.Do("one", "enable");
     EXPECT_EQ(rig.ErrorOf("one", "join_track", "{track: way}"), ErrorId::kNone);
   }
-  // What the feedback of a command says as long as it is active.
+  // Returns the value of the feedback while the command is active.
   double Value(Ticket ticket) {
     rig.Run(2);
     EXPECT_EQ(rig.answers[ticket].state, FeedbackState::kActive);
@@ -33,7 +33,7 @@ struct OnTracks : ::testing::Test {
   PartsRig rig;
 };
 
-// PL-11: in the plane and on a track alike.
+// PL-11: in the plane as well as on a track.
 TEST_F(OnTracks, AHaltTakesItsDynamics) {
   for (const double deceleration : {1000.0, 4000.0}) {
     rig.Do("one", "move_on_track", "{position: 0}");
@@ -54,16 +54,16 @@ TEST_F(OnTracks, AHaltTakesItsDynamics) {
   }
 }
 
-// PL-15: how long it takes is known at the start.
+// PL-15: the duration is known at the start.
 TEST_F(OnTracks, TheTimeOfAMoveIsKnown) {
   for (const char* to : {"{position: 1000}", "{position: 4500}", "{position: 100, velocity: 300, jerk: 5000}"}) {
     const Ticket move = rig.Give("one", "move_on_track", to);
     const double takes = Value(move);
     const FeedbackEvent end = rig.End(move);
     EXPECT_EQ(end.error, ErrorId::kNone);
-    EXPECT_NEAR(takes, end.value, 0.01 * end.value) << to;  // in bends its dynamics may be softer than it reckoned with
+    EXPECT_NEAR(takes, end.value, 0.01 * end.value) << to;  // in bends its dynamics may be lower than planned
   }
-  // On the way, with dynamics that do not suffice for what it does: about.
+  // In motion, with dynamics that are insufficient for it: approximately.
   rig.Give("one", "move_on_track", "{position: 2500}");
   rig.Run(200);
   const Ticket move = rig.Give("one", "move_on_track", "{position: 4500, deceleration: 500, jerk: 10000}");

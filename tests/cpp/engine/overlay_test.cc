@@ -1,4 +1,4 @@
-// A motion on top of one that follows masters: AX-35.
+// Superimposed motion on an axis that follows masters: AX-35.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ bool IsDone(Line& line, Ticket ticket) {
   return line.last[ticket].state == FeedbackState::kDone;
 }
 
-// The gear stays what it was: as fast as its master, and so much further on.
+// The gear is unchanged: as fast as its master, with the added displacement.
 TEST(Overlay, ShiftsAGearedAxis) {
   Line line(WithStrong(LineOf(2), 1, 3));
   const Ticket gear = line.Give(1, Gear("a0", 2));
@@ -41,7 +41,7 @@ TEST(Overlay, ShiftsAGearedAxis) {
   EXPECT_EQ(line.last[gear].state, FeedbackState::kActive);
 }
 
-// Neither what is known of the place nor the next phase is lost with what was put on top.
+// Neither the known position nor the next phase is lost with the superimposed motion.
 TEST(Overlay, LeavesThePhaseAlone) {
   Line line(WithStrong(LineOf(2), 1, 3));
   line.Give(1, Gear("a0"));
@@ -55,7 +55,7 @@ TEST(Overlay, LeavesThePhaseAlone) {
   EXPECT_NEAR(line.At(1).set_position - line.At(0).set_position, begin + 13, 1e-9);
 }
 
-// On the strokes of a cam, too: the whole cam lies higher.
+// On the strokes of a cam, too: the whole cam is shifted.
 TEST(Overlay, RaisesACam) {
   Line line(WithCams(WithStrong(LineOf(2), 1, 3)));
   line.Give(1, Cam("a0", "stroke"));
@@ -70,7 +70,7 @@ TEST(Overlay, RaisesACam) {
   EXPECT_TRUE(line.At(1).in_step);
 }
 
-// A slave that waits for its master is somewhere else then, and gets into step so much further on.
+// A slave that waits for its master is displaced, and synchronises with that displacement.
 TEST(Overlay, MovesASlaveThatWaits) {
   Line line(WithCams(WithStrong(LineOf(2), 1, 3)));
   axis::GearInPos gear;
@@ -95,7 +95,7 @@ TEST(Overlay, MovesASlaveThatWaits) {
   EXPECT_TRUE(line.At(1).in_step);
 }
 
-// What follows the axis sees the sum.
+// Followers of the axis see the sum.
 TEST(Overlay, IsSeenByFollowers) {
   Line line(WithStrong(LineOf(3), 2, 3));
   line.Give(2, Gear("a1"));
@@ -107,7 +107,7 @@ TEST(Overlay, IsSeenByFollowers) {
   EXPECT_NEAR(line.At(2).set_position, 53, 1e-9);
 }
 
-// With the master's fault the slave stops, and nothing stays on top of it.
+// On a fault of the master the slave stops, and the superimposed motion ends.
 TEST(Overlay, EndsWithTheCoupling) {
   Line line(LineOf(2));
   line.Give(1, Gear("a0"));

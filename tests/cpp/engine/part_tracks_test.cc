@@ -1,4 +1,4 @@
-// PL-32, PL-33: tracks on parts of the surface that come and go.
+// PL-32, PL-33: tracks on moving parts of the surface.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Example 6.2.11: a track on a part with two positions, linked with one end or the other.
+// Example 6.2.11: a track on a part with two positions, linked at one end or the other.
 const std::string kNetwork = R"(
 name: network
 axes: []
@@ -67,7 +67,7 @@ TEST(PartTracks, TheNetworkOfTheManual) {
   EXPECT_TRUE(goes_into(0, 2) && goes_into(2, 1));
   EXPECT_FALSE(goes_into(1, 2) || goes_into(2, 0));
 
-  // A mover goes round: down by track two, and with the part up again.
+  // A mover travels around: down by track two, and up again with the part.
   for (const char* name : {"track_one", "track_two", "track_three"}) rig.Do(name, "enable");
   rig.Do("mover", "enable");
   rig.Run(3);
@@ -92,7 +92,7 @@ TEST(PartTracks, TheNetworkOfTheManual) {
   EXPECT_EQ(rig.ErrorOf("mover", "leave_track", "{x: 300, y: 480, reference: plane}"), ErrorId::kNone);
 }
 
-// Both in one cycle: whoever comes second is refused, in whichever order they come.
+// Both in one cycle: the second command is refused, in either order.
 TEST(PartTracks, AMoverAndItsPartDoNotMissEachOther) {
   const std::string text = With(kLift, "movers:", R"(tracks:
   - {name: below, part: one, elements: [{from: {x: 120, y: 60}, to: {x: 120, y: 240}}]}
@@ -172,7 +172,7 @@ movers:)";
   EXPECT_THAT(problem("{from: {x: 0, y: 360}", "{from: {x: 10, y: 360}"), HasSubstr("on the border of both"));
 }
 
-// A gap counts over the border, too, and none comes too near by a part that arrives.
+// The gap holds over the border, too, and no mover comes too close when a part arrives.
 TEST(PartTracks, KeepTheGapOverTheBorder) {
   const std::string text = With(With(kNetwork, "  - {name: track_one, part: one}\n", R"(  - name: track_one
     part: one
@@ -196,7 +196,7 @@ TEST(PartTracks, KeepTheGapOverTheBorder) {
   EXPECT_NEAR(rig.Mover("other").x, 480 + 80 - 200, 0.1);
   EXPECT_EQ(rig.Mover("other").waits_for, 1u);
   const FeedbackEvent refused = rig.Do("two", "activate_position", "{index: 2}");
-  EXPECT_EQ(refused.error, ErrorId::kPartTrack);  // one waits to come
+  EXPECT_EQ(refused.error, ErrorId::kPartTrack);  // a mover waits to enter
   rig.Do("other", "halt");
   EXPECT_EQ(rig.ErrorOf("two", "activate_position", "{index: 2}"), ErrorId::kNone);
   EXPECT_EQ(rig.answers[behind].state, FeedbackState::kAborted);
@@ -211,7 +211,7 @@ TEST(PartTracks, KeepTheGapOverTheBorder) {
   EXPECT_EQ(rig.ErrorOf("other", "move_on_track", "{position: 400}"), ErrorId::kNone);
 }
 
-// A part brings a mover in front of one that comes along: it is waited for, or the part does not go.
+// A part carries a mover in front of one that approaches: it is waited for, or the part does not move.
 TEST(PartTracks, WhoIsBroughtIsWaitedFor) {
   int went = 0, refused = 0;
   for (const double travel_s : {0.0, 0.3}) {
@@ -258,7 +258,7 @@ planar_groups: [{name: cell, movers: [one, two], tracks: [on_a, on_b]}]
           rig.Run(later);
           const Ticket goes = rig.Give("a", "activate_position", "{index: 2}");
           rig.Run();
-          // On its way nothing gets onto it.
+          // While the part moves nothing enters it.
           if (travel_s > 0 && rig.answers[goes].error == ErrorId::kNone) {
             EXPECT_EQ(rig.ErrorOf("two", "move_on_track", "{track: on_a, position: 100}"), ErrorId::kPartDisabled);
           }
@@ -288,7 +288,7 @@ planar_groups: [{name: cell, movers: [one, two], tracks: [on_a, on_b]}]
   EXPECT_GT(refused, 10);
 }
 
-// Linked only on the border of both parts, and only while they are where that was meant.
+// Linked only at the border of both parts, and only while both are at the positions of the link.
 TEST(PartTracks, AreLinkedOnTheBorderAlone) {
   PartsRig rig(kNetwork);
   const auto problem = [&](const FeedbackEvent& event) {

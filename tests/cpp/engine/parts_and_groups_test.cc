@@ -33,10 +33,10 @@ planar_groups:
 constexpr ObjectInfo kBelow{ObjectKind::kMover, 1};
 constexpr ObjectInfo kLine{ObjectKind::kTrack, 1};
 
-// Both are enabled, and in the group.
+// Enables both, and adds them to the group.
 void EnableAll(PartsRig& rig) {
   rig.Run();
-  EXPECT_EQ(rig.ErrorOf("cell", "enable"), ErrorId::kNone);  // at one place in two coordinate systems
+  EXPECT_EQ(rig.ErrorOf("cell", "enable"), ErrorId::kNone);  // at the same position in two coordinate systems
   EXPECT_EQ(rig.ErrorOf("below", "enable"), ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("above", "enable"), ErrorId::kNone);
 }
@@ -48,7 +48,7 @@ TEST(PartsAndGroups, MoversMeetOnlyInOneCoordinateSystem) {
   EXPECT_EQ(free, ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("below", "move_to_position", "{x: 120, y: 60, reference: three}"), ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("three", "activate_position", "{index: 2}"), ErrorId::kNone);
-  // It has taken its place along.
+  // It has kept its position on the part.
   FeedbackEvent refused = rig.Do("above", "move_to_position", "{x: 120, y: 190, reference: upper}");
   EXPECT_EQ(refused.error, ErrorId::kCollision);
   EXPECT_EQ(refused.object, kBelow);
@@ -69,7 +69,7 @@ TEST(PartsAndGroups, PartsGoWhereNothingIsReserved) {
   rig.Do("below", "move_to_position", "{x: 120, y: 60, reference: three}");
   rig.Do("line", "enable");
   EXPECT_EQ(rig.ErrorOf("above", "join_track", "{track: line}"), ErrorId::kNone);
-  // Where the lift goes the track ends, and one on it is about to come there.
+  // At the lift's target the track ends, and a mover is about to reach that end.
   const Ticket along = rig.Give("above", "move_on_track", "{position: 100}");
   rig.Run();
   const FeedbackEvent refused = rig.Do("three", "activate_position", "{index: 2}");
@@ -84,7 +84,8 @@ TEST(PartsAndGroups, PartsGoWhereNothingIsReserved) {
   EXPECT_EQ(meets.object, kBelow);
 }
 
-// However early it may leave the line before a corner, it does not cut across what is no stator: if need be it stops.
+// However early it leaves the line before a corner, it does not cut across a gap between stators: if necessary it
+// stops.
 TEST(PartsAndGroups, BlendedCornersStayOnStators) {
   double quickest = 1e9;
   for (const double blending : {0.0, 30.0, 80.0, 150.0, 200.0, 240.0}) {
@@ -127,7 +128,7 @@ movers:
   }
 }
 
-// The same with coordinates that count from a part.
+// The same with coordinates relative to a part.
 TEST(PartsAndGroups, BlendedCornersAreWhereTheReferenceSays) {
   std::array<int, 2> cycles{};
   for (const bool by_part : {false, true}) {
@@ -201,7 +202,7 @@ class TwoLiftsRig : public PartsRig {
   }
 };
 
-// PL-80: on tracks, too, the whole mover lies on stators that are there; so what two parts bring lies side by side.
+// PL-80: on tracks, too, the whole mover is on stators that are present; so movers that two parts carry stay apart.
 TEST(PartsAndGroups, WhatTwoPartsBringDoesNotMeet) {
   for (const bool grouped : {false, true}) {
     for (const int later : {0, 1, 100}) {
@@ -219,7 +220,7 @@ TEST(PartsAndGroups, WhatTwoPartsBringDoesNotMeet) {
   }
 }
 
-// Nobody gets onto what a part brings: not before it is there, for lack of stators, nor then.
+// The target position of a carried mover is reserved: before the arrival for lack of stators, and after it.
 TEST(PartsAndGroups, WhatAPartBringsHasItsPlaceThere) {
   for (const int later : {0, 1, 100, 300}) {
     TwoLiftsRig rig(0.2, true, 47, 173);
@@ -231,14 +232,14 @@ TEST(PartsAndGroups, WhatAPartBringsHasItsPlaceThere) {
     const FeedbackEvent then = rig.Do("three", "move_to_position", "{x: 440, y: 120, reference: plane}");
     EXPECT_EQ(then.error, ErrorId::kCollision);
     EXPECT_EQ(then.object, (ObjectInfo{ObjectKind::kMover, 1}));
-    // Back on its level it is in nobody's way.
+    // Back on its level it blocks no other mover.
     EXPECT_EQ(rig.ErrorOf("a", "activate_position", "{index: 1}"), ErrorId::kNone);
     EXPECT_EQ(rig.ErrorOf("three", "move_to_position", "{x: 420, y: 120, reference: plane}"), ErrorId::kNone);
   }
 }
 
-// Relative set points carry nobody into another: the way to a stop is asked for in every cycle, as moves ask for
-// theirs.
+// Relative set points cannot lead one mover into another: the area for stopping is reserved in every cycle, as for
+// moves.
 TEST(PartsAndGroups, RelativeSetPointsKeepClear) {
   for (const double top : {100.0, 500.0, 1500.0}) {
     PartsRig rig(R"(
@@ -261,7 +262,7 @@ planar_groups: [{name: cell, movers: [one, two, three]}]
       char text[200];
       std::snprintf(text, sizeof text, "{x: %.12g, velocity_x: %.12g, acceleration_x: %.12g}", x, v, v < top ? a : 0);
       rig.Give("one", "set_external_setpoint", text);
-      // Another one does not get what this one needs to stop.
+      // Another mover does not get the area that this one needs to stop.
       if (into == 0 && x > 700) {
         into = rig.Give("three", "move_to_position", "{x: " + std::to_string(x + 113 + v * v / 40000) + ", y: 0}");
       }

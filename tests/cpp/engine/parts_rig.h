@@ -1,4 +1,4 @@
-// A machine whose surface is made of parts, told in text, cycle by cycle.
+// A machine whose surface is made of parts, commanded by text, cycle by cycle.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ class PartsRig {
       if (each_cycle) each_cycle();
     }
   }
-  // What has become of it once it is over.
+  // Runs until the command is over and returns its result.
   FeedbackEvent End(Ticket ticket, int most = 20000) {
     for (int i = 0; i < most && !IsFinal(answers[ticket].state); ++i) Run();
     EXPECT_TRUE(IsFinal(answers[ticket].state));
@@ -71,7 +71,7 @@ class PartsRig {
 
   Engine engine;
   const Machine& machine;
-  std::map<Ticket, FeedbackEvent> answers;  // the last of each
+  std::map<Ticket, FeedbackEvent> answers;  // the last one of each
   std::function<void()> each_cycle;
 
  private:

@@ -1,5 +1,5 @@
-// PL-32, PL-33: parts of the surface in a machine: loading, references, where movers may go, what keeps a part from
-// going, the states that parts and movers force on each other.
+// PL-32, PL-33: parts of the surface in a machine: loading, references, positions that movers may reach, obstacles to
+// the motion of a part, the states that parts and movers force on each other.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ TEST(Parts, TheLiftOfTheManual) {
   EXPECT_EQ(rig.Part("one").state, ObjectState::kEnabled);
   EXPECT_EQ(rig.Part("two").state, ObjectState::kDisabled);
   EXPECT_EQ(rig.Part("three").state, ObjectState::kDisabled);
-  // It is upstairs: nobody gets there from here.
+  // It is on the upper level: not reachable from here.
   EXPECT_EQ(rig.ErrorOf("mover", "move_to_position", "{x: 120, y: 120, reference: three}"), ErrorId::kReference);
   EXPECT_EQ(rig.ErrorOf("mover", "move_to_position", "{x: 120, y: 360, reference: lower}"), ErrorId::kOffStators);
   EXPECT_EQ(rig.ErrorOf("mover", "move_to_position", "{x: 120, y: 120}"), ErrorId::kReference);
@@ -71,13 +71,13 @@ TEST(Parts, TheLiftOfTheManual) {
   EXPECT_EQ(rig.Do("three", "activate_position", "{index: 2}").state, FeedbackState::kDone);
   EXPECT_EQ(rig.Mover("mover").coordinate_system, 2u);
   EXPECT_NEAR(rig.Mover("mover").y, 360, 1e-9);
-  // As the manual's program does: at once.
+  // As in the manual's program: at once.
   EXPECT_EQ(rig.Do("mover", "move_to_position", "{x: 120, y: 120, reference: two}").state, FeedbackState::kDone);
   EXPECT_NEAR(rig.Mover("mover").x, 120, 1e-9);
   EXPECT_NEAR(rig.Mover("mover").y, 120, 1e-9);
   EXPECT_EQ(rig.Mover("mover").coordinate_system, 2u);
   EXPECT_EQ(rig.Mover("mover").part, 2u);
-  // Parts are enabled where the mover is.
+  // Parts are enabled in the mover's coordinate system.
   EXPECT_EQ(rig.Part("one").state, ObjectState::kDisabled);
   EXPECT_EQ(rig.Part("two").state, ObjectState::kEnabled);
   EXPECT_EQ(rig.Part("three").state, ObjectState::kEnabled);
@@ -86,7 +86,7 @@ TEST(Parts, TheLiftOfTheManual) {
   EXPECT_EQ(rig.Part("two").state, ObjectState::kDisabled);
 }
 
-// PL-20, PL-33: a part that leaves while a linked track is made does not change where the track starts.
+// PL-20, PL-33: a part that leaves while a linked track is built does not change the start of the track.
 TEST(Parts, LeaveWhileALinkIsMade) {
   PartsRig rig(R"(
 name: side by side
@@ -107,7 +107,7 @@ tracks:
   const Ticket leaving = rig.Give("right", "activate_position", "{index: 2}");
   for (int i = 0; i < 3; ++i) rig.engine.RunCycle();
   EXPECT_EQ(rig.Part("right").position_index, 0u);
-  rig.engine.MakeTracks();  // only now
+  rig.engine.MakeTracks();  // delayed until now
   EXPECT_EQ(rig.End(link).state, FeedbackState::kDone);
   rig.End(leaving);
   EXPECT_EQ(rig.Do("right", "activate_position", "{index: 1}").state, FeedbackState::kDone);
@@ -116,7 +116,7 @@ tracks:
   EXPECT_NEAR(rig.engine.tracks().outputs[1].length, 200, 1e-9);
 }
 
-// A simulated lift is nowhere for as long as it takes.
+// The position of a simulated lift is unknown while it moves.
 TEST(Parts, ALiftTakesItsTime) {
   PartsRig rig(With(kLift, "initial_position: 2", "initial_position: 2\n    travel_time_s: 0.05"));
   rig.Run();
@@ -130,7 +130,7 @@ TEST(Parts, ALiftTakesItsTime) {
   EXPECT_EQ(rig.Part("three").error, ErrorId::kNone);
 }
 
-// Refused with what is in the way, and nothing has changed then.
+// Refused with the obstacle, and without any change.
 TEST(Parts, GoOnlyWhenThatIsSafe) {
   const std::string text =
       With(kLift, "movers:",
@@ -140,7 +140,7 @@ movers:
   PartsRig rig(text);
   rig.Run();
   EXPECT_THROW(rig.Give("three", "activate_position", "{index: 3}"), std::runtime_error);
-  EXPECT_EQ(rig.Do("three", "activate_position", "{index: 2}").state, FeedbackState::kDone);  // it is there
+  EXPECT_EQ(rig.Do("three", "activate_position", "{index: 2}").state, FeedbackState::kDone);  // it is there already
   EXPECT_EQ(rig.Do("four", "activate_position", "{index: 2}").state, FeedbackState::kDone);
   FeedbackEvent refused = rig.Do("three", "activate_position", "{index: 1}");
   EXPECT_EQ(refused.error, ErrorId::kPartPlace);
@@ -150,7 +150,7 @@ movers:
 
   rig.Do("mover", "enable");
   rig.Run(3);
-  // On its way over the border, and standing across it.
+  // Moving over the border, and at rest across it.
   const Ticket crossing = rig.Give("mover", "move_to_position", "{x: 120, y: 0, reference: three}");
   rig.Run();
   refused = rig.Do("three", "activate_position", "{index: 2}");
@@ -160,9 +160,9 @@ movers:
   EXPECT_NEAR(rig.Mover("mover").y, 240, 1e-9);
   EXPECT_EQ(rig.ErrorOf("three", "activate_position", "{index: 2}"), ErrorId::kPartMover);
   EXPECT_EQ(rig.Part("three").position_index, 1u);
-  // Flush with the border it is on one side.
+  // Adjacent to the border it is on one side.
   rig.Do("mover", "move_to_position", "{x: 120, y: 56.5, reference: three}");
-  // Moving on it, be it only up and down.
+  // Moving on it, even if only vertically.
   rig.Give("mover", "move_z", "{position: 3}");
   EXPECT_EQ(rig.ErrorOf("three", "activate_position", "{index: 2}"), ErrorId::kPartMover);
   rig.Run(2000);
@@ -170,7 +170,7 @@ movers:
   EXPECT_NEAR(rig.Mover("mover").y, 296.5, 1e-9);
 }
 
-// What a real part does: it takes its time, does not get there, or is lost.
+// Behaviour of a real part: it takes time, does not arrive, or is lost.
 TEST(Parts, TakeTheirTime) {
   PartsRig rig(kLift);
   rig.Run();
@@ -194,7 +194,7 @@ TEST(Parts, TakeTheirTime) {
   EXPECT_EQ(rig.Mover("mover").error, ErrorId::kPartPosition);
 }
 
-// 6.6: forced off, its movers have a fault; on again only after allow_enable.
+// 6.6: forced off, its movers enter the error state; it is enabled again only after allow_enable.
 TEST(Parts, AreForcedOff) {
   PartsRig rig(kLift);
   rig.Do("three", "activate_position", "{index: 1}");
@@ -206,7 +206,7 @@ TEST(Parts, AreForcedOff) {
   rig.Run();
   EXPECT_EQ(rig.answers[move].error, ErrorId::kPartDisabled);
   EXPECT_EQ(rig.Mover("mover").state, ObjectState::kErrorPending);
-  EXPECT_EQ(rig.Part("three").state, ObjectState::kDisabling);  // as long as it has to brake
+  EXPECT_EQ(rig.Part("three").state, ObjectState::kDisabling);  // while the mover brakes
   rig.End(off);
   rig.Run();
   EXPECT_EQ(rig.Mover("mover").state, ObjectState::kError);
@@ -232,7 +232,7 @@ TEST(Parts, AreForcedOff) {
   EXPECT_EQ(rig.ErrorOf("mover", "enable"), ErrorId::kPartDisabled);
 }
 
-// 6.6: the movers' errors come first; a mover's reset resets its part, which is first then.
+// 6.6: the movers' errors are handled first; a mover's reset resets its part, which then comes first.
 TEST(Parts, FailWithTheirMovers) {
   PartsRig rig(kLift);
   rig.Do("mover", "enable");
@@ -264,7 +264,7 @@ TEST(Parts, FailWithTheirMovers) {
   EXPECT_EQ(rig.Mover("mover").state, ObjectState::kDisabled);
   EXPECT_EQ(rig.Part("one").state, ObjectState::kDisabled);
   EXPECT_EQ(rig.Do("mover", "enable").state, FeedbackState::kDone);
-  // The part's own reset leaves the mover's error.
+  // The part's own reset does not clear the mover's error.
   rig.each_cycle = nullptr;
   rig.engine.part_faults(0).fault = true;
   rig.Run(100);
@@ -275,7 +275,7 @@ TEST(Parts, FailWithTheirMovers) {
   EXPECT_EQ(rig.Mover("mover").state, ObjectState::kError);
 }
 
-// A mover that is reset waits for its part, which waits for the last of its movers.
+// A mover that is being reset waits for its part, which waits for the last of its movers.
 TEST(Parts, AreResetBeforeTheirMovers) {
   PartsRig rig(With(kLift, "{name: one, positions", "{name: one, columns: 8, positions") +
                "  - {name: other, reference: one, initial: {x: 400, y: 120}}\n");
@@ -300,7 +300,7 @@ TEST(Parts, AreResetBeforeTheirMovers) {
   EXPECT_EQ(rig.Mover("other").state, ObjectState::kError);
 }
 
-// Set points from outside: part or coordinate system, and no further than the stators.
+// External set points: in a part or a coordinate system, and only on stators.
 TEST(Parts, HoldSetPointsFromOutside) {
   PartsRig rig(With(kLift, "initial_position: 2", "initial_position: 1"));
   rig.Do("mover", "enable");
@@ -338,8 +338,8 @@ TEST(Parts, SetPositionNamesTheCoordinateSystem) {
   EXPECT_NEAR(rig.Mover("mover").y, 370, 1e-9);
 }
 
-// PL-14, PL-32: to axes that follow a coordinate of a mover, its part's arrival is no motion; commands from then on
-// speak of the new numbers.
+// PL-14, PL-32: for axes that follow a coordinate of a mover, the arrival of its part is no motion; later commands
+// refer to the new coordinates.
 TEST(PartsOfMasters, TakeNobodyAlong) {
   PartsRig rig(R"(
 name: shuttle
@@ -374,7 +374,7 @@ movers:
   EXPECT_EQ(rig.answers[in_place].state, FeedbackState::kActive);
   EXPECT_NEAR(rig.engine.outputs(0).set_position, 10, 1e-9);
   EXPECT_NEAR(rig.engine.outputs(1).set_position, z + 5, 1e-9);
-  // By numbers of where it is now.
+  // In coordinates of its present position.
   rig.Do("z", "move_absolute", "{position: 0, velocity: 100}");
   rig.Give("z", "gear_in_pos", "{master: mover.y, master_sync_position: -100, slave_sync_position: 50}");
   rig.Run(1000);

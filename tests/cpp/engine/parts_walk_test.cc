@@ -1,7 +1,7 @@
-// PL-32: random commands to movers and parts on two levels, at any time. What they do is held against the outputs alone
-// and the machine file: every mover is on stators with all of it, stays in its place on a part that goes, keeps its gap
-// on tracks, and overlaps no other one, in a group or not; what is refused is not safe and what is accepted is. And all
-// of it can be replayed.
+// PL-32: random commands to movers and parts on two levels, at any time. The motion is checked against the outputs and
+// the machine file alone: every mover is completely on stators, keeps its position on a moving part, keeps its gap on
+// tracks, and overlaps no other one, in a group or not; a refused command is unsafe and an accepted one is safe. And
+// the run can be replayed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ planar_groups:
   - {name: cell, movers: [a, b, c, d], tracks: [hall_way, attic_way, lift_way]}
 )";
 
-// Where a part is, as it said last.
+// Position of a part, as last published.
 struct Seen {
   std::uint32_t system = 0;  // from 1
   Place origin;
@@ -64,7 +64,7 @@ class RandomParts {
         faults_(faults),
         grouped_(grouped) {
     for (const part::PartParams& part : rig.machine.parts) stators_.push_back(part::StatorsOf(part));
-    // The lift's track goes on from either.
+    // The lift's track continues from either.
     rig.Do("lift", "activate_position", "{index: 2}");
     EXPECT_EQ(rig.ErrorOf("lift_way", "start_from_track", "{track: attic_way}"), ErrorId::kNone);
     for (const char* track : {"hall_way", "attic_way", "lift_way"}) rig.Do(track, "enable");
@@ -84,7 +84,7 @@ class RandomParts {
 
   PartsRig rig;
   int activated = 0, hindered = 0, off = 0, crossed = 0, moved = 0, carried = 0, on_track = 0, changed_track = 0;
-  int collided = 0, beside = 0;  // beside: two bodies were less than 20 mm apart in a cycle
+  int collided = 0, beside = 0;  // beside: cycles with two bodies less than 20 mm apart
 
  private:
   double Uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random_); }
@@ -109,7 +109,7 @@ class RandomParts {
     for (std::size_t i = 0; i < machine().movers.size(); ++i) movers_.push_back(MoverAt(i));
   }
 
-  // Of the outline of a mover, `step` mm apart, so much larger than it is.
+  // Returns points on the outline of a mover, `step` mm apart, enlarged by `larger`.
   std::vector<Place> OutlineOf(std::size_t mover, Place at, double c, double larger, double step) const {
     const double w = machine().movers[mover].width / 2 + larger, h = machine().movers[mover].height / 2 + larger;
     const double cosine = std::cos(c * M_PI / 180), sine = std::sin(c * M_PI / 180);
@@ -130,7 +130,7 @@ class RandomParts {
       return x > -slack && y > -slack && x < 240 + slack && y < 240 + slack;
     });
   }
-  // Of all parts, also of those on their way where they were last, or not of these.
+  // Of all parts, with or without those in motion (at their last position).
   bool OnStators(std::uint32_t system, const std::vector<Place>& places, double slack,
                  const std::vector<bool>& away = {}) const {
     return std::ranges::all_of(places, [&](const Place& p) {
@@ -148,7 +148,7 @@ class RandomParts {
            IsOn(part, where, system, at, -1e-9);
   }
 
-  // How far two rectangles are apart along one of their sides; below 0: they overlap by so much at least.
+  // Returns the distance of two rectangles along one of their sides; below 0: an overlap of at least that.
   double Apart(std::size_t a, const mover::Outputs& at_a, std::size_t b, const mover::Outputs& at_b) const {
     double most = -1e9;
     for (const double c : {at_a.c, at_a.c + 90, at_b.c, at_b.c + 90}) {
@@ -194,7 +194,7 @@ class RandomParts {
           << machine().movers[i].name << " at " << now.x << ", " << now.y << " turned " << now.c << " in "
           << now.coordinate_system << ", cycle " << rig.engine.cycle().count;
       ASSERT_NE(now.part, 0u);
-      // Seen from where it was, wherever that has gone.
+      // Relative to its part, at any position of that.
       const std::size_t on = before[i].part - 1;
       const double x = now.x - parts_[on].origin.x - (before[i].x - were[on].origin.x);
       const double y = now.y - parts_[on].origin.y - (before[i].y - were[on].origin.y);
@@ -268,7 +268,7 @@ class RandomParts {
     }
   }
 
-  // From rest and without turning it is known what has to become of it.
+  // If it starts from rest and does not rotate, the result is known.
   void Send(std::size_t m) {
     const mover::Outputs& o = MoverAt(m);
     const std::size_t r = static_cast<std::size_t>(Whole(0, static_cast<int>(machine().parts.size())));
@@ -313,7 +313,7 @@ class RandomParts {
                             << to.y;
       ++off;
     } else if (error == ErrorId::kCollision) {
-      // With one of the group, or with whom a part brings.
+      // With a mover of the group, or with one that a part carries.
       EXPECT_TRUE(grouped_ || std::ranges::count(away, true) > 0);
       EXPECT_NE(rig.answers[ticket].object.kind, ObjectKind::kNone);
       ++collided;
@@ -404,7 +404,7 @@ class RandomParts {
       ASSERT_EQ(answer.error, ErrorId::kPartMover);
       const mover::Outputs& o = stood.at(number - 1);
       const bool on = o.part == p + 1;
-      // A mover that is neither in its way now nor going anywhere can only be under what it carries or where it goes.
+      // A mover that is neither in the way now nor moving can only be under the carried movers or at the target.
       const bool reason = busy(o) || (on ? reaches_others(number - 1, 0.01) : reaches(number - 1, p, 0.01)) ||
                           o.coordinate_system == to.system || away[o.part - 1];
       EXPECT_TRUE(reason) << part.name << " to " << index << ", " << machine().movers[number - 1].name;
@@ -453,7 +453,7 @@ TEST(PartsWalk, NobodyLeavesTheStators) {
   EXPECT_GT(carried, Trials(50));
 }
 
-// EN-06: what was given to one engine gives the same bits in another.
+// EN-06: the same commands give the same bits in another engine.
 TEST(PartsWalk, CanBeReplayed) {
   RandomParts walk(3, false, true);
   walk.Go(500);

@@ -1,4 +1,4 @@
-// PP-01, EN-22: pick and place modules in a machine: loading, commands as text, a pick from a belt that runs.
+// PP-01, EN-22: pick and place modules in a machine: loading, commands as text, a pick from a moving belt.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ Machine CellMachine() {
   return MachineOf(kCellText);
 }
 
-// PP-01: what a machine file says wrong.
+// PP-01: mistakes in a machine file.
 TEST(PickPlaceMachine, SaysWhatWasExpected) {
   EXPECT_THAT(ProblemOf(kCellText, "group: portal", "group: portl"),
               HasSubstr("expected the name of a group, found 'portl'; did you mean portal?"));
@@ -56,7 +56,7 @@ TEST(PickPlaceMachine, SaysWhatWasExpected) {
               HasSubstr("expected the name of an axis of its group, found 'drive'"));
 }
 
-// PP-01, EN-22: every number made wrong is refused with a sentence.
+// PP-01, EN-22: every number made invalid is refused with a sentence.
 TEST(PickPlaceMachine, BadNumbersAreRefusedAsText) {
   const Machine machine = CellMachine();
   int refused = 0;
@@ -114,7 +114,7 @@ TEST(PickPlaceMachine, PicksFromABelt) {
   EXPECT_NEAR(run.engine.group_outputs(0).x, 300, 1e-6);
 }
 
-// EN-11: twice the same is the same to the last bit of the state.
+// EN-11: two equal runs are identical to the last bit of the state.
 TEST(PickPlaceMachine, TheSameAgain) {
   Cell one, other;
   PickOne(one);

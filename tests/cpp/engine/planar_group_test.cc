@@ -1,5 +1,5 @@
-// PL-01, PL-02, PL-30, PL-31: groups of movers and environments in a machine: bad input, and random commands after
-// which nothing ever touches.
+// PL-01, PL-02, PL-30, PL-31: groups of movers and environments in a machine: invalid input, and random commands
+// without collisions.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -57,7 +57,7 @@ TEST(PlanarGroupMachine, SaysWhatWasExpected) {
               HasSubstr("environments[0].stators[1]: two stators"));
 }
 
-// The first of each kind.
+// The first component of each kind.
 constexpr std::uint32_t kCell = 2 + 1 + 1, kFloor = kCell + 1, kTable = kFloor + 1;
 
 template <typename Kind>
@@ -102,7 +102,7 @@ TEST(PlanarGroupMachine, BadNumbersAreRefused) {
   EXPECT_THAT(ParseCommand(machine, "table", "add_to_group", "{group: one}").sentence, HasSubstr("a group of movers"));
 }
 
-// Gives commands one after the other and says what became of them.
+// Gives commands one after the other and returns their results.
 struct Talk {
   explicit Talk(const Machine& machine) : engine(machine), checks(engine, {}) {}
 
@@ -125,7 +125,7 @@ struct Talk {
   std::map<Ticket, FeedbackEvent> last;
 };
 
-// Who is in what, and who may not come into it.
+// Membership of groups, and objects that may not join.
 TEST(PlanarGroupMachine, HasMembers) {
   Talk talk(GroundMachine());
   const auto error = [&](std::uint32_t target, const CommandBody& body) { return talk.Give(target, body).error; };
@@ -141,7 +141,7 @@ TEST(PlanarGroupMachine, HasMembers) {
   EXPECT_EQ(error(kTable, environment::Command(environment::RemoveFromGroup{})), ErrorId::kNoPlanarGroup);
   EXPECT_EQ(error(kFloor, environment::Command(environment::RemoveFromGroup{})), ErrorId::kNone);
   EXPECT_EQ(error(kTable, environment::Command(cell(environment::AddToGroup{}))), ErrorId::kNone);
-  // Without a boundary there is nothing to watch.
+  // Without a boundary there is nothing to check.
   EXPECT_EQ(error(kCell, planargroup::Command(planargroup::Enable{})), ErrorId::kNoBoundary);
   EXPECT_EQ(error(kTable, environment::Command(environment::RemoveFromGroup{})), ErrorId::kNone);
   EXPECT_EQ(error(kCell, planargroup::Command(planargroup::Enable{})), ErrorId::kNone);
@@ -151,20 +151,20 @@ TEST(PlanarGroupMachine, HasMembers) {
   EXPECT_EQ(error(1, mover::Command(cell(mover::AddToGroup{}))), ErrorId::kNone);
   EXPECT_EQ(error(1, mover::Command(mover::RemoveFromGroup{})), ErrorId::kNone);
   EXPECT_EQ(error(1, mover::Command(mover::RemoveFromGroup{})), ErrorId::kNoPlanarGroup);
-  // One in motion, or where another one is, does not come into an enabled group.
+  // An object in motion, or at the position of another one, does not join an enabled group.
   EXPECT_EQ(error(1, mover::Command(mover::Enable{})), ErrorId::kNone);
   talk.engine.Submit({.target = 1, .body = mover::Command(mover::MoveToPosition{.x = 200})});
   EXPECT_EQ(error(1, mover::Command(cell(mover::AddToGroup{}))), ErrorId::kObjectMoves);
   for (int i = 0; i < 1000; ++i) talk.Cycle();
   const FeedbackEvent refused = talk.Give(1, mover::Command(cell(mover::AddToGroup{})));
-  EXPECT_EQ(refused.error, ErrorId::kObjectMoves);  // it waits for the other one, where it cannot go
+  EXPECT_EQ(refused.error, ErrorId::kObjectMoves);  // it waits for the other one, which it cannot pass
   EXPECT_EQ(refused.object, (ObjectInfo{ObjectKind::kMover, 1}));
   EXPECT_EQ(talk.engine.mover_outputs(0).waits_for, 2u);
   EXPECT_EQ(SentenceNaming(refused, talk.engine.machine()),
             std::string(ErrorText(ErrorId::kObjectMoves)) + ": mover one");
 }
 
-// A random walk in a hall: stators with a hole, movers that go, turn, halt and fail, and some that ride on a track.
+// A random walk in a hall: stators with a hole, movers that translate, rotate, halt and fail, and some on a track.
 class Hall {
  public:
   static constexpr std::uint32_t kMovers = 18;
@@ -177,7 +177,7 @@ class Hall {
     Must(kGroup, planargroup::Command(planargroup::Enable{}));
   }
 
-  // A corridor below with a track, stators around a hole above.
+  // A corridor with a track at the bottom, stators around a hole at the top.
   static Machine Make(std::mt19937& random, bool waits) {
     Machine machine;
     machine.name = "hall";
@@ -216,7 +216,8 @@ class Hall {
     for (std::uint32_t i = 0; i < kMovers; ++i) ExpectFree(i);
   }
 
-  // All come to rest, those too that wait for one another on the track; then what is reserved is where they stand.
+  // All come to rest, including those that wait for one another on the track; then only their areas at rest are
+  // reserved.
   void Settle() {
     for (int i = 0; i < 4000; ++i) {
       if (i >= 3000 && i < 3000 + static_cast<int>(kMovers)) Give(static_cast<std::uint32_t>(i - 3000), mover::Halt{});
@@ -259,7 +260,7 @@ class Hall {
 
   struct Wish {
     std::uint32_t mover = 0;
-    bool straight = false;  // from rest, without a turn
+    bool straight = false;  // from rest, without a rotation
     bool waited = false;    // for its area
     Point from{}, to{};
     double c = 0;
@@ -283,7 +284,7 @@ class Hall {
       case 1:
         if (Below(4) == 0) Give(i, mover::Disable{});
         return;
-      case 2:  // set points from outside, none of which comes: a fault in motion
+      case 2:  // external set points that never arrive: a fault in motion
         if (at.busy_xyc && Below(2) == 0) {
           Give(i, mover::StartExternalSetpointGeneration{.mode = mover::SetpointMode::kRelative});
           Give(i, mover::SetExternalSetpoint{});
@@ -345,7 +346,7 @@ class Hall {
     for (std::uint32_t i = 0; i < kMovers; ++i) rides += std::abs(Of(i).track_velocity) > 100 ? 1 : 0;
   }
 
-  // On the straight way of one that stood there is the border, or another one that stands.
+  // On the straight path of a mover from rest there is the border, or another mover at rest.
   void Justify(const Wish& wish, const ObjectInfo& object) {
     if (!wish.straight) return;
     const bool border = object.kind == ObjectKind::kEnvironment;
@@ -378,7 +379,7 @@ class Hall {
   }
   Corners BodyOf(std::uint32_t i) const { return Body(i, Of(i).x, Of(i).y, Of(i).c); }
 
-  // mm, by the axes across the sides; below 0 they overlap.
+  // [mm] by separating axes; below 0 they overlap.
   static double Apart(const Corners& a, const Corners& b) {
     double most = -1e9;
     for (const Corners* body : {&a, &b}) {
@@ -402,7 +403,7 @@ class Hall {
     return most;
   }
 
-  // Within the outer border, and clear of the hole: by more than `by`, mm.
+  // Returns true if the body is within the outer border, and clear of the hole, by more than `by` [mm].
   static bool OnFloor(const Corners& body, double by) {
     for (const Point& p : body) {
       if (p.x < -by - 1e-6 || p.y < -by - 1e-6 || p.x > 1680 + by + 1e-6 || p.y > 1440 + by + 1e-6) return false;
@@ -430,9 +431,9 @@ class Hall {
   std::map<Ticket, Wish> wishes_;
 };
 
-// PL-30, PL-72: whatever 18 movers are told, whatever halts them or fails, no two bodies ever touch, and none leaves
-// the stators; what is refused had a reason, also where moves wait for their area instead; and once all rest nothing is
-// reserved but where they stand.
+// PL-30, PL-72: with any commands to 18 movers, and any halts and faults, no two bodies ever touch, and none leaves the
+// stators; a refused command had a reason, also if moves wait for their area instead; and once all are at rest only
+// their own areas are reserved.
 TEST(PlanarGroupMachine, NothingEverTouches) {
   std::map<ObjectKind, int> refused;
   int done = 0, faults = 0, rides = 0, justified = 0, waited = 0, after_waiting = 0;

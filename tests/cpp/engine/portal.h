@@ -1,5 +1,5 @@
-// A portal of two axes with an auxiliary one, and two axes besides that move a belt and a table, on an engine in
-// virtual time.
+// A portal of two axes with an auxiliary one, and two more axes that move a belt and a table, on an engine in virtual
+// time.
 #pragma once
 
 #include <stdexcept>
@@ -42,7 +42,7 @@ inline Machine PortalMachine() {
   return *loaded.machine;
 }
 
-// All axes powered, the group enabled.
+// Powers all axes and enables the group.
 class Portal : public Line {
  public:
   Portal() : Line(PortalMachine()) {

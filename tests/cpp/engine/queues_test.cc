@@ -1,4 +1,4 @@
-// What comes in and goes out over queues, each of which may be full: commands, feedback, snapshots, figures.
+// Queues for input and output, each of which may be full: commands, feedback, snapshots, figures.
 #include "takt/engine/engine.h"
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@
 namespace takt::engine {
 namespace {
 
-// EN-21, EN-22: a full queue refuses; what was refused has no ticket, what was accepted is answered, in order.
+// EN-21, EN-22: a full queue refuses; a refused command has no ticket, accepted ones are answered, in order.
 TEST(CommandQueue, RefusesWhenFullAndLosesNothing) {
   const Machine machine = FullMachine();
   Engine engine(machine, {.command_queue = 128});
@@ -31,7 +31,7 @@ TEST(CommandQueue, RefusesWhenFullAndLosesNothing) {
     FeedbackEvent event;
     while (engine.feedback().TryPop(event)) answered.push_back(event.ticket);
     if (i == 0) {
-      EXPECT_EQ(answered.size(), kCommandsPerCycle);  // a cycle takes so many at most
+      EXPECT_EQ(answered.size(), kCommandsPerCycle);  // the maximum of a cycle
     }
   }
   EXPECT_EQ(engine.figures().commands_applied, 128u);
@@ -39,8 +39,8 @@ TEST(CommandQueue, RefusesWhenFullAndLosesNothing) {
   EXPECT_EQ(engine.figures().commands_refused, 872u);
 }
 
-// EN-22, EN-23: a flood of commands keeps out neither heartbeats nor what lets go or stops. At the longest cycle the
-// queue alone would hold a heartbeat up for longer than its lease.
+// EN-22, EN-23: a flood of commands blocks neither heartbeats nor commands with LetsGo(). At the longest cycle the
+// queue alone would delay a heartbeat for longer than its lease.
 TEST(CommandQueue, AFloodKeepsOutNeitherRenewalsNorStops) {
   Machine machine = FullMachine();
   machine.cycle.period_s = 0.02;
@@ -79,7 +79,7 @@ TEST(CommandQueue, AFloodKeepsOutNeitherRenewalsNorStops) {
   EXPECT_FALSE(engine.outputs(y1).loop_closed);
 }
 
-// EN-32: with the queue full of others whatever stops, releases or switches off is taken, of every kind of component,
+// EN-32: with a full queue every command that stops, releases or switches off is accepted, for every kind of component,
 // in its text form and as the parser reads it; nothing else is.
 TEST(CommandQueue, TakesWhatLetsGoOfEveryKind) {
   const Machine machine = FullMachine();
@@ -136,7 +136,7 @@ TEST(CommandQueue, TakesWhatLetsGoOfEveryKind) {
       EXPECT_NE(engine.Submit(parsed.command), 0u) << verb.first << ' ' << verb.second << ' ' << arguments;
     }
   }
-  for (const Verb& verb : Verbs()) {  // with nothing given most verbs cannot be read, or move nothing
+  for (const Verb& verb : Verbs()) {  // without arguments most verbs cannot be parsed, or cause no motion
     if (lets_go.contains({std::string(verb.target_kind), std::string(verb.name)})) continue;
     EXPECT_FALSE(LetsGo(verb.target_kind, verb.name, "")) << verb.target_kind << ' ' << verb.name;
   }
@@ -150,7 +150,7 @@ TEST(CommandQueue, TakesWhatLetsGoOfEveryKind) {
   EXPECT_FALSE(LetsGo("axis", "no_such", ""));
 }
 
-// EN-32: there is a place for every component's stop at once, and one for the whole machine behind a flood of those.
+// EN-32: there is a reserved entry for the stop of every component, and one for the whole machine after all of those.
 TEST(CommandQueue, HasAPlaceForEveryStopAtOnce) {
   const Machine machine = FullMachine();
   Engine engine(machine, {.command_queue = 16});
@@ -166,7 +166,8 @@ TEST(CommandQueue, HasAPlaceForEveryStopAtOnce) {
   EXPECT_EQ(engine.Submit({.body = MachineCommand(Release{3})}), 0u);
 }
 
-// EN-33: what waited in the queue beyond its age limit is refused, unless it lets go; without a clock nothing is.
+// EN-33: a command that waited in the queue beyond its age limit is refused, unless LetsGo() is true; without a clock
+// none is.
 TEST(CommandQueue, RefusesWhatExpiredMeanwhile) {
   const Machine machine = FullMachine();
   constexpr std::int64_t kSecond = 1'000'000'000;
@@ -183,7 +184,7 @@ TEST(CommandQueue, RefusesWhatExpiredMeanwhile) {
   }
 }
 
-// What lets go keeps its place behind what was given before it.
+// Commands with LetsGo() stay behind earlier commands.
 TEST(CommandQueue, KeepsTheOrder) {
   const Machine machine = FullMachine();
   Engine engine(machine);
@@ -196,16 +197,16 @@ TEST(CommandQueue, KeepsTheOrder) {
   EXPECT_LT(std::abs(engine.outputs(AxisNamed(machine, "y1")).set_position), 1);
 }
 
-// EN-21: nobody empties the snapshot queue: counted drops, and the cycle goes on unchanged.
+// EN-21: without a reader of the snapshot queue: counted drops, and the cycle is unaffected.
 TEST(Snapshots, AreDroppedAndCountedWhenNobodyReads) {
   const Machine machine = FullMachine();
   Engine engine(machine, {.publish = true, .every_cycle = true, .snapshot_queue = 64});
   for (int i = 0; i < 1000; ++i) engine.RunCycle();
-  const std::size_t kept = 7 * 64 + 2 * 64;  // a queue for each kind of components, one for what lies on belts
+  const std::size_t kept = 7 * 64 + 2 * 64;  // a queue for each kind of components, one for objects on belts
   EXPECT_EQ(engine.figures().snapshots_dropped, 1000 * (engine.components() + machine.belts.size()) - kept);
 }
 
-// EN-21: nobody takes the feedback: what is lost is counted.
+// EN-21: without a reader of the feedback: lost events are counted.
 TEST(FeedbackQueue, CountsWhatItLost) {
   const Machine machine = FullMachine();
   Engine engine(machine);
@@ -221,7 +222,7 @@ TEST(FeedbackQueue, CountsWhatItLost) {
   EXPECT_EQ(taken + engine.figures().feedback_dropped, given);
 }
 
-// EN-20: the engine's own figures, at their rate, each of its cycle; nothing where nobody asked for it.
+// EN-20: the engine's own figures, at their rate, each of its cycle; none without `publish`.
 TEST(Figures, ComeAtTheirRate) {
   Machine machine = FullMachine();
   machine.lcm.engine_rate_hz = 20;
@@ -241,7 +242,7 @@ TEST(Figures, ComeAtTheirRate) {
   EXPECT_FALSE(silent.figure_queue().TryPop(figures));
 }
 
-// EN-20: a rate that is no divisor is rounded; every_cycle adds the others, which are not due.
+// EN-20: a rate that is no divisor is rounded; every_cycle adds the other cycles, which are not due.
 TEST(Snapshots, SayWhetherTheyAreDue) {
   Machine machine = FullMachine();
   machine.lcm.axis_rate_hz = 150;  // every 7th cycle
@@ -284,7 +285,7 @@ TEST(Snapshots, ComeAtTheRateOfTheirChannel) {
   EXPECT_EQ(of_module, 250);
 }
 
-// EN-20: axes of one rate come in the same cycles.
+// EN-20: axes of one rate are published in the same cycles.
 TEST(Snapshots, OfOneRateComeTogether) {
   Machine machine = FullMachine();
   machine.lcm.axis_rate_hz = 100;
@@ -297,7 +298,7 @@ TEST(Snapshots, OfOneRateComeTogether) {
   for (const auto& [cycle, count] : axes) EXPECT_EQ(count, machine.axes.size()) << cycle;
 }
 
-// EN-21: what does not fit is dropped of another one every time, so that everybody is heard of.
+// EN-21: dropped snapshots are those of another component every time, so that each is published from time to time.
 TEST(Snapshots, ThatDoNotFitAreNotAlwaysThoseOfTheSame) {
   for (const double rate_hz : {1000.0, 500.0, 100.0}) {
     Machine machine = FullMachine();
@@ -316,7 +317,7 @@ TEST(Snapshots, ThatDoNotFitAreNotAlwaysThoseOfTheSame) {
   }
 }
 
-// A command for a target that does not exist, handed in from C++ past the parser.
+// A command for a target that does not exist, given in C++ without the parser.
 TEST(CommandQueue, SurvivesAWrongTarget) {
   const Machine machine = FullMachine();
   Engine engine(machine);

@@ -1,6 +1,6 @@
 // EN-04: after start the cycle allocates nothing, takes no lock and makes no system call. Proven with every kind of
-// component at work, with faults, full queues and a shutdown: the thread counts its calls of everything that allocates
-// and of pthread_mutex_lock, and a filter of the kernel reports every system call it makes.
+// component in motion, with faults, full queues and a shutdown: the thread counts its calls of all allocating functions
+// and of pthread_mutex_lock, and a kernel filter reports every system call that it makes.
 #include <gtest/gtest.h>
 
 #ifndef TAKT_SANITIZED
@@ -73,8 +73,8 @@ void CountSystemCall(int, siginfo_t* info, void*) {
   last_system_call = info->si_syscall;
 }
 
-// From here on every system call of this thread ends in CountSystemCall, but for those it needs to answer the signal
-// and for EndThread.
+// From here on every system call of this thread ends in CountSystemCall, except those that answering the signal and
+// EndThread need.
 bool WatchSystemCalls() {
   struct sigaction action {};
   action.sa_sigaction = CountSystemCall;
@@ -91,7 +91,7 @@ bool WatchSystemCalls() {
   return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
 }
 
-// Past the C library, whose way to end a thread makes more system calls than the filter lets through.
+// Bypasses the C library, whose thread exit makes more system calls than the filter permits.
 void EndThread() {
   syscall(SYS_exit, 0);
 }
@@ -113,7 +113,7 @@ TEST(QuietCycle, AllocatesNothingLocksNothingCallsNobody) {
   bool linked = false;
   bool made = false;
   std::atomic<bool> ended{false};
-  std::atomic<long> rounds{0};  // of the thread that makes cams and tracks
+  std::atomic<long> rounds{0};  // of the thread that builds cams and tracks
   const Command flood = ToAxis(machine, "z", axis::Halt{});
   long cycle_allocations = -1;
   long cycle_locks = -1;
@@ -130,10 +130,10 @@ TEST(QuietCycle, AllocatesNothingLocksNothingCallsNobody) {
       }
       if (c == 3800) engine.RequestShutdown();
       silent = c >= 920 && c < 1200;                  // an external drive is lost in motion ...
-      if (c < 4000 || c > 4100) plant.Serve(engine);  // ... and its set points find no reader
+      if (c < 4000 || c > 4100) plant.Serve(engine);  // ... and its set points have no reader
       lost |= engine.outputs(AxisNamed(machine, "z")).error == ErrorId::kDrive;
-      // Cams and tracks get made even where the host gives their thread no processor: this one calls nobody, so it
-      // spins.
+      // Cams and tracks must be built even if the host gives their thread no processor: this thread makes no system
+      // calls, so it spins.
       if (c % 50 == 0) {
         for (const long now = rounds; rounds < now + 2;) {
         }
@@ -179,7 +179,7 @@ TEST(QuietCycle, AllocatesNothingLocksNothingCallsNobody) {
   EXPECT_EQ(system_calls, 0) << "the last one was number " << last_system_call;
 }
 
-// EN-04, PL-72: movers on routes that begin, are held, and are changed on the way.
+// EN-04, PL-72: movers on routes that begin, are held, and are changed in motion.
 TEST(QuietCycle, AllocatesNothingForRoutes) {
   LoadResult loaded =
       LoadMachine("name: plane\naxes: []\nmovers: [{name: a}, {name: b, initial: {x: 120}}]\n", "plane.yaml");
@@ -229,7 +229,7 @@ TEST(QuietCycle, AllocatesNothingForRoutes) {
   EXPECT_EQ(engine.mover_outputs(1).route_visit, 6u);
 }
 
-// The watchers themselves see what they are there for.
+// The detectors themselves work.
 TEST(QuietCycle, WatchersSee) {
   std::thread thread([] {
     pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;

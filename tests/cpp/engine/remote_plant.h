@@ -1,5 +1,4 @@
-// Drives in another process, as the engine sees them: what the process would do is done between the cycles. Answers can
-// be held back.
+// External drives, as the engine sees them: their work is done between the cycles. Answers can be withheld.
 #pragma once
 
 #include <functional>
@@ -28,7 +27,7 @@ class RemotePlant {
     }
   }
 
-  // Carries out what the engine has put out and answers, but for what `answers` does not want to be answered.
+  // Carries out the engine's set points and answers, except those that `answers` excludes.
   void Serve(Engine& engine) {
     DriveSetPoint set_point;
     while (engine.set_points().TryPop(set_point)) {
@@ -45,7 +44,7 @@ class RemotePlant {
   std::function<void(DriveSample&)> change = [](DriveSample&) {};
   std::vector<plant::ServoParams> params;
   std::vector<plant::ServoState> states;
-  std::vector<ServoOutputs> told;  // last, by axis
+  std::vector<ServoOutputs> told;  // last set points, by axis
 
  private:
   const double period_s_;

@@ -19,7 +19,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr double kPitch = 120, kSide = 113;  // mm
+constexpr double kPitch = 120, kSide = 113;  // [mm]
 
 struct Cell {
   int x = 0, y = 0;
@@ -29,7 +29,7 @@ double MiddleOf(int place) {
   return kPitch * (place + 0.5);
 }
 
-// Movers of these names in these places.
+// Movers with these names at these cells.
 std::string Surface(const std::vector<std::pair<std::string, Cell>>& movers, const std::string& more = "") {
   std::string text = "name: surface\naxes: []\nmovers:\n";
   for (const auto& [name, at] : movers) {
@@ -93,7 +93,7 @@ class Rig : public PartsRig {
   }
 };
 
-// b lets a over the crossing before; c is in nobody's way.
+// b lets a pass the crossing first; c blocks neither.
 struct Crossing : Rig {
   Crossing() : Rig(Surface({{"a", {2, 0}}, {"b", {0, 2}}, {"c", {5, 5}}})) {
     a = Give("a", "set_route", Visits(0, {{{2, 0}}, {{2, 1}}, {{2, 2}}, {{2, 3}}, {{2, 4}}}));
@@ -129,8 +129,8 @@ TEST(Routes, KeepTheOrderOfVisits) {
   EXPECT_EQ(rig.overlaps, 0);
 }
 
-// What is published of routes: of each soon, of few in a cycle, again every second, and its end; if nobody reads for a
-// while, later.
+// Routes are published: each soon after a change, few per cycle, again every second, and their end; later if the reader
+// stalls.
 TEST(Routes, ArePublishedAsTheyChange) {
   constexpr std::uint32_t kMovers = 40;
   std::vector<std::pair<std::string, Cell>> movers;
@@ -178,7 +178,7 @@ TEST(Routes, ArePublishedAsTheyChange) {
   for (const auto& of : told) EXPECT_EQ(of.back().count, 0u);
 }
 
-// A mover that is taken off its route holds up those behind it, and no others; then it goes on.
+// A mover that is taken off its route holds up those behind it, and no others; then it continues.
 TEST(Routes, OneThatIsHaltedHoldsUpThoseBehindIt) {
   for (const char* how : {"halt", "disable", "move_to_position", "move_x"}) {
     SCOPED_TRACE(how);
@@ -203,7 +203,7 @@ TEST(Routes, OneThatIsHaltedHoldsUpThoseBehindIt) {
   }
 }
 
-// What moves it beside X and Y leaves it on its way; what is buffered waits until it is there.
+// Commands for coordinates other than X and Y do not end the route; buffered commands wait for its end.
 TEST(Routes, GoOnBesideOtherCommands) {
   Crossing rig;
   rig.Do("machine", "start_routes");
@@ -219,7 +219,7 @@ TEST(Routes, GoOnBesideOtherCommands) {
   rig.ExpectAt("a", {5, 4});
 }
 
-// Set points from outside take over a mover that waits on its route; then it goes on from where it was.
+// External set points take over a mover that waits on its route; then it continues from its position.
 TEST(Routes, EndWithSetPointsFromOutside) {
   Crossing rig;
   rig.Give("a", "halt");
@@ -229,14 +229,14 @@ TEST(Routes, EndWithSetPointsFromOutside) {
   rig.ExpectAt("b", {1, 2});
   rig.Give("b", "start_external_setpoint_generation", "{mode: absolute}");
   EXPECT_EQ(rig.End(rig.b).state, FeedbackState::kAborted);
-  EXPECT_EQ(rig.ErrorOf("b", "continue_route"), ErrorId::kMoverDisabled);  // none came
+  EXPECT_EQ(rig.ErrorOf("b", "continue_route"), ErrorId::kMoverDisabled);  // none arrived
   rig.Do("b", "reset");
   rig.Give("a", "continue_route");
   EXPECT_EQ(rig.End(rig.Give("b", "continue_route")).state, FeedbackState::kDone);
   rig.ExpectAt("b", {3, 2});
 }
 
-// All come to rest in places, and in nobody's way; and go on.
+// All come to rest at cells without blocking one another; and continue.
 TEST(Routes, AreHeld) {
   for (int cycles = 20; cycles < 700; cycles += 45) {
     SCOPED_TRACE(cycles);
@@ -263,12 +263,12 @@ TEST(Routes, AreHeld) {
   }
 }
 
-// New routes for movers on their way: where they can come to rest they change over, else all goes on as before.
+// New routes for movers in motion: if they can come to rest they change over, otherwise all continue as before.
 TEST(Routes, ChangeOver) {
   Crossing rig;
   rig.Do("machine", "start_routes", "{velocity: 400}");
   while (rig.Mover("a").y < MiddleOf(1) - 20) rig.Run();
-  // Too late for visit 1, and b would be left behind a visit that comes no more.
+  // Too late for visit 1, and b would be left behind a visit that is cancelled.
   rig.Give("a", "set_route", Visits(1, {{{2, 1}}, {{3, 1}}}));
   EXPECT_THAT(rig.Refusal("machine", "start_routes"), HasSubstr("cannot come to rest any more"));
   rig.Give("a", "set_route", Visits(2, {{{2, 2}}}));
@@ -277,7 +277,7 @@ TEST(Routes, ChangeOver) {
   // b is bound for the crossing, and a would stay there.
   rig.Give("b", "set_route", Visits(2, {{{2, 2}}, {{3, 2}}}));
   EXPECT_THAT(rig.Refusal("machine", "start_routes"), HasSubstr("that one does not leave it: mover b"));
-  // a turns off at the crossing, b goes round it.
+  // a turns off at the crossing, b travels around it.
   rig.Do("machine", "hold_routes");
   const auto a_at = static_cast<int>(rig.Mover("a").route_granted),
              b_at = static_cast<int>(rig.Mover("b").route_granted);
@@ -323,7 +323,7 @@ TEST(Routes, SayWhatWasExpected) {
   rig.Give("a", "set_route", Visits(0, {{{0, 0}}, {{1, 0}}}));
   rig.Do("a", "disable");
   EXPECT_EQ(rig.ErrorOf("machine", "start_routes"), ErrorId::kMoverDisabled);
-  // Numbers go on with the mover.
+  // The numbers of visits continue.
   rig.Do("a", "enable");
   rig.Give("a", "set_route", Visits(0, {{{0, 0}}, {{1, 0}}}));
   rig.Do("machine", "start_routes");
@@ -333,7 +333,7 @@ TEST(Routes, SayWhatWasExpected) {
     rig.Give("a", "set_route", Visits(first, {{{1, 0}}, {{0, 0}}}));
     EXPECT_THAT(rig.Refusal("machine", "start_routes"), HasSubstr("expected as the first visit"));
   }
-  // One that is replaced is over; and one that goes to where it is, at once.
+  // A replaced route is over; a route to the present position ends at once.
   const Ticket before = rig.Give("a", "set_route", Visits(1, {{{1, 0}}, {{0, 0}}}));
   const Ticket now = rig.Give("a", "set_route", Visits(1, {{{1, 0}}}));
   EXPECT_EQ(rig.End(before).state, FeedbackState::kAborted);
@@ -341,7 +341,7 @@ TEST(Routes, SayWhatWasExpected) {
   EXPECT_EQ(rig.End(now).state, FeedbackState::kDone);
 }
 
-// Only those that are named begin; and what was told can be taken back.
+// Only the named movers begin; and a route can be taken back.
 TEST(Routes, BeginForThoseThatAreNamed) {
   Crossing rig;
   EXPECT_EQ(rig.ErrorOf("machine", "start_routes", "{movers: [4]}"), ErrorId::kParameter);
@@ -356,7 +356,7 @@ TEST(Routes, BeginForThoseThatAreNamed) {
   EXPECT_EQ(rig.Mover("b").x, MiddleOf(0));
 }
 
-// Times are a plan, and no more: a wrong one makes a mover late, and never takes it where it is not its turn.
+// Times are a plan only: a wrong one makes a mover late, and never lets it pass out of turn.
 TEST(Routes, KeepTheOrderWhateverTheTimes) {
   Crossing rig;
   const auto timed = [](const std::string& departure, const std::string& entry, const std::string& arrival) {
@@ -382,7 +382,7 @@ TEST(Routes, KeepTheOrderWhateverTheTimes) {
   EXPECT_EQ(rig.overlaps, 0);
 }
 
-// One that was sent over a crossing by time, behind another one that is halted then: it stops before the crossing.
+// A mover on a timed route over a crossing, behind another one that is halted: it stops before the crossing.
 TEST(Routes, StopBeforeAPlaceThatIsNotGranted) {
   for (int cycles = 1; cycles < 300; cycles += 20) {
     SCOPED_TRACE(cycles);
@@ -403,7 +403,7 @@ TEST(Routes, StopBeforeAPlaceThatIsNotGranted) {
     const Ticket route = rig.Give("b", "set_route", b + "]}");
     EXPECT_EQ(rig.Do("machine", "start_routes").state, FeedbackState::kDone);
     rig.Run(cycles);
-    EXPECT_EQ(rig.Mover("b").target_x, MiddleOf(6));  // all of it, though the crossing is not granted yet
+    EXPECT_EQ(rig.Mover("b").target_x, MiddleOf(6));  // the whole route, though the crossing is not granted yet
     rig.Do("a", "halt");
     rig.Run(1500);
     const bool crossed = rig.Mover("a").y > 300 + 1.5 * kSide / 2;
@@ -415,7 +415,8 @@ TEST(Routes, StopBeforeAPlaceThatIsNotGranted) {
   }
 }
 
-// What one that was taken off its route was to wait for is none any more: it cannot go on behind it.
+// A mover that would have to wait for one that was taken off its route no longer waits for it: it cannot continue
+// behind it.
 TEST(Routes, EndBehindOneThatHasAnother) {
   Crossing rig;
   rig.Do("machine", "start_routes");
@@ -440,12 +441,12 @@ TEST(Routes, AreLeftAsTheyWereByARefusal) {
   EXPECT_EQ(rig.End(rig.Give("a", "continue_route")).state, FeedbackState::kDone);
 }
 
-// In the place of one that is about to leave it, too: that one goes on for so long.
+// Also at the cell of a mover that is about to leave it: that one continues until then.
 TEST(Routes, AreHeldBehindOneThatIsAboutToStart) {
   for (int cycles = 100; cycles < 700; cycles += 12) {
     SCOPED_TRACE(cycles);
     Rig rig(Surface({{"r", {0, 0}}, {"o", {3, 0}}, {"x", {4, 0}}, {"z", {5, 0}}}));
-    const auto along = [](int from, int to, int before, int its) {  // behind another one, from place to place
+    const auto along = [](int from, int to, int before, int its) {  // behind another one, from cell to cell
       std::vector<Step> steps = {{{from, 0}}};
       for (int x = from + 1; x <= to; ++x) {
         const int visit = x - its;
@@ -471,7 +472,7 @@ TEST(Routes, AreHeldBehindOneThatIsAboutToStart) {
   }
 }
 
-// In every cycle: where it is almost at rest before a place that it is just granted, too.
+// In every cycle: also when a mover is almost at rest before a cell that is just being granted.
 TEST(Routes, AreHeldInEveryCycle) {
   for (int cycles = 290; cycles < 310; ++cycles) {
     SCOPED_TRACE(cycles);
@@ -489,7 +490,7 @@ TEST(Routes, AreHeldInEveryCycle) {
   }
 }
 
-// New routes for movers that are held leave them held; one that is not on its way begins at once.
+// New routes for held movers leave them held; a mover that is not on a route begins at once.
 TEST(Routes, StayHeldUntilItIsTakenBack) {
   Crossing rig;
   rig.Do("machine", "start_routes", "{movers: [1]}");
@@ -508,7 +509,7 @@ TEST(Routes, StayHeldUntilItIsTakenBack) {
   EXPECT_EQ(rig.End(a).state, FeedbackState::kDone);
 }
 
-// Those that follow one that is held come to rest in places, too, and go on with it.
+// Followers of a held mover come to rest at cells, too, and continue with it.
 TEST(Routes, AreHeldWithTheirLeader) {
   for (int cycles = 40; cycles < 600; cycles += 40) {
     SCOPED_TRACE(cycles);
@@ -531,7 +532,7 @@ TEST(Routes, AreHeldWithTheirLeader) {
   }
 }
 
-// In its first cycles of motion, too.
+// Also in its first cycles of motion.
 TEST(Routes, ChangeOverAtOnce) {
   for (int cycles = 0; cycles < 12; ++cycles) {
     SCOPED_TRACE(cycles);
@@ -564,7 +565,7 @@ TEST(Routes, AreAsLongAsTheyMayBe) {
   EXPECT_EQ(rig.Mover("a").route_visit, 511u);
 }
 
-// EN-22: nothing goes on by itself, and no route is started meanwhile.
+// EN-22: nothing continues by itself, and no route can be started meanwhile.
 TEST(Routes, EndWithAnEmergencyStop) {
   Crossing rig;
   rig.Do("machine", "start_routes");
@@ -588,7 +589,7 @@ TEST(Routes, EndWithAnEmergencyStop) {
   EXPECT_EQ(rig.overlaps, 0);
 }
 
-// --- plans of worlds at random ---
+// --- random worlds ---
 
 struct World {
   static constexpr int kWide = 6;
@@ -621,7 +622,7 @@ struct World {
     }
     return Surface(movers, in_group ? "planar_groups: [{name: cell, movers: [" + names + "]}]\n" : "");
   }
-  // Of one mover, with or without times.
+  // Returns a route of one mover, with or without times.
   std::string Route(std::size_t i, bool timed) const {
     std::string text = "{first: 0, visits: [";
     const auto add = [&](const char* field, double value) {
@@ -659,8 +660,8 @@ struct World {
   routing::SurfacePlan plan;
 };
 
-// Whatever is halted and held on the way: no two overlap, and all get there. With times, and nothing in the way: when
-// it was planned.
+// With any halts and holds: no two movers overlap, and all reach their ends. With times, and without disturbances: at
+// the planned time.
 class RoutesOfWorlds : public testing::TestWithParam<std::tuple<int, bool, bool, bool>> {};
 
 TEST_P(RoutesOfWorlds, GetThereWithoutACollision) {

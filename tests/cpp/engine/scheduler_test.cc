@@ -54,7 +54,7 @@ TEST(Scheduler, FastRunsExactlyTheCyclesOfTheDuration) {
   EXPECT_EQ(result.end, RunEnd::kStopped);
   EXPECT_EQ(result.cycles, 12'345u);
   EXPECT_EQ(engine.cycle().count, 12'345u);
-  EXPECT_EQ(engine.figures().latency.count, 0u);  // nothing is measured, so that runs are alike
+  EXPECT_EQ(engine.figures().latency.count, 0u);  // nothing is measured, so that runs are identical
   EXPECT_EQ(engine.figures().execution.count, 0u);
 }
 
@@ -69,7 +69,7 @@ TEST(Scheduler, PacedKeepsUpWithTheWallClock) {
   EXPECT_EQ(engine.figures().overruns, 0u);
 }
 
-// EN-02, EN-05: absolute deadlines: cycles and left-out instants together make up the time that passed.
+// EN-02, EN-05: absolute deadlines: cycles and skipped instants together are the time that passed.
 TEST(Scheduler, RealTimeStaysOnItsGrid) {
   Engine engine(OneAxis());
   const std::atomic<int> signals{0};
@@ -78,12 +78,12 @@ TEST(Scheduler, RealTimeStaysOnItsGrid) {
   const double elapsed_ms = Seconds(Clock::now() - start) * 1000;
   EXPECT_EQ(result.cycles, 500u);
   EXPECT_GE(elapsed_ms, static_cast<double>(result.cycles + result.skipped) - 1);
-  EXPECT_EQ(engine.figures().latency.count, result.cycles - 1);  // of the cycle before
+  EXPECT_EQ(engine.figures().latency.count, result.cycles - 1);  // of the previous cycle
   EXPECT_GT(engine.figures().execution.max, 0u);
   EXPECT_LE(engine.figures().overruns, result.skipped);
 }
 
-// EN-05: a hold-up in the cycle is counted as an overrun, and what was missed is left out, not made up for.
+// EN-05: a delay in the cycle is counted as an overrun, and missed instants are skipped, not made up for.
 TEST(Scheduler, AHoldUpIsCountedAndLeftOut) {
   struct sigaction action {};
   action.sa_handler = [](int) {
@@ -108,7 +108,7 @@ TEST(Scheduler, AHoldUpIsCountedAndLeftOut) {
   EXPECT_GE(result.skipped, 18u);
 }
 
-// EN-02: what is not permitted is said in one line, and it runs on.
+// EN-02: missing permissions are reported in one line, and the run continues.
 TEST(Scheduler, WhatIsNotPermittedIsSaidInOneLine) {
   Engine engine(OneAxis());
   const std::atomic<int> signals{0};
@@ -121,7 +121,7 @@ TEST(Scheduler, WhatIsNotPermittedIsSaidInOneLine) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
 }
 
-// EN-02: the thread is a real-time thread only as long as it runs the cycle.
+// EN-02: the thread is a real-time thread only while it runs the cycle.
 TEST(Scheduler, TheThreadIsAsBeforeAfterwards) {
   int policy = -1;
   sched_param priority{};
@@ -149,7 +149,7 @@ TEST(Scheduler, TheFirstSignalStopsAlongTheRampsAndOpensTheLoops) {
   EXPECT_TRUE(engine.all_disabled());
   EXPECT_EQ(engine.outputs(0).state, axis::PlcState::kDisabled);
   EXPECT_FALSE(engine.outputs(0).loop_closed);
-  // From 100 u/s with 1000 u/s² and 20000 u/s³: 0.1 s + 0.05 s, then the power goes.
+  // From 100 u/s with 1000 u/s² and 20000 u/s³: 0.1 s + 0.05 s, then the power is off.
   const auto cycles = static_cast<double>(engine.cycle().count - start);
   EXPECT_GE(cycles, 149);
   EXPECT_LE(cycles, 300);
@@ -175,7 +175,7 @@ TEST(Scheduler, TheSecondSignalEndsAtOnce) {
   EXPECT_EQ(result.cycles, 0u);
 }
 
-// EN-08: an axis that does not come to rest keeps nobody waiting for ever.
+// EN-08: an axis that does not come to rest does not block the end for ever.
 TEST(Scheduler, GivesUpWhenStoppingTakesTooLong) {
   Engine engine(OneAxis());
   PowerUpAndMove(engine);
@@ -185,7 +185,7 @@ TEST(Scheduler, GivesUpWhenStoppingTakesTooLong) {
   EXPECT_EQ(result.cycles, 20u);
 }
 
-// EN-08: a signal in the middle of a real-time run.
+// EN-08: a signal during a real-time run.
 TEST(Scheduler, ASignalEndsARealTimeRun) {
   Engine engine(OneAxis());
   std::atomic<int> signals{0};
@@ -218,7 +218,7 @@ TEST(Histogram, QuantilesLieWithinTheirBucket) {
   EXPECT_EQ(Histogram{}.Quantile(0.5), 0);
   Histogram h;
   for (std::uint64_t ns = 1; ns <= 1000; ++ns) h.Add(ns);
-  EXPECT_NEAR(h.Quantile(0.5), 500, 12);  // 1 to 1000, evenly: exact but for the ends of the buckets
+  EXPECT_NEAR(h.Quantile(0.5), 500, 12);  // 1 to 1000, evenly: exact except at the ends of the buckets
   EXPECT_NEAR(h.Quantile(0.99), 990, 12);
   EXPECT_EQ(h.Quantile(1), 1000);
   Histogram same;

@@ -1,4 +1,4 @@
-// What stops the whole machine: overruns, commands to the machine, shutdown; and what lets go of a command.
+// Stopping the whole machine: overruns, commands to the machine, shutdown; and releasing commands.
 #include "takt/engine/engine.h"
 
 #include <gtest/gtest.h>
@@ -10,15 +10,15 @@
 namespace takt::engine {
 namespace {
 
-// EN-05: late cycles are counted; so many in a row as the machine allows stop everything along its ramps, with error
-// 3007, and the loops stay closed. One less does nothing.
+// EN-05: late cycles are counted; overruns_in_a_row consecutive ones stop everything along its ramps, with error 3007,
+// and the loops stay closed. One fewer has no effect.
 TEST(Overruns, InARowStopEverything) {
   Machine machine = FullMachine();
   machine.cycle.overruns_in_a_row = 5;
   Engine engine(machine, {.publish = true});
   const std::size_t y1 = AxisNamed(machine, "y1");
   engine.Submit(ToAxis(machine, "y1", axis::Power{}));
-  engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // which follows it
+  engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // its follower
   for (int i = 0; i < 300; ++i) engine.RunCycle({1000, 20000, false});
   engine.Submit(ToAxis(machine, "y1", axis::MoveVelocity{.velocity = 400}));
   for (int i = 0; i < 300; ++i) engine.RunCycle({1000, 20000, false});
@@ -30,7 +30,7 @@ TEST(Overruns, InARowStopEverything) {
   engine.RunCycle({2'000'000, 30000, true});
   EXPECT_EQ(engine.outputs(y1).state, axis::PlcState::kErrorStop);
   EXPECT_EQ(engine.outputs(y1).error, ErrorId::kOverrun);
-  EXPECT_GT(engine.outputs(y1).set_velocity, 300);  // braking, not dropped
+  EXPECT_GT(engine.outputs(y1).set_velocity, 300);  // braking, not switched off
   for (int i = 0; i < 300; ++i) engine.RunCycle({1000, 20000, false});
   EXPECT_EQ(engine.outputs(y1).set_velocity, 0);
   EXPECT_TRUE(engine.outputs(y1).loop_closed);
@@ -39,7 +39,7 @@ TEST(Overruns, InARowStopEverything) {
   EXPECT_EQ(engine.figures().execution.count, 910u);
 }
 
-// EN-05: after they stopped everything overruns are counted anew; 0 means never.
+// EN-05: after a stop overruns are counted anew; 0 means never.
 TEST(Overruns, CountAnewAfterAStopOrNever) {
   for (const std::uint32_t allowed : {5u, 0u}) {
     Machine machine = FullMachine();
@@ -47,18 +47,18 @@ TEST(Overruns, CountAnewAfterAStopOrNever) {
     Engine engine(machine);
     const std::size_t y1 = AxisNamed(machine, "y1");
     engine.Submit(ToAxis(machine, "y1", axis::Power{}));
-    engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // which follows it
+    engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // its follower
     for (int i = 0; i < 300; ++i) engine.RunCycle();
     for (int i = 0; i < 5; ++i) engine.RunCycle({0, 30000, true});
     EXPECT_EQ(engine.outputs(y1).error, allowed ? ErrorId::kOverrun : ErrorId::kNone);
     engine.Submit(ToAxis(machine, "y1", axis::Reset{}));
     for (int i = 0; i < 4; ++i) engine.RunCycle({0, 30000, true});
     EXPECT_EQ(engine.outputs(y1).state, axis::PlcState::kStandstill);
-    EXPECT_EQ(engine.figures().latency.count, 9u);  // on time is a latency too
+    EXPECT_EQ(engine.figures().latency.count, 9u);  // a latency of 0 counts as well
   }
 }
 
-// EN-34: lateness is judged as time: a stall counts as many periods as passed in it, however it comes about.
+// EN-34: lateness is measured as time: a stall counts its periods, whatever its cause.
 TEST(Overruns, AStallCountsItsPeriods) {
   struct Stall {
     const char* what;
@@ -89,7 +89,7 @@ TEST(Overruns, AStallCountsItsPeriods) {
     machine.cycle.overruns_in_a_row = 5;
     Engine engine(machine);
     engine.Submit(ToAxis(machine, "y1", axis::Power{}));
-    engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // which follows it
+    engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // its follower
     for (int i = 0; i < 300; ++i) engine.RunCycle(good);
     engine.Submit(ToAxis(machine, "y1", axis::MoveVelocity{.velocity = 400}));
     for (int i = 0; i < 300; ++i) engine.RunCycle(good);
@@ -103,7 +103,7 @@ TEST(Overruns, AStallCountsItsPeriods) {
   }
 }
 
-// What became of one command, from the queue of an engine.
+// Returns the result of one command, from the queue of an engine.
 struct Answers {
   std::vector<FeedbackEvent> events;
   void Take(Engine& engine) {
@@ -119,7 +119,7 @@ Ticket GiveMachine(Engine& engine, const MachineCommand& body, double lease_s = 
   return engine.Submit({.target = kMachineTarget, .lease_s = lease_s, .body = body});
 }
 
-// Stops every axis along its ramp, keeps or opens the loops; those in ErrorStop or without power are left alone. Done
+// Stops every axis along its ramp, keeps or opens the loops; axes in ErrorStop or without power are not affected. Done
 // at once.
 TEST(Machine, StopAll) {
   for (const bool open : {false, true}) {
@@ -129,7 +129,7 @@ TEST(Machine, StopAll) {
     const std::size_t y1 = AxisNamed(machine, "y1");
     const std::size_t c = AxisNamed(machine, "c");
     engine.Submit(ToAxis(machine, "y1", axis::Power{}));
-    engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // which follows it
+    engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // its follower
     engine.Submit(ToAxis(machine, "c", axis::Power{}));
     for (int i = 0; i < 300; ++i) engine.RunCycle();
     const Ticket move = engine.Submit(ToAxis(machine, "y1", axis::MoveVelocity{.velocity = 400}));
@@ -164,8 +164,8 @@ TEST(Machine, FailAllAxes) {
   EXPECT_TRUE(engine.outputs(AxisNamed(machine, "z")).loop_closed);
 }
 
-// EN-23: the owner of a level-sensitive command is found on whatever axis it is; renewing keeps it, releasing ends it;
-// what is over already, or never was, is no error.
+// EN-23: the owner of a level-sensitive command is found on any axis; renewing keeps it in force, releasing ends it; a
+// command that has ended, or never existed, is no error.
 TEST(Machine, RenewsAndReleases) {
   const Machine machine = FullMachine();
   Engine engine(machine);
@@ -201,7 +201,7 @@ TEST(Machine, RenewsAndReleases) {
   EXPECT_TRUE(answers.Has(never, FeedbackState::kDone));
 }
 
-// EN-08: shutdown brakes along the ramps, opens the loops, refuses what comes after.
+// EN-08: shutdown brakes along the ramps, opens the loops, refuses later commands.
 TEST(Shutdown, BrakesAndOpensTheLoops) {
   const Machine machine = FullMachine();
   Engine engine(machine);
@@ -229,15 +229,15 @@ TEST(Shutdown, BrakesAndOpensTheLoops) {
   int aborted = 0;
   while (engine.feedback().TryPop(event)) {
     refused |= event.ticket == late && event.error == ErrorId::kShutdown;
-    // What was under way says why it ended.
+    // Commands in progress report why they ended.
     aborted += event.state == FeedbackState::kAborted && event.error == ErrorId::kShutdown ? 1 : 0;
   }
   EXPECT_TRUE(refused);
-  EXPECT_GE(aborted, 3);  // a move and one buffered behind it on y1, a move_velocity on c
+  EXPECT_GE(aborted, 3);  // a move and a buffered one on y1, a move_velocity on c
 }
 
-// AX-38: every drive off and every brake on in the same cycle, commands aborted, faults cleared, state Disabled; power
-// on works at once.
+// AX-38: every drive off and every brake applied in the same cycle, commands aborted, faults cleared, state Disabled;
+// switching on works at once.
 TEST(EmergencyStop, SwitchesEverythingOffAtOnce) {
   const Machine machine = FullMachine();
   Engine engine(machine);
@@ -266,13 +266,13 @@ TEST(EmergencyStop, SwitchesEverythingOffAtOnce) {
   for (int i = 0; i < 500; ++i) engine.RunCycle();
   EXPECT_NEAR(engine.outputs(y1).actual_velocity, 0, 1);  // the brake holds
   engine.Submit(ToAxis(machine, "y1", axis::Power{}));
-  engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // which follows it
+  engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // its follower
   for (int i = 0; i < 300; ++i) engine.RunCycle();
   EXPECT_EQ(engine.outputs(y1).state, axis::PlcState::kStandstill);
 }
 
-// AX-100: while an emergency stop is held nothing is powered or moved, whatever asks, with an error of its own; what is
-// held by several is on until the last lets go; and nothing comes back by itself.
+// AX-100: while an emergency stop is held nothing is powered or moved, by any command, with an error of its own; a stop
+// with several holders is on until the last one releases it; and nothing restarts by itself.
 TEST(EmergencyStop, HoldsUntilEveryHolderLetsGo) {
   const Machine machine = FullMachine();
   Engine engine(machine);
@@ -308,16 +308,16 @@ TEST(EmergencyStop, HoldsUntilEveryHolderLetsGo) {
   expect_refused();
   GiveMachine(engine, Release{first});
   expect_refused();
-  GiveMachine(engine, EmergencyStop{});  // for a cycle, meanwhile
+  GiveMachine(engine, EmergencyStop{});  // for one cycle, meanwhile
   expect_refused();
   GiveMachine(engine, Release{second});
-  expect_disabled(500);  // and nothing goes on
+  expect_disabled(500);  // and nothing continues
   engine.Submit(ToAxis(machine, "c", axis::Power{}));
   for (int i = 0; i < 300; ++i) engine.RunCycle();
   const std::size_t c = AxisNamed(machine, "c");
   EXPECT_EQ(engine.outputs(c).state, axis::PlcState::kStandstill);
   EXPECT_FALSE(engine.outputs(c).emergency_stopped);
-  for (int i = 0; i < 40; ++i) GiveMachine(engine, EmergencyStop{.hold = true});  // more than it can tell apart
+  for (int i = 0; i < 40; ++i) GiveMachine(engine, EmergencyStop{.hold = true});  // more than it can distinguish
   for (int i = 0; i < 5; ++i) engine.RunCycle();
   expect_refused();
   GiveMachine(engine, ReleaseEmergencyStop{});
@@ -326,14 +326,14 @@ TEST(EmergencyStop, HoldsUntilEveryHolderLetsGo) {
   EXPECT_EQ(engine.outputs(c).state, axis::PlcState::kStandstill);
 }
 
-// EN-08: what an overrun ended in the same cycle was not ended by the shutdown.
+// EN-08: a command that an overrun ended in the same cycle was not ended by the shutdown.
 TEST(Shutdown, IsNotTheReasonForWhatEndedBeforeIt) {
   Machine machine = FullMachine();
   machine.cycle.overruns_in_a_row = 1;
   Engine engine(machine);
   Answers answers;
   engine.Submit(ToAxis(machine, "y1", axis::Power{}));
-  engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // which follows it
+  engine.Submit(ToAxis(machine, "y2", axis::Power{}));  // its follower
   for (int i = 0; i < 300; ++i) engine.RunCycle();
   engine.Submit(ToAxis(machine, "y1", axis::MoveAbsolute{.position = 100}));
   const Ticket waits = engine.Submit(

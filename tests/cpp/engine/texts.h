@@ -1,4 +1,4 @@
-// Machines from texts, and what is wrong with texts.
+// Machines from texts, and problems of texts.
 #pragma once
 
 #include <stdexcept>
@@ -8,7 +8,7 @@
 
 namespace takt::engine {
 
-// A text with something else in one place.
+// Returns a text with one passage replaced.
 inline std::string With(std::string text, const std::string& what, const std::string& instead) {
   const auto at = text.find(what);
   if (at == std::string::npos) throw std::runtime_error("not in the text: " + what);
@@ -21,7 +21,7 @@ inline Machine MachineOf(const std::string& text) {
   return *loaded.machine;
 }
 
-// The first sentence about a text with something else in one place; nothing if it is fine.
+// Returns the first problem of a text with one passage replaced; empty if there is none.
 inline std::string ProblemOf(const std::string& text, const std::string& what, const std::string& instead) {
   const LoadResult loaded = LoadMachine(With(text, what, instead), "test.yaml");
   return loaded.machine ? "" : loaded.problems.front();

@@ -1,5 +1,5 @@
-// Every number of every command that tracks understand, made wrong: refused with a sentence before it gets to the
-// cycle, and what got there anyhow changes nothing.
+// Every number of every command of tracks, made invalid: refused with a sentence before it reaches the cycle; if it
+// reaches the cycle, it changes nothing.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -109,7 +109,7 @@ TEST(TrackBadInput, SaysWhatWasExpected) {
   EXPECT_EQ(ParseCommand(machine, "main", "track_made", "{number: 1}").error, ErrorId::kUnknownVerb);
 }
 
-// PL-20: what a feedback says of a track that cannot be.
+// PL-20: the feedback for a track with invalid geometry.
 TEST(TrackBadInput, SaysWhyATrackCannotBe) {
   const auto sentence = [](planar::Problem problem, std::uint32_t element) {
     return Sentence(

@@ -1,4 +1,4 @@
-// PL-22, PL-23, PL-24, PL-30: movers and the tracks under them, as the machine has both.
+// PL-22, PL-23, PL-24, PL-30: movers and the tracks under them, in a machine.
 #include "parts_rig.h"
 
 namespace takt::engine {
@@ -22,7 +22,7 @@ struct Fork : PartsRig {
   }
 };
 
-// PL-22: a track that is on a mover's way stays as it is, whether it has got there yet, waits, or only just set off.
+// PL-22: a track on a mover's route is not changed, whether the mover is on it, waits, or has only just started.
 TEST(TracksInUse, ArePutAwayUnderNobody) {
   for (const int cycles : {0, 1, 300, 800}) {
     Fork rig;
@@ -36,13 +36,13 @@ TEST(TracksInUse, ArePutAwayUnderNobody) {
     EXPECT_EQ(rig.End(going).error, ErrorId::kNone);
     EXPECT_EQ(rig.Mover("a").track, 2u);
   }
-  // The other way round in one cycle.
+  // In the opposite order in one cycle.
   Fork rig;
   const Ticket disable = rig.Give("up", "disable"),
                going = rig.Give("a", "move_on_track", "{track: up, position: 800}");
   EXPECT_EQ(rig.End(disable).error, ErrorId::kNone);
   EXPECT_EQ(rig.End(going).error, ErrorId::kTrackDisabled);
-  // Where a mover has been halted on its way there it is free.
+  // If the mover has been halted before it, it is free.
   rig.Do("up", "enable");
   rig.Give("a", "move_on_track", "{track: up, position: 800}");
   rig.Run(200);
@@ -53,7 +53,7 @@ TEST(TracksInUse, ArePutAwayUnderNobody) {
   EXPECT_EQ(rig.ErrorOf("a", "move_on_track", "{track: up, position: 0}"), ErrorId::kTrackGeometry);
 }
 
-// So does one that somebody joins or leaves.
+// Likewise a track that a mover is joining or leaving.
 TEST(TracksInUse, AreNotPutAwayWhileSomebodyJoins) {
   Fork rig;
   const Ticket join = rig.Give("b", "join_track", "{track: up}"), disable = rig.Give("up", "disable");
@@ -68,7 +68,8 @@ TEST(TracksInUse, AreNotPutAwayWhileSomebodyJoins) {
   EXPECT_EQ(rig.ErrorOf("up", "clear"), ErrorId::kNone);
 }
 
-// PL-30: how near those on one network come is their gap's affair. A group that let them come so near is enabled again.
+// PL-30: the distance of movers on one network is governed by their gap. A group in which they are that close is
+// enabled again.
 TEST(TracksInGroups, HaveMoversAsNearAsTheirGapsLetThem) {
   PartsRig rig(R"(
 name: near
@@ -85,13 +86,13 @@ planar_groups: [{name: cell, movers: [a, b, beside], tracks: [main]}]
     EXPECT_EQ(rig.ErrorOf(one, "join_track", "{track: main}"), ErrorId::kNone);
     EXPECT_EQ(rig.ErrorOf(one, "move_c", "{position: 15}"), ErrorId::kNone);
   }
-  // Its corners come to lie beside those of the other.
+  // Its corners come beside those of the other.
   EXPECT_EQ(rig.ErrorOf("b", "move_on_track", "{position: 417}"), ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("cell", "disable"), ErrorId::kNone);
   EXPECT_EQ(rig.Do("cell", "enable").error, ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("b", "remove_from_group"), ErrorId::kNone);
   EXPECT_EQ(rig.ErrorOf("b", "add_to_group", "{group: cell}"), ErrorId::kNone);
-  // Nobody else is let so near.
+  // No other mover may come that close.
   EXPECT_EQ(rig.ErrorOf("beside", "move_to_position", "{x: 450, y: 100}"), ErrorId::kCollision);
   EXPECT_EQ(rig.ErrorOf("cell", "disable"), ErrorId::kNone);
   rig.Give("beside", "move_to_position", "{x: 450, y: 100}");
@@ -103,7 +104,7 @@ planar_groups: [{name: cell, movers: [a, b, beside], tracks: [main]}]
 }
 
 TEST(TracksInGroups, HaveNobodyOnSomebodyElseWhereTheyCross) {
-  // One network: the second begins at the end of the first, and comes back over it.
+  // One network: the second track begins at the end of the first, and returns over it.
   PartsRig rig(R"(
 name: crossing
 axes: []

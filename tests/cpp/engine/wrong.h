@@ -1,4 +1,4 @@
-// Commands with one number made wrong.
+// Commands with one number made invalid.
 #pragma once
 
 #include <limits>
@@ -18,7 +18,7 @@ struct Wrong {
   std::string what;
 };
 
-// All reals of a command, one at a time, as none may be: not a number, infinite, outside what its description allows.
+// All reals of a command, one at a time, with every invalid value: not a number, infinite, outside its described range.
 template <typename Command>
 std::vector<Wrong<Command>> WrongVersionsOf(const Command& good) {
   std::vector<Wrong<Command>> all;

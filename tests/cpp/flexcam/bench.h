@@ -25,7 +25,7 @@ inline axis::AxisParams Axis(const char* name, axis::AxisKind kind) {
   return a;
 }
 
-// Up by `height` and down again within a turn of 360.
+// Rises by `height` and falls again within a turn of 360.
 inline cam::CamParams UpAndDown(const char* name, double height, double length = 360) {
   cam::CamParams p;
   p.name = name;
@@ -33,12 +33,12 @@ inline cam::CamParams UpAndDown(const char* name, double height, double length =
   p.points = {engine::Rest(0, 0), engine::Rest(length / 2, height), engine::Rest(length, 0)};
   return p;
 }
-// What a cam that goes up and down gives at x.
+// Returns the value at x of a cam that rises and falls.
 inline double Hill(double x, double height = 50, double length = 360) {
   const double in = x - length * std::floor(x / length);
   return height * engine::Polynomial345::Y(in < length / 2 ? in / (length / 2) : (length - in) / (length / 2));
 }
-// On by `stroke` within `length`, at rest at its ends.
+// Advances by `stroke` within `length`, at rest at its ends.
 inline cam::CamParams Onward(const char* name, double stroke, double length = 360) {
   cam::CamParams p;
   p.name = name;
@@ -75,7 +75,7 @@ inline Machine MachineOf(std::vector<cam::CamParams> cams, const Settings& setti
   return m;
 }
 
-// In by a ramp of a short time, and out by one, too.
+// Closes and opens by a ramp of a short time.
 inline Settings Quick() {
   Settings s;
   s.sync_mode = ClutchMode::kRampTime;
@@ -93,7 +93,7 @@ inline Machine OneHill(const Settings& s = QuickBothWays()) {
   return MachineOf({UpAndDown("hill", 50)}, s);
 }
 
-// Of two positions on a turn.
+// Returns the distance of two positions on a turn.
 inline double Apart(double a, double b, double turn = 360) {
   return std::abs(a - b - turn * std::round((a - b) / turn));
 }
@@ -114,7 +114,7 @@ class Bench {
   Ticket Tell(const Command& body, double lease_s = 0) {
     return engine.Submit({0, static_cast<std::uint32_t>(machine.axes.size() + 1), lease_s, body});
   }
-  // The web at this velocity, at once if `cycles` is 0, else after so many.
+  // Sets the velocity of the web, at once if `cycles` is 0, else after this number of cycles.
   void Web(double velocity) {
     axis::MoveVelocity move{.velocity = std::abs(velocity)};
     move.direction = velocity < 0 ? axis::Direction::kNegative : axis::Direction::kPositive;
@@ -128,7 +128,7 @@ class Bench {
   void Run(int cycles) {
     for (int i = 0; i < cycles; ++i) Step();
   }
-  // Until it holds; false: not within so many cycles.
+  // Runs until the condition holds; returns false if it does not within this number of cycles.
   bool Until(const std::function<bool()>& holds, int most = 20000) {
     for (int i = 0; i < most; ++i) {
       if (holds()) return true;

@@ -1,4 +1,4 @@
-// How one cam follows another: changes and sequences (CAM-05, CAM-22, CAM-23, CAM-70).
+// Changes from one cam to another, and sequences (CAM-05, CAM-22, CAM-23, CAM-70).
 #include <gtest/gtest.h>
 
 #include "bench.h"
@@ -7,7 +7,7 @@
 namespace takt::flexcam {
 namespace {
 
-// CAM-22: the cam that is set takes over at the end of the one that runs, also with an X offset, without the clutch.
+// CAM-22: the selected cam takes over at the end of the running one, also with an X offset, without the clutch.
 TEST(Change, TakesPlaceAtTheEndOfTheCam) {
   for (const double offset : {0.0, 77.0}) {
     for (const double velocity : {500.0, -500.0}) {
@@ -41,7 +41,7 @@ TEST(Change, TakesPlaceAtTheEndOfTheCam) {
   }
 }
 
-// CAM-22, CAM-05: another cam in the slot that runs is taken over at the end, too; the one that runs stays what it is.
+// CAM-22, CAM-05: another cam in the running slot takes over at the end, too; the running one does not change.
 TEST(Change, OfTheCamInTheSlot) {
   Machine m = MachineOf({UpAndDown("hill", 50), UpAndDown("dip", -30)}, Quick());
   m.flex_cams[0].cams = {"hill"};
@@ -61,7 +61,7 @@ TEST(Change, OfTheCamInTheSlot) {
   }
 }
 
-// CAM-22: at once; what does not fit is chased within the limits.
+// CAM-22: at once; the step is caught up within the limits.
 TEST(Change, AtOnce) {
   Bench b(MachineOf({UpAndDown("hill", 50), UpAndDown("high", 80)}, Quick()));
   b.Web(360);
@@ -80,7 +80,7 @@ TEST(Change, AtOnce) {
   watch.ExpectSmooth();
 }
 
-// The order in which the slots are run, and whether the sequencer says so.
+// The order in which the slots are run, and the output sequencer_active.
 struct Ran {
   std::vector<std::uint32_t> slots;
   std::vector<bool> active;
@@ -113,7 +113,7 @@ using Flags = std::vector<bool>;
 // CAM-23: the table of the manual's 3.24, in both positions of the input.
 TEST(Sequencer, Mode0RunsCam1) {
   const Ran ran = RunSequence(SequenceMode::kCam1, 4, 3);
-  EXPECT_EQ(ran.slots, (Slots{1, 1, 1, 1, 1, 2, 2}));  // then what is set
+  EXPECT_EQ(ran.slots, (Slots{1, 1, 1, 1, 1, 2, 2}));  // then the selected slot
   EXPECT_EQ(ran.active, (Flags{1, 1, 1, 1, 1, 0, 0}));
 }
 TEST(Sequencer, Mode1RunsCam3) {
@@ -156,7 +156,7 @@ TEST(ChangeCam, AtAPositionOfTheMasterOrOfX) {
   }
 }
 
-// CAM-70: with X shifted to a place of the same slope, too, the slave is in step all the way.
+// CAM-70: also with X shifted to a position of the same slope, the slave is in step throughout.
 TEST(ChangeCam, WithPositionAndVelocityMet) {
   Bench b(MachineOf({UpAndDown("hill", 50), UpAndDown("high", 80)}, Quick()));
   b.Web(360);
@@ -177,7 +177,7 @@ TEST(ChangeCam, WithPositionAndVelocityMet) {
   watch.ExpectSmooth();
 }
 
-// CAM-70: as soon as both meet by themselves.
+// CAM-70: as soon as both cams meet.
 TEST(ChangeCam, WithoutAJump) {
   Settings s = Quick();
   cam::CamParams other = UpAndDown("other", 50);
@@ -197,7 +197,7 @@ TEST(ChangeCam, WithoutAJump) {
         return b.Module().cam_table == 2;
       },
       3000));
-  EXPECT_NEAR(place, 180, 1);  // the first place where they meet
+  EXPECT_NEAR(place, 180, 1);  // the first position where they meet
   watch.ExpectSmooth();
 }
 
@@ -225,7 +225,7 @@ TEST(ChangeCam, CanBeWithdrawn) {
   EXPECT_EQ(b.Module().cam_table, 1u);
 }
 
-// CAM-70: at the end of the cam, too, what is shifted makes both meet.
+// CAM-70: at the end of the cam, too, the shift makes both meet.
 TEST(ChangeCam, AtTheEndWithWhatIsShifted) {
   cam::CamParams high = UpAndDown("high", 50);
   for (cam::CamPoint& point : high.points) point.y += 30;
@@ -248,7 +248,7 @@ TEST(ChangeCam, AtTheEndWithWhatIsShifted) {
   }
 }
 
-// CAM-70: and where that end is held.
+// CAM-70: and at an end that is held.
 TEST(ChangeCam, AtAHeldEndWithWhatIsShifted) {
   cam::CamParams high = UpAndDown("high", 50);
   for (cam::CamPoint& point : high.points) point.y += 30;
@@ -266,13 +266,13 @@ TEST(ChangeCam, AtAHeldEndWithWhatIsShifted) {
     const Ticket change = b.Tell(ChangeCam{2, ChangeWhen::kNextCycle, 0, align});
     ASSERT_TRUE(b.Until([&] { return b.Module().cam_table == 2; }, 3000));
     EXPECT_EQ(b.Of(change), FeedbackState::kDone);
-    b.Run(40);  // a step of 30 mm would be made good by now
+    b.Run(40);  // a step of 30 mm would be caught up by now
     EXPECT_NEAR(b.Knife().set_position, 0, 5);
     watch.ExpectSmooth();
   }
 }
 
-// CAM-23: switched off during its first cam, and on again after the way out.
+// CAM-23: switched off during its first cam, and on again after the exit.
 TEST(Sequencer, ItsFirstCamIsNotRunTwice) {
   Settings s = Quick();
   s.cam_sequence_mode = SequenceMode::kCam1Cam3;
@@ -294,7 +294,7 @@ TEST(Sequencer, ItsFirstCamIsNotRunTwice) {
   EXPECT_EQ(b.Module().cam_table, 3u);
   const Ticket change = b.Tell(ChangeCam{2});
   b.Run(2);
-  EXPECT_EQ(b.ErrorOf(change), ErrorId::kState);  // the sequence says what comes next
+  EXPECT_EQ(b.ErrorOf(change), ErrorId::kState);  // the sequence selects the next cam
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The contract of the clutch (clutch.h), by itself: any master, any instant, every mode (CAM-81, CAM-82).
+// The contract of the clutch (clutch.h), in isolation: any master, any instant, every mode (CAM-81, CAM-82).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPeriod = 0.001;
 
-// A master that changes its velocity now and then, turns round, stands, jumps, and may be measured with noise.
+// A master that changes its velocity at random, reverses, rests, jumps, and may be measured with noise.
 class Master {
  public:
   Master(Dice& dice, bool noisy) : dice_(dice), noisy_(noisy) { exact_.position = dice.Between(-400, 400); }
@@ -44,7 +44,7 @@ class Master {
   KinematicState exact_;
 };
 
-// The clutch on a cam that goes up and down, with a slave that follows every demand.
+// The clutch on a cam that rises and falls, with a slave that follows every demand.
 class Rig {
  public:
   Rig(Dice& dice, const Settings& given, bool noisy, double turn)
@@ -80,7 +80,7 @@ class Rig {
   }
   void Close() { close_ = true; }
   void Open() { open_ = true; }
-  // Whether the demand is the cam's, bit for bit but for rounding.
+  // Returns true if the demand is that of the cam, within rounding.
   bool OnCam() const { return std::abs(own.position - wanted_.position) < 1e-9; }
   double MasterAt() const { return now_.position; }
 
@@ -113,7 +113,7 @@ class Rig {
   }
   void Check(const ClutchState& earlier, const KinematicState& demand) {
     const double largest = std::abs(now_.position - before_.position);
-    if (state.curve_count > earlier.curve_count) {  // a curve has begun: as long as asked for, and within the limits
+    if (state.curve_count > earlier.curve_count) {  // a curve has begun: as long as requested, and within the limits
       const ClutchCurve& curve = state.curves[state.curve_count - 1];
       const double asked = curve.closes ? settings.master_sync_in_distance : settings.master_sync_out_distance;
       EXPECT_NEAR(curve.over.length, asked, 1e-9 * asked);
@@ -132,7 +132,7 @@ class Rig {
       EXPECT_LE(On(curve, now_.position) - curve.over.length, largest + 1e-9);
       EXPECT_NEAR(demand.position, wanted_.position, 1e-6);
     }
-    // No step: what the slope of any curve here allows for the master's displacement, and more over time alone.
+    // No step: the slope of any curve here for the master's displacement, and more for curves over time.
     const double bound = 40 * largest + 60 * 1.9 / 0.2 * kPeriod + 0.5;
     if (state.mode != ClutchMode::kAbsolute && state.mode != ClutchMode::kRelative) {
       EXPECT_LE(std::abs(demand.position - own.position), bound);
@@ -170,7 +170,7 @@ Settings AnyClutch(Dice& dice) {
   return s;
 }
 
-// CAM-81, CAM-82: whatever the master does before, it closes as it goes on, and opens likewise.
+// CAM-81, CAM-82: after any motion of the master, it closes as the master continues, and opens likewise.
 TEST(Contract, ClosesAndOpensWhicheverWayTheMasterGoesOn) {
   const int trials = std::getenv("TAKT_LONG") != nullptr ? 100'000 : 600;
   for (int trial = 0; trial < trials; ++trial) {

@@ -1,5 +1,5 @@
-// The clutch's contract on the engine: any master, commands at any instant and more than once, every mode, slaves that
-// turn and slaves that do not (CAM-37, CAM-39, CAM-81, CAM-82).
+// The clutch's contract on the engine: any master, commands at any instant and repeatedly, every mode, rotary and
+// linear slaves (CAM-37, CAM-39, CAM-81, CAM-82).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,13 +13,13 @@
 namespace takt::flexcam {
 namespace {
 
-// What a trial is about; the rest is by chance.
+// The conditions of a trial; the rest is random.
 struct Trial {
-  bool wide = false;      // the slave's limits leave room for everything: no demand is to be caught up with
-  bool jumps = false;     // the master is driven as if it jumped
-  bool measured = false;  // the master's position is that of a coarse encoder
-  bool ramps = false;     // offsets and factors are changed on the way
-  bool once = false;      // slave and master may not turn against one another
+  bool wide = false;      // the slave's limits are so wide that it never lags behind a demand
+  bool jumps = false;     // the master jumps
+  bool measured = false;  // the master's position is measured by a coarse encoder
+  bool ramps = false;     // offsets and factors are changed during the trial
+  bool once = false;      // slave and master may not move against each other
 };
 
 Trial AnyTrial(Dice& dice) {
@@ -79,7 +79,7 @@ Machine MachineFor(Dice& dice, const Trial& t) {
   return m;
 }
 
-// Watches what has to hold in each cycle.
+// Checks the invariants of each cycle.
 class ClutchWatch {
  public:
   ClutchWatch(Bench& b, const Trial& trial)
@@ -114,7 +114,7 @@ class ClutchWatch {
   }
   int silent = 0, stepped = 0;
   double against = 0, off_place = 0;
-  // What there was to see.
+  // Coverage:
   std::array<int, 7> entered{};  // clutch phases
   int places = 0, senses = 0, curves = 0;
 
@@ -129,7 +129,7 @@ class ClutchWatch {
     const bool waits = m.clutch == ClutchPhase::kWaitingIn || m.clutch == ClutchPhase::kWaitingOut;
     silent += waits && m.clutch_waits == ClutchWait::kNothing ? 1 : 0;
   }
-  // CAM-39: what the modes over a curve ask for has no step, so a slave with room does it bit for bit.
+  // CAM-39: the demands of the curve modes have no step, so a slave with wide limits follows them bit for bit.
   void LookAtStep() {
     const bool over_curves = settings_.sync_mode >= ClutchMode::kRampPos;
     if (!Exact() || !trial_.wide || !over_curves) return;
@@ -147,8 +147,8 @@ class ClutchWatch {
   void LookAtPlace(const Outputs& m) {
     const bool closes = module_.clutch == ClutchPhase::kClosing && m.clutch == ClutchPhase::kClosed;
     if (!closes || !Exact() || !trial_.wide || settings_.sync_mode != ClutchMode::kRampPos) return;
-    if (module_.clutch_distance == 0) return;  // over time: what a change on the way had left
-    // The master has gone back behind where the closing began: that is undone, and it is in step as before.
+    if (module_.clutch_distance == 0) return;  // over time: the rest of an earlier change
+    // The master has moved back behind the begin of the closing: that is undone, and it is in step as before.
     if (module_.clutch_distance > distance_before_) {
       off_place = std::max(off_place, Apart(b_.Knife().set_position, m.mp06_y_to_slave_position));
       return;
@@ -177,7 +177,7 @@ void DriveAnyHow(Dice& dice, Bench& b, const Trial& t) {
   Drive(dice, b);
 }
 
-// On and off at any instant, several times in a row.
+// On and off at any instant, several times in succession.
 void GiveAny(Dice& dice, Bench& b, const Trial& t) {
   const int times = 1 + dice.Upto(3);
   bool on = dice.Coin();
@@ -192,7 +192,7 @@ void GiveAny(Dice& dice, Bench& b, const Trial& t) {
   if (dice.Upto(4) == 0) b.Tell(Control{.scaling_slave = dice.Between(0.5, 2)});
 }
 
-// With an even master it gets there, or is refused with an error, or says what it waits for; never nothing (CAM-82).
+// With a steady master the command completes, or is refused with an error, or its wait has a reason (CAM-82).
 void ExpectConclusion(Dice& dice, Bench& b, bool on) {
   b.Tell(Control{.sync_cam = !on});
   b.Step();
@@ -236,7 +236,7 @@ TEST(Contract, HoldsForCommandsAtAnyInstant) {
     curves += watch.curves;
     if (testing::Test::HasFailure()) return;
   }
-  // There was something to see.
+  // The trial covered:
   for (const ClutchPhase phase : {ClutchPhase::kWaitingIn, ClutchPhase::kClosing, ClutchPhase::kClosed,
                                   ClutchPhase::kWaitingOut, ClutchPhase::kOpening}) {
     EXPECT_GE(10 * entered[static_cast<std::size_t>(phase)], trials) << static_cast<int>(phase);

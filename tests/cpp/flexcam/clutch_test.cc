@@ -10,7 +10,7 @@ namespace {
 
 using axis::AxisKind;
 
-// Where the cam wants the slave, from what is published of X alone.
+// Returns the position of the slave by the cam, from the published X alone.
 double YAt(double x, double height) {
   return height * engine::Polynomial345::Y(x < 180 ? x / 180 : (360 - x) / 180);
 }
@@ -38,13 +38,13 @@ TEST(Absolute, PutsASlaveThatIsThereOnTheCam) {
   b.Run(500);
   Watch watch(b);
   ASSERT_TRUE(b.Sync(5));
-  EXPECT_LT(watch.velocity, 1e-9);  // it stood there already
+  EXPECT_LT(watch.velocity, 1e-9);  // it was there already
   b.Web(720);
   ExpectOnCam(b, 50);
   watch.ExpectSmooth();
 }
 
-// CAM-30: one that is not there gets there as fast as its limits allow, without a jump.
+// CAM-30: a slave elsewhere approaches as fast as its limits allow, without a jump.
 TEST(Absolute, ChasesWhatIsElsewhere) {
   Bench b(MachineOf({UpAndDown("hill", 50)}, Absolute(ClutchMode::kAbsolute)));
   b.Web(360);
@@ -77,7 +77,7 @@ struct PathCase {
 };
 class RampPos : public testing::TestWithParam<PathCase> {};
 
-// CAM-32: closed exactly where the master is at the sync position, after the way asked for, also if that takes turns.
+// CAM-32: closed exactly when the master is at the sync position, over the requested distance, even over several turns.
 TEST_P(RampPos, IsClosedAtTheSyncPosition) {
   const PathCase& p = GetParam();
   Settings s = Absolute(ClutchMode::kRampPos);
@@ -90,7 +90,7 @@ TEST_P(RampPos, IsClosedAtTheSyncPosition) {
   b.Tell(Control{.sync_cam = true});
   b.Run(300);
   EXPECT_EQ(b.Module().state, ModuleState::kSync);
-  EXPECT_FALSE(b.Module().acc_dec_sync);  // it works only while the master moves
+  EXPECT_FALSE(b.Module().acc_dec_sync);  // it only proceeds while the master moves
   b.Web(p.velocity);
   double way = 0, begun = 0;
   const double sense = p.velocity > 0 ? 1 : -1;
@@ -112,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, RampPos,
                          testing::Values(PathCase{360, 100, 200}, PathCase{-360, 100, 200}, PathCase{720, 800, 0},
                                          PathCase{100, 30, 359}, PathCase{-500, 1000, 10}));
 
-// CAM-32: the filter for the master's direction.
+// CAM-32: the condition on the master's direction.
 TEST(RampPos, WaitsForTheDirectionAskedFor) {
   Settings s = Absolute(ClutchMode::kRampPos);
   s.sync_direction = ClutchDirection::kPositive;
@@ -126,7 +126,7 @@ TEST(RampPos, WaitsForTheDirectionAskedFor) {
   EXPECT_TRUE(b.Until([&] { return b.Module().cam_synchronised; }, 3000));
 }
 
-// CAM-32: a master that stops on the way holds the slave, one that goes back takes it back.
+// CAM-32: a master that stops on the curve holds the slave, one that reverses takes it back.
 TEST(RampPos, GoesWithTheMasterAlone) {
   Settings s = Absolute(ClutchMode::kRampPos);
   s.master_sync_in_position = 200;
@@ -144,14 +144,14 @@ TEST(RampPos, GoesWithTheMasterAlone) {
   EXPECT_EQ(b.Knife().set_position, there);
   b.Give(Bench::kWeb, axis::MoveAbsolute{.position = 20, .velocity = 300, .direction = axis::Direction::kNegative});
   b.Run(1500);
-  EXPECT_NEAR(b.Knife().set_position, -30, 1e-6);  // before the beginning it stands where it stood
+  EXPECT_NEAR(b.Knife().set_position, -30, 1e-6);  // before the begin it is at its initial position
   b.Web(360);
   EXPECT_TRUE(b.Until([&] { return b.Module().cam_synchronised; }, 3000));
   ExpectOnCam(b, 50);
   watch.ExpectSmooth();
 }
 
-// CAM-33: after exactly the time asked for, with the master at rest or moving whichever way.
+// CAM-33: after exactly the requested time, with the master at rest or moving in any direction.
 TEST(RampTime, TakesItsTimeWhateverTheMasterDoes) {
   for (const double velocity : {0.0, 360.0, -1000.0}) {
     Settings s = Absolute(ClutchMode::kRampTime);
@@ -173,7 +173,7 @@ TEST(RampTime, TakesItsTimeWhateverTheMasterDoes) {
   }
 }
 
-// CAM-34: what is between slave and cam moves with velocity and ramps of its own, on top of the cam.
+// CAM-34: the shift between slave and cam is ramped with its own velocity and ramps, on top of the cam.
 TEST(RampVelAcc, IsOnTopOfTheCam) {
   Settings s = Absolute(ClutchMode::kRampVelAcc);
   s.sync_velocity = 80;
@@ -194,7 +194,7 @@ TEST(RampVelAcc, IsOnTopOfTheCam) {
   ASSERT_TRUE(b.Sync());
   ExpectOnCam(b, 50);
   watch.ExpectSmooth();
-  EXPECT_LE(relative, 300 + 80);  // it begins with the cam's own speed
+  EXPECT_LE(relative, 300 + 80);  // initially the cam's own velocity
   Bench still(MachineOf({UpAndDown("hill", 50)}, s));
   still.Give(Bench::kKnife, axis::MoveAbsolute{.position = -60});
   still.Run(700);
@@ -275,11 +275,11 @@ TEST(ImmediateOpening, StopsWithItsOwnDecelerationAndKeepsOpen) {
   const Ticket refused = b.Tell(Control{.sync_cam = true});
   b.Run(2);
   EXPECT_EQ(b.Of(again), FeedbackState::kDone);
-  EXPECT_EQ(b.ErrorOf(refused), ErrorId::kState);  // impossible as long as it is set
+  EXPECT_EQ(b.ErrorOf(refused), ErrorId::kState);  // refused while the input is set
   EXPECT_EQ(b.Module().warning, ErrorId::kState);
   b.Tell(Control{.sync_out_instant = false});
   b.Run(500);
-  EXPECT_EQ(b.Module().state, ModuleState::kReady);  // what was asked for before is forgotten
+  EXPECT_EQ(b.Module().state, ModuleState::kReady);  // earlier requests are dropped
   b.Tell(Control{.sync_cam = false});
   b.Run(2);
   EXPECT_TRUE(b.Sync());
@@ -336,7 +336,7 @@ TEST(WithoutReversing, ATurnAheadIsTakenOnARotarySlave) {
   watch.ExpectSmooth();
 }
 
-// CAM-37: a slave that would have to go back is told so when it is asked.
+// CAM-37: a closing that would reverse the slave is refused at the request.
 TEST(WithoutReversing, IsRefusedWhereItCannotBe) {
   Settings s = Absolute(ClutchMode::kRampPos);
   s.position_control = PositionControl::kMasterDirection;
@@ -354,7 +354,7 @@ TEST(WithoutReversing, IsRefusedWhereItCannotBe) {
   EXPECT_EQ(b.Knife().set_position, 80);
 }
 
-// A slave that moves for other reasons than its master has no slope over the master's way: no curve begins from that.
+// A slave that moves independently of its master has no slope over the master's displacement: no curve begins then.
 TEST(RampPos, BeginsNoCurveFromAMotionThatTheMasterDoesNotGive) {
   for (const double velocity : {1.0, 5.0, 50.0}) {
     Bench b(MachineOf({UpAndDown("hill", 50)}, Absolute(ClutchMode::kAbsolute)));
@@ -371,7 +371,7 @@ TEST(RampPos, BeginsNoCurveFromAMotionThatTheMasterDoesNotGive) {
     };
     b.Tell(Control{.sync_cam = true});
     b.Run(15);
-    EXPECT_GT(b.Knife().set_velocity, 100);  // on its way to where the cam is
+    EXPECT_GT(b.Knife().set_velocity, 100);  // approaching the cam
     b.Tell(Configure{.sync_mode = ClutchMode::kRampPos});
     b.Tell(Control{.sync_cam = false});
     b.Run(1000);
@@ -383,7 +383,7 @@ TEST(RampPos, BeginsNoCurveFromAMotionThatTheMasterDoesNotGive) {
   }
 }
 
-// CAM-37: an opening that finds no way says so, and the slave stays on its cam.
+// CAM-37: an opening that finds no curve is reported, and the slave stays on its cam.
 TEST(WithoutReversing, AnOpeningThatIsImpossibleSaysSo) {
   Settings s = Absolute(ClutchMode::kRampTime);
   s.sync_in_time_s = 0.1;
@@ -402,7 +402,7 @@ TEST(WithoutReversing, AnOpeningThatIsImpossibleSaysSo) {
   EXPECT_EQ(b.Module().state, ModuleState::kSync);
 }
 
-// CAM-37: a smaller factor waits for the end of a ramp that counts on the greater one.
+// CAM-37: a smaller factor waits for the end of a ramp that relies on the larger one.
 TEST(WithoutReversing, AFactorWaitsForTheRampOfX) {
   Settings s = Absolute(ClutchMode::kRampTime);
   s.sync_in_time_s = 0.1;
@@ -424,7 +424,7 @@ TEST(WithoutReversing, AFactorWaitsForTheRampOfX) {
   EXPECT_EQ(b.Module().set_scaling_master, 0.5);
 }
 
-// CAM-39: no way at all to close or open over: at once, as fast as the slave's limits allow, and without a jump.
+// CAM-39: zero distance for closing and opening: at once, as fast as the slave's limits allow, and without a jump.
 TEST(RampPos, WithADistanceOfZero) {
   Settings s = Absolute(ClutchMode::kRampPos);
   s.master_sync_in_distance = 0;
@@ -443,8 +443,8 @@ TEST(RampPos, WithADistanceOfZero) {
   watch.ExpectSmooth();
 }
 
-// CAM-39: other numbers for where master and slave are move nothing, and a master that is lost by its encoder for a
-// while is no jump either.
+// CAM-39: new position values of master and slave (set_position) cause no motion, and a master whose encoder is lost
+// for a while does not jump either.
 TEST(Closed, OtherNumbersMoveNothing) {
   Bench b(MachineOf({UpAndDown("hill", 50)}, Absolute(ClutchMode::kAbsolute)));
   b.Give(Bench::kWeb, axis::MoveVelocity{.velocity = 360});

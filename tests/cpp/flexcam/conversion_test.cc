@@ -18,7 +18,7 @@ struct Row {
 
 class Tables : public testing::TestWithParam<Row> {};
 
-// CAM-40: number for number.
+// CAM-40: value by value.
 TEST_P(Tables, AreThoseOfTheManual) {
   const Row& row = GetParam();
   trajectory::Planner planner;
@@ -50,7 +50,7 @@ INSTANTIATE_TEST_SUITE_P(Slave, Tables,
                                          Row{ScalingMode::kAbsolute, 50, 0, 152, 52},
                                          Row{ScalingMode::kRelative, 50, 0, 52, 53}));
 
-// The same numbers on a whole module: a straight cam, so that Y is X.
+// The same values on a whole module: a straight cam, so that Y is X.
 struct Placed {
   double master, x, slave;
 };
@@ -98,7 +98,7 @@ TEST(Scaling, OfTheSlaveOnAModule) {
   s.slave_absolute = true;
   std::vector<Placed> rows = ThreeCycles(s, 0, false);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(rows[i].slave, (i == 1 ? 2 : 1) * rows[i].x, 1e-9) << i;
-  // The slave was at 0 where Y was 50: it stays 50 behind.
+  // The slave was at 0 when Y was 50: it stays 50 behind.
   s.slave_absolute = false;
   rows = ThreeCycles(s, 50, false);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(rows[i].slave, (i == 1 ? 2 : 1) * rows[i].x - 50, 1e-9) << i;

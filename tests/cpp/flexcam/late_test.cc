@@ -1,5 +1,5 @@
-// Clutches given late, ramps at every speed, lost masters, sequences backwards: what the module says, and what it never
-// does (CAM-81 to CAM-87).
+// Late clutch commands, ramps at every speed, lost masters, sequences backwards: the reports of the module, and its
+// invariants (CAM-81 to CAM-87).
 #include <gtest/gtest.h>
 
 #include "bench.h"
@@ -68,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, GivenLate,
                                          Late{1000, PassedSync::kNextCycle, 1200}, Late{599, PassedSync::kHere, 1},
                                          Late{2000, PassedSync::kHere, 1}));
 
-// CAM-81: a curve that the slave cannot follow at the master's speed is refused, and the speed it could is known.
+// CAM-81: a curve that the slave cannot follow at the master's speed is refused, and the possible speed is published.
 TEST(GivenLate, ACurveBeyondTheSlavesLimitsIsRefused) {
   Machine m = MachineOf({UpAndDown("hill", 40)}, Over(30, 200, PassedSync::kRefuse));
   m.axes[Bench::kKnife].limits = {
@@ -90,7 +90,7 @@ TEST(GivenLate, ACurveBeyondTheSlavesLimitsIsRefused) {
   watch.ExpectSmooth();
 }
 
-// CAM-81: an opening that is beyond the limits waits, says so, and is refused in the end; the slave stays on its cam.
+// CAM-81: an opening beyond the limits waits, reports it, and is refused in the end; the slave stays on its cam.
 TEST(GivenLate, AnOpeningBeyondTheSlavesLimitsWaits) {
   Settings s = Quick();
   Bench b(MachineOf({Straight("gear", 1)}, s));
@@ -107,7 +107,7 @@ TEST(GivenLate, AnOpeningBeyondTheSlavesLimitsWaits) {
   EXPECT_TRUE(b.Module().cam_synchronised);
 }
 
-// CAM-81: turned round within the curve, a linear web closes when it comes back, and the module says what it waits for.
+// CAM-81: a linear web that reverses within the curve closes when it returns, and the module reports its wait.
 TEST(GivenLate, AWebThatTurnsAwayIsWaitedForAloud) {
   Bench b(MachineOf({UpAndDown("hill", 40, 300)}, Over(100, 500, PassedSync::kRefuse), AxisKind::kLinear));
   b.Give(Bench::kKnife, axis::MoveAbsolute{.position = -30});
@@ -129,7 +129,7 @@ TEST(GivenLate, AWebThatTurnsAwayIsWaitedForAloud) {
   watch.ExpectSmooth();
 }
 
-// CAM-82: each reason has its name.
+// CAM-82: each reason for waiting is reported.
 TEST(Waits, AreNamed) {
   Settings s = Over(100, 200, PassedSync::kRefuse);
   s.offset_mode_master = OffsetMode::kRampIn;
@@ -154,11 +154,11 @@ TEST(Waits, AreNamed) {
 struct RampCase {
   PositionControl control;
   double slow, fast;
-  int begins_after;  // cycles before the master gets faster
+  int begins_after;  // cycles before the master accelerates
 };
 class RampLimits : public testing::TestWithParam<RampCase> {};
 
-// CAM-83: ramps keep their own velocity and acceleration while the master gets faster, and at every speed.
+// CAM-83: ramps keep their own velocity and acceleration while the master accelerates, and at every speed.
 TEST_P(RampLimits, HoldAtEverySpeedOfTheMaster) {
   const RampCase& p = GetParam();
   Settings s = Quick();
@@ -175,7 +175,7 @@ TEST_P(RampLimits, HoldAtEverySpeedOfTheMaster) {
   b.Web(p.slow);
   b.Run(100);
   ASSERT_TRUE(b.Sync());
-  b.Tell(Configure{.master_max_velocity = 3.0});  // of the extreme values; it is none of a ramp's business
+  b.Tell(Configure{.master_max_velocity = 3.0});  // for the extreme values; it does not affect ramps
   const Ticket ticket = b.Tell(Control{.offset_master = 150.0});
   double velocity = 0, acceleration = 0, least = 1e9;
   b.each = [&] {
@@ -208,8 +208,8 @@ INSTANTIATE_TEST_SUITE_P(Cases, RampLimits,
                                          RampCase{PositionControl::kMasterDirection, 300, 1900, 200},
                                          RampCase{PositionControl::kMasterDirection, 30, 30, 300}));
 
-// CAM-83: in master_direction neither side's offsets and factors move X or the slave against the master, in any mode,
-// also while it brakes hard, turns round and goes on the other way.
+// CAM-83: in master_direction offsets and factors of neither side move X or the slave against the master, in any mode,
+// also while the master brakes hard, reverses and continues in the other direction.
 TEST(MasterDirection, NothingGoesAgainstIt) {
   struct Change {
     Control control;
@@ -269,7 +269,7 @@ TEST(MasterDirection, NothingGoesAgainstIt) {
   }
 }
 
-// CAM-83: a slave factor of 0 could only be reached backwards.
+// CAM-83: a slave factor of 0 could only be reached by reversing.
 TEST(MasterDirection, AFactorOfNothingIsRefused) {
   Settings s = Quick();
   s.position_control = PositionControl::kMasterDirection;
@@ -284,7 +284,7 @@ TEST(MasterDirection, AFactorOfNothingIsRefused) {
 
 // --- CAM-84 ---
 
-// CAM-84: what is published is in force, and each feedback ends with its ramp.
+// CAM-84: published values are in force, and each feedback ends with its ramp.
 TEST(InForce, FactorsAreTheActualOnes) {
   Settings s = Quick();
   s.scaling_mode_slave = ScalingMode::kRampAbsolute;
@@ -359,7 +359,7 @@ TEST(FaultRamp, IsTheModulesWhateverStopsTheSlave) {
   }
 }
 
-// CAM-85: a cam that turns before the SW limit is not stopped there, however weak the module's ramp.
+// CAM-85: a cam that reverses before the SW limit is not stopped there, even with a weak ramp of the module.
 TEST(FaultRamp, DoesNotStopACamThatStaysInside) {
   Settings s = Quick();
   s.stop_deceleration = 200;
@@ -383,7 +383,7 @@ struct Mirror {
 };
 class SequenceMirrored : public testing::TestWithParam<Mirror> {};
 
-// CAM-86: backwards a sequence runs the cams in the same order as forwards.
+// CAM-86: backwards, a sequence runs the cams in the same order as forwards.
 TEST_P(SequenceMirrored, RunsTheSameCams) {
   const Mirror& p = GetParam();
   Settings s;
@@ -413,7 +413,7 @@ TEST_P(SequenceMirrored, RunsTheSameCams) {
 INSTANTIATE_TEST_SUITE_P(Cases, SequenceMirrored,
                          testing::Values(Mirror{0, 1}, Mirror{0, -1}, Mirror{90, 1}, Mirror{90, -1}, Mirror{200, -1}));
 
-// CAM-86: a master that trembles at the end of a cam does not run the sequence on.
+// CAM-86: a master that oscillates at the end of a cam does not advance the sequence.
 TEST(Sequence, DoesNotGoOnByTrembling) {
   Settings s;
   s.slave_absolute = true;
@@ -451,7 +451,7 @@ TEST(Sequence, WithAnEmptySlotIsRefused) {
 
 // --- CAM-87, and edges ---
 
-// CAM-87: a master that was coming to rest when it was lost comes to rest; it is told.
+// CAM-87: a master that was decelerating when it was lost comes to rest; this is reported.
 TEST(Coasting, EndsAtStandstill) {
   Settings s = Quick();
   s.on_master_fault = MasterFault::kCoast;
@@ -471,7 +471,7 @@ TEST(Coasting, EndsAtStandstill) {
   EXPECT_EQ(b.Module().state, ModuleState::kSync);
 }
 
-// CAM-10: an edge that comes and goes within one cycle is one.
+// CAM-10: an edge that rises and falls within one cycle counts.
 TEST(Edges, WithinOneCycleAreTaken) {
   Bench b(OneHill());
   b.Tell(Control{.enable_hw_limit = true, .hw_limit_negative = true});

@@ -1,4 +1,4 @@
-// What a module follows (CAM-50, CAM-51).
+// The masters of a module (CAM-50, CAM-51).
 #include <gtest/gtest.h>
 
 #include "bench.h"
@@ -25,7 +25,7 @@ TEST(Masters, Virtual) {
   }
 }
 
-// CAM-50: what is measured of the master, with filter and dead time: at constant speed it lies where the master is.
+// CAM-50: the measured position of the master, with filter and dead time: without lag at constant speed.
 TEST(Masters, MeasuredWithAFilterAndDeadTime) {
   Settings s = QuickBothWays();
   s.master_filter_s = 0.05;
@@ -35,7 +35,7 @@ TEST(Masters, MeasuredWithAFilterAndDeadTime) {
   m.axes[Bench::kWeb].encoder.increments_per_unit = 20;  // a coarse encoder
   Bench b(m);
   b.Web(360);
-  b.Run(1000);  // the filter finds the speed within some 15 time constants
+  b.Run(1000);  // the filter settles within about 15 time constants
   ASSERT_TRUE(b.Sync());
   Watch watch(b);
   double worst = 0;
@@ -91,7 +91,7 @@ TEST(Masters, OrTheSlaveGoesOn) {
   EXPECT_EQ(b.Module().state, ModuleState::kSync);
   EXPECT_TRUE(b.Module().cam_synchronised);
   EXPECT_NEAR(b.Module().set_x_velocity, 360, 1e-9);
-  EXPECT_NEAR(b.Module().set_x_position, x, 1e-6);  // a turn further on
+  EXPECT_NEAR(b.Module().set_x_position, x, 1e-6);  // a turn later
   b.Tell(Control{.sync_cam = false});
   ASSERT_TRUE(b.Until([&] { return b.Module().state == ModuleState::kReady; }, 3000));
   watch.ExpectSmooth();

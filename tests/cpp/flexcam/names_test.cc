@@ -10,7 +10,7 @@
 namespace takt::flexcam {
 namespace {
 
-// The names of the manual that the fields of a type say they stand for.
+// Collects the names of the manual to which the fields of a type refer.
 void Collect(const Type& type, std::set<std::string>& names) {
   const auto take = [&](std::string_view about) {
     const std::string_view key = "Flex Cam: ";
@@ -110,7 +110,7 @@ TEST(Names, InitialValuesAreThoseOfTheManual) {
   EXPECT_EQ(in.offset_master, 0);
 }
 
-// CAM-11: the points of the signal flow, one behind the other.
+// CAM-11: the points of the signal flow, in order.
 TEST(SignalFlow, IsPublished) {
   Settings s;
   s.slave_absolute = true;

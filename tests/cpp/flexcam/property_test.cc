@@ -1,4 +1,4 @@
-// What must hold for any cam, any master and any clutch (CAM-37, CAM-39).
+// Invariants for any cam, any master and any clutch (CAM-37, CAM-39).
 #include <gtest/gtest.h>
 
 #include "random.h"
@@ -47,7 +47,7 @@ Configure AsCommand(const Settings& s) {
   return c;
 }
 
-// Anything may be asked for at any time: the slave's limits hold, and it never jumps (CAM-39).
+// Any request at any time: the slave's limits hold, and it never jumps (CAM-39).
 TEST(Property, TheSlaveNeverJumpsAndKeepsItsLimits) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     Dice dice(seed);
@@ -104,8 +104,8 @@ TEST(Property, TheSlaveNeverJumpsAndKeepsItsLimits) {
   }
 }
 
-// Where the limits leave room, the clutch itself asks for nothing that jumps: the slave's set points are those of the
-// clutch, bit for bit, from the begin of its closing to the end of its opening (CAM-39, modes 2 to 4).
+// Within wide limits, the demands of the clutch have no step: the slave's set points are those of the clutch, bit for
+// bit, from the begin of its closing to the end of its opening (CAM-39, modes 2 to 4).
 TEST(Property, TheClutchAsksForNoStep) {
   for (unsigned seed = 100; seed < 160; ++seed) {
     Dice dice(seed);

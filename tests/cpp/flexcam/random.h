@@ -1,4 +1,4 @@
-// Cams and masters by chance.
+// Random cams and masters.
 #pragma once
 
 #include <cmath>
@@ -23,7 +23,7 @@ inline cam::CamParams RandomCam(Dice& dice, const std::string& name, bool rising
   return p;
 }
 
-// The web gets faster or slower, turns round, or stops.
+// The web accelerates, decelerates, reverses, or stops.
 inline void Drive(Dice& dice, Bench& b) {
   const double velocity = dice.Upto(3) == 0 ? 0 : dice.Between(-800, 800);
   if (velocity == 0) {

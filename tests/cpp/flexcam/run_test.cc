@@ -1,4 +1,4 @@
-// How cams are run: cycles, lengths, ends, scaling and offsets (CAM-20 to CAM-22, CAM-24, CAM-40 to CAM-42).
+// Running cams: cycles, lengths, ends, scaling and offsets (CAM-20 to CAM-22, CAM-24, CAM-40 to CAM-42).
 #include <gtest/gtest.h>
 
 #include "bench.h"
@@ -28,7 +28,7 @@ TEST(Cyclic, BothWaysAndOverMasterTurns) {
   watch.ExpectSmooth();
 }
 
-// CAM-20: outside a cam that is run once its end is held, and it is left again where it was entered.
+// CAM-20: outside a cam that is run once its end is held, and X leaves it where it entered.
 TEST(Once, HoldsItsEnds) {
   Settings s = Quick();
   s.cam_cyclic = false;
@@ -49,7 +49,7 @@ TEST(Once, HoldsItsEnds) {
   watch.ExpectSmooth();
 }
 
-// CAM-21: a cam shorter than the master's turn: its place relative to the master is lost after the first cycle ...
+// CAM-21: a cam shorter than the master's turn loses its position relative to the master after the first cycle ...
 TEST(Lengths, ShorterThanTheMastersTurn) {
   Bench b(MachineOf({UpAndDown("hill", 50, 250)}, Quick()));
   b.Web(500);
@@ -67,7 +67,7 @@ TEST(Lengths, ShorterThanTheMastersTurn) {
   }
 }
 
-// CAM-21: ... one as long as the turn keeps it, and a relative one begins where the master is.
+// CAM-21: ... one as long as the turn keeps it, and a relative one begins at the master's position.
 TEST(Lengths, AsLongAsTheMastersTurn) {
   for (const bool absolute : {true, false}) {
     Settings s = Quick();
@@ -82,7 +82,7 @@ TEST(Lengths, AsLongAsTheMastersTurn) {
   }
 }
 
-// CAM-21: a slave whose turn is the stroke keeps its place; another one goes on from cycle to cycle.
+// CAM-21: a slave whose turn is the stroke keeps its position; another one advances from cycle to cycle.
 TEST(Lengths, OfTheSlave) {
   for (const double stroke : {360.0, 100.0}) {
     Bench b(MachineOf({Onward("index", stroke)}, Quick(), AxisKind::kRotary, AxisKind::kRotary));
@@ -98,7 +98,7 @@ TEST(Lengths, OfTheSlave) {
   }
 }
 
-// CAM-21: after a million cycles the error is below a millionth of a cycle, with lengths that no double holds.
+// CAM-21: after a million cycles the error is below a millionth of a cycle, with lengths that are no exact doubles.
 TEST(Lengths, NoDriftInAMillionCycles) {
   const double length = 360.0 / 7, stroke = 100.0 / 3;
   const cam::Table table = cam::Build(Onward("index", stroke, length)).table.value();
@@ -120,7 +120,7 @@ TEST(Lengths, NoDriftInAMillionCycles) {
   EXPECT_NEAR(at.y / stroke, 1e6 + engine::Polynomial345::Y(share), 1e-6);
 }
 
-// CAM-22: true for exactly one cycle, the last one of the cam, at any speed and either way.
+// CAM-22: true for exactly one cycle, the last one of the cam, at any speed and in both directions.
 TEST(EndOfProfile, IsSeenForOneCycle) {
   for (const double velocity : {100.0, 1234.5, -700.0}) {
     Bench b(MachineOf({UpAndDown("hill", 50)}, Quick()));
@@ -143,7 +143,7 @@ TEST(EndOfProfile, IsSeenForOneCycle) {
   }
 }
 
-// CAM-22: a master that turns round in the last cycle makes no second end.
+// CAM-22: a master that reverses in the last cycle causes no second end.
 TEST(EndOfProfile, OnceForEachEndWhateverTheMasterDoes) {
   for (int turn = 0; turn < 60; ++turn) {
     Bench b(MachineOf({UpAndDown("hill", 50)}, Quick()));
@@ -164,7 +164,7 @@ TEST(EndOfProfile, OnceForEachEndWhateverTheMasterDoes) {
   }
 }
 
-// CAM-24: of the cam that is set, and of a whole sequence, as dense sampling finds them, scaling included.
+// CAM-24: of the selected cam, and of a whole sequence, as found by dense sampling, scaling included.
 TEST(Bounds, AreThoseOfDenseSampling) {
   for (const bool sequence : {false, true}) {
     Settings s = Quick();
@@ -197,7 +197,7 @@ TEST(Bounds, AreThoseOfDenseSampling) {
   }
 }
 
-// CAM-40, CAM-41: x_zero takes effect where the cam begins, going backwards where it ends.
+// CAM-40, CAM-41: x_zero takes effect at the begin of the cam, moving backwards at its end.
 TEST(XZero, TakesEffectAtTheBeginning) {
   for (const double velocity : {400.0, -400.0}) {
     Bench b(MachineOf({UpAndDown("hill", 50)}, Quick()));
@@ -220,8 +220,8 @@ TEST(XZero, TakesEffectAtTheBeginning) {
   }
 }
 
-// CAM-40: with the ramp's velocity, and without a jump; CAM-41: retargeted on the way, and not ended by a change of
-// cam.
+// CAM-40: with the ramp's velocity, and without a jump; CAM-41: with a new target during the ramp, and not ended by a
+// change of cam.
 TEST(Ramps, GoToTheNewOffsetWithTheirOwnLimits) {
   Settings s = Quick();
   s.offset_mode_slave = OffsetMode::kRampIn;
@@ -244,7 +244,7 @@ TEST(Ramps, GoToTheNewOffsetWithTheirOwnLimits) {
   b.Run(700);
   EXPECT_EQ(b.Module().cam_table, 2u);
   const auto away = [&] { return b.Knife().set_position + Hill(b.Module().set_x_position, 30); };
-  EXPECT_LT(away(), 50);  // still on its way
+  EXPECT_LT(away(), 50);  // still in progress
   b.Tell(Control{.offset_slave = 20.0});
   b.Run(2500);
   EXPECT_NEAR(away(), 20, 1e-8);
@@ -252,7 +252,7 @@ TEST(Ramps, GoToTheNewOffsetWithTheirOwnLimits) {
   watch.ExpectSmooth();
 }
 
-// CAM-40: after a ramp of the factor the whole position is scaled, or what was moved since.
+// CAM-40: after a ramp of the factor either the whole position is scaled, or the motion since then.
 TEST(Ramps, OfFactorsAbsoluteAndRelative) {
   for (const ScalingMode mode : {ScalingMode::kRampAbsolute, ScalingMode::kRampRelative}) {
     Settings s = Quick();
@@ -290,7 +290,7 @@ TEST(Factors, DoNotChangeTheCycleLength) {
   EXPECT_LE(b.Module().set_x_position, 360);
 }
 
-// CAM-40: at the beginning of a cam that goes on from cycle to cycle a factor moves nothing.
+// CAM-40: at the begin of a cam with a stroke a factor causes no motion.
 TEST(XZero, MovesNothingOnACamWithAStroke) {
   for (const double velocity : {400.0, -400.0}) {
     Bench b(MachineOf({Onward("index", 100)}, Quick()));
@@ -310,7 +310,7 @@ TEST(XZero, MovesNothingOnACamWithAStroke) {
   }
 }
 
-// A cam whose end is held goes on as soon as anything else is asked for.
+// A held end of a cam is left as soon as another cam is requested.
 TEST(Once, IsLeftByWhateverIsAskedFor) {
   Settings s = Quick();
   s.cam_cyclic = false;

@@ -26,7 +26,7 @@ TEST(States, ReadyNeedsEnableAlone) {
   EXPECT_FALSE(b.Module().axis_enabled);
 }
 
-// CAM-10: what was asked for while the axis was off has to be asked for again.
+// CAM-10: a request while the axis is off must be repeated.
 TEST(States, AnEdgeBeforeTheAxisIsOnDoesNotCount) {
   Bench b(OneHill());
   b.Tell(Control{.regulator_on = false});
@@ -74,7 +74,7 @@ TEST(States, StopAndHaltLastAsLongAsTheyAreHeld) {
   }
 }
 
-// CAM-10: the first key counts, and the module is ready again when none is held.
+// CAM-10: the first key counts, and the module is ready again when no key is held.
 TEST(States, Jogging) {
   Bench b(OneHill());
   const Ticket up = b.Tell(Jog{.positive = true});
@@ -100,7 +100,7 @@ TEST(States, Jogging) {
   EXPECT_NEAR(b.Knife().set_velocity, -20, 1e-9);
 }
 
-// A key whose client is gone.
+// A key whose client is lost.
 TEST(States, AJogEndsWithItsLease) {
   Bench b(OneHill());
   const Ticket jog = b.Tell(Jog{.positive = true}, 0.1);
@@ -131,7 +131,7 @@ TEST(States, Homing) {
   EXPECT_NEAR(b.Knife().actual_position, 77, 1e-3);
 }
 
-// CAM-10: homing by the module's own section; taking the input back does not break it off, a stop does.
+// CAM-10: homing by the module's own section; resetting the input does not end it, a stop does.
 TEST(States, HomingByTheModule) {
   Machine m = OneHill();
   m.flex_cams[0].settings.home_by_module = true;
@@ -175,12 +175,12 @@ TEST(States, Service) {
   b.Run(2);
   EXPECT_TRUE(b.Module().internal_control_active);
   EXPECT_EQ(b.Module().state, ModuleState::kService);
-  b.Tell(Control{.stop = true});  // works on
+  b.Tell(Control{.stop = true});  // still effective
   b.Run(2);
   EXPECT_EQ(b.Module().state, ModuleState::kStop);
 }
 
-// One that comes in the middle of a cam takes the slave away, without a jump.
+// A command of the axis during a cam takes over the slave, without a jump.
 TEST(States, ACommandOfTheAxisTakesTheSlaveAway) {
   Bench b(OneHill());
   b.Web(360);
@@ -195,7 +195,7 @@ TEST(States, ACommandOfTheAxisTakesTheSlaveAway) {
   watch.ExpectSmooth();
 }
 
-// CAM-12: with the numbers of the manual; only a reset ends it.
+// CAM-12: with the error numbers of the manual; only a reset ends it.
 TEST(Limits, SwitchesAtTheModule) {
   struct Case {
     Control on, off;
@@ -212,7 +212,7 @@ TEST(Limits, SwitchesAtTheModule) {
     b.Web(720);
     b.Run(200);
     ASSERT_TRUE(b.Sync());
-    b.Tell(c.on);  // not looked at
+    b.Tell(c.on);  // not enabled
     b.Run(5);
     EXPECT_EQ(b.Module().state, ModuleState::kSync);
     b.Tell(c.off);
@@ -279,7 +279,7 @@ TEST(Limits, SwitchesOfTheSlave) {
   EXPECT_TRUE(b.Module().hw_limit_switch_positive);
 }
 
-// Every ticket ends, once, whatever comes in the same cycle; what is refused does not touch what runs.
+// Every ticket ends, once, with any commands in the same cycle; a refused request does not affect the running action.
 TEST(Tickets, End) {
   Bench b(OneHill());
   b.Web(360);
@@ -304,10 +304,10 @@ TEST(Tickets, End) {
   b.Run(10);
   const Ticket no_edge = b.Tell(Control{.sync_cam = true});
   b.Run(2);
-  EXPECT_EQ(b.ErrorOf(no_edge), ErrorId::kState);  // the level is there since before the stop
+  EXPECT_EQ(b.ErrorOf(no_edge), ErrorId::kState);  // the level has been set since before the stop
 }
 
-// A key that was pressed when something else began moves nothing later.
+// A key that was pressed when something else began causes no motion later.
 TEST(States, AJogDoesNotWait) {
   Bench b(OneHill());
   const Ticket jog = b.Tell(Jog{.positive = true});
@@ -318,7 +318,7 @@ TEST(States, AJogDoesNotWait) {
   EXPECT_EQ(b.Module().state, ModuleState::kReady);
 }
 
-// Switching off works always, and an error is not forgotten by disabling.
+// Switching off always works, and an error is not cleared by disabling.
 TEST(States, DisablingForgetsNothing) {
   Bench b(OneHill());
   b.Tell(Control{.enable = false});
@@ -339,7 +339,7 @@ TEST(States, DisablingForgetsNothing) {
   EXPECT_EQ(b.Module().error, ErrorId::kModuleLimitSwitchPositive);
 }
 
-// Held means that nothing else moves the slave either; and what others hold is theirs.
+// While held, nothing else moves the slave either; stops held by others are not released.
 TEST(States, HeldIsHeld) {
   for (const Control& hold : {Control{.halt = true}, Control{.stop = true}}) {
     Bench b(OneHill());
@@ -358,7 +358,7 @@ TEST(States, HeldIsHeld) {
   EXPECT_EQ(b.Knife().state, axis::PlcState::kStopping);
 }
 
-// The section of the module is for its own homing alone.
+// The section of the module only applies to its own homing.
 TEST(States, HomingByTheModuleLeavesTheAxisItsOwn) {
   Machine m = OneHill();
   m.flex_cams[0].settings.home_by_module = true;
@@ -375,7 +375,7 @@ TEST(States, HomingByTheModuleLeavesTheAxisItsOwn) {
   b.Run(20);
   const Ticket home = b.Give(Bench::kKnife, axis::Home{.position = 5});
   b.Run(20);
-  EXPECT_EQ(b.Of(home), FeedbackState::kDone);  // on the spot, as the axis says
+  EXPECT_EQ(b.Of(home), FeedbackState::kDone);  // at once, by the axis' own section
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
-// What holds for the set points of the slave, whatever is asked of it.
+// Invariants of the set points of the slave.
 #pragma once
 
 #include "bench.h"
 
 namespace takt::flexcam {
 
-// Watches that the slave never jumps: jerk, acceleration and velocity of its set points within its limits.
+// Checks that the slave never jumps: jerk, acceleration and velocity of its set points within its limits.
 class Watch {
  public:
   explicit Watch(Bench& b) : b_(b) {

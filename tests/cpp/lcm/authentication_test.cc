@@ -43,7 +43,7 @@ TagState Open(Verifier& verifier, std::string_view channel, const Bytes& bytes, 
   return verifier.Open(channel, view, heard_us);
 }
 
-// EN-31: a good tag is taken off, and the message is as it was, whatever its length.
+// EN-31: a good tag is removed, and the message is unchanged, at any length.
 TEST(Authentication, LeavesTheMessageAsItWas) {
   Signer signer(KeyFrom(1));
   Verifier verifier(KeysFrom(1));
@@ -58,7 +58,7 @@ TEST(Authentication, LeavesTheMessageAsItWas) {
   }
 }
 
-// EN-31: a bit changed anywhere, in message, tag or channel, another key, or a piece cut off: never taken.
+// EN-31: a bit changed anywhere, in message, tag or channel, another key, or a truncated message: always refused.
 TEST(Authentication, RefusesEveryChangedBit) {
   Signer signer(KeyFrom(1));
   Verifier verifier(KeysFrom(1)), other(KeysFrom(2));
@@ -76,10 +76,10 @@ TEST(Authentication, RefusesEveryChangedBit) {
     EXPECT_NE(Open(verifier, "takt/heartbeat", Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size))),
               TagState::kGood);
   }
-  EXPECT_EQ(Open(verifier, "takt/heartbeat", bytes), TagState::kGood);  // none of it used the counter up
+  EXPECT_EQ(Open(verifier, "takt/heartbeat", bytes), TagState::kGood);  // none of these used the counter
 }
 
-// EN-31: whatever order messages come in and however often, each is taken once at most, and all within the window are.
+// EN-31: in any order and with any repetitions, each message is accepted at most once, and all within the window are.
 TEST(Authentication, TakesEachMessageOnce) {
   std::mt19937 random(31);
   for (int round = 0; round < 20; ++round) {
@@ -99,7 +99,7 @@ TEST(Authentication, TakesEachMessageOnce) {
   }
 }
 
-// EN-31: what is older than the window is not taken, although it was never heard.
+// EN-31: a message older than the window is refused, although it was never received.
 TEST(Authentication, TakesNothingFromBehindTheWindow) {
   Signer signer(KeyFrom(1));
   Verifier verifier(KeysFrom(1));
@@ -112,7 +112,7 @@ TEST(Authentication, TakesNothingFromBehindTheWindow) {
   EXPECT_EQ(Open(verifier, "takt/command", late), TagState::kReplayed);
 }
 
-// EN-31: messages of another time are stale, for a receiver that has heard nothing of their sender, too.
+// EN-31: messages of another time are stale, even for a receiver that has received nothing from their sender.
 TEST(Authentication, TakesNothingOfAnotherTime) {
   Signer signer(KeyFrom(1));
   const std::int64_t now = WallClockUs();
@@ -129,8 +129,8 @@ TEST(Authentication, TakesNothingOfAnotherTime) {
   }
 }
 
-// EN-31: while a key is changed, senders with the old one and with the new one are heard, each message once, whichever
-// key the sender tags with; others are not. What is sent has the first one's tag.
+// EN-31: while a key is being changed, senders with the old one and with the new one are accepted, each message once,
+// with whichever key the sender tags; others are not. Sent messages have the first one's tag.
 TEST(Authentication, AcceptsTwoKeysWhileOneIsChanged) {
   const Keys changing{.own = KeyFrom(1), .other = KeyFrom(2)};
   Verifier verifier(changing), old(KeysFrom(2)), made(KeysFrom(1));
@@ -148,7 +148,7 @@ TEST(Authentication, AcceptsTwoKeysWhileOneIsChanged) {
   EXPECT_EQ(Open(old, "takt/command", Signed(both, "takt/command", {1})), TagState::kForeign);
 }
 
-// EN-31: many senders, each with counters of its own, are told apart; forgetting them forgets no counter that is fresh.
+// EN-31: many senders, each with its own counters, are distinguished; forgetting some forgets no fresh counter.
 TEST(Authentication, RemembersManySenders) {
   Verifier verifier(KeysFrom(1));
   std::vector<Bytes> said;
@@ -186,7 +186,7 @@ TEST(Authentication, IsAsDescribed) {
   EXPECT_TRUE(std::ranges::equal(view, message));
 }
 
-// EN-31: each reason is counted, and said once.
+// EN-31: each reason is counted, and reported once.
 TEST(Authentication, CountsAndSaysEachReasonOnce) {
   std::vector<std::string> said;
   Authentication authentication(KeysFrom(1), [&](const std::string& sentence) { said.push_back(sentence); });

@@ -7,7 +7,7 @@
 namespace takt::lcm {
 namespace {
 
-// EN-36: a bit that was changed anywhere, in the message, in its channel or in the checksum itself, is found.
+// EN-36: a bit changed anywhere, in the message, in its channel or in the checksum itself, is found.
 TEST(Checksum, FindsEveryChangedBit) {
   std::mt19937 random(36);
   for (const std::size_t size : {0u, 1u, 50u, 700u}) {

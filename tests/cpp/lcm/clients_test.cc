@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-// An engine that only takes notes.
+// A mock engine that records commands.
 class ClientsTest : public testing::Test {
  protected:
   Clients Make(const ClientLimits& limits = {}) {
@@ -62,7 +62,7 @@ class ClientsTest : public testing::Test {
     EXPECT_EQ(reply.error_id, static_cast<int>(error)) << reply.sentence;
     EXPECT_NE(reply.sentence.find(part_of_sentence), std::string::npos) << reply.sentence;
   }
-  // The first component that understands it.
+  // Returns the first component that understands the verb.
   std::string TargetOf(const engine::Verb& verb) const {
     for (const engine::ComponentKind& kind : engine::ComponentKinds()) {
       if (kind.name == verb.target_kind) return std::string(kind.name_of(machine_, 0));
@@ -204,18 +204,18 @@ TEST_F(ClientsTest, TwoClientsWithOneName) {
   EXPECT_EQ(heartbeat.id, 0);
   EXPECT_TRUE(submitted_.empty());
 
-  clients.OnCommand(Command(1), 2 * kSecond);  // the first one is not disturbed
+  clients.OnCommand(Command(1), 2 * kSecond);  // the first one is not affected
   EXPECT_EQ(submitted_.size(), 1u);
-  clients.OnCommand(second, 4 * kSecond + 1);  // nothing heard of the first for 2 s
+  clients.OnCommand(second, 4 * kSecond + 1);  // the first one has been silent for 2 s
   EXPECT_EQ(submitted_.size(), 2u);
   EXPECT_TRUE(Replies(clients).empty());
-  clients.OnFeedback({1, 9, FeedbackState::kDone, false, ErrorId::kNone});  // of the session that is gone
+  clients.OnFeedback({1, 9, FeedbackState::kDone, false, ErrorId::kNone});  // of the ended session
   EXPECT_TRUE(Replies(clients).empty());
   clients.OnFeedback({2, 9, FeedbackState::kDone, false, ErrorId::kNone});
   EXPECT_EQ(OneReply(clients).session, 2);
 }
 
-// EN-23: of a module's commands its jog alone.
+// EN-23: of a module's commands only its jog.
 TEST_F(ClientsTest, AHeartbeatRenewsTheJogOfAModule) {
   Clients clients = Make();
   msgs::command control = Command(1, "control", "{stop: true}"), jog = Command(2, "jog", "{positive: true}");
@@ -252,7 +252,7 @@ TEST_F(ClientsTest, AHeartbeatRenewsWhatIsLevelSensitiveAndAlive) {
   EXPECT_TRUE(submitted_.empty());
 }
 
-// EN-23, AX-37: a held stop is done when the axis stands, and kept alive until it is released.
+// EN-23, AX-37: a held stop is done when the axis is at rest, and kept alive until it is released.
 TEST_F(ClientsTest, AHeldStopIsRenewedUntilItIsReleased) {
   Clients clients = Make();
   const auto release = [](std::int64_t id, const char* arguments) {
@@ -272,7 +272,7 @@ TEST_F(ClientsTest, AHeldStopIsRenewedUntilItIsReleased) {
   EXPECT_TRUE(renewed().empty());
 }
 
-// EN-23, GR-20: so is that of a group.
+// EN-23, GR-20: likewise the held stop of a group.
 TEST_F(ClientsTest, AHeldStopOfAGroupIsRenewedUntilItIsReleased) {
   Clients clients = Make();
   msgs::command stop = Command(1, "stop", "{hold: true}");
@@ -292,7 +292,7 @@ TEST_F(ClientsTest, AHeldStopOfAGroupIsRenewedUntilItIsReleased) {
   EXPECT_TRUE(Renewed().empty());
 }
 
-// EN-23: another client may let go of it, too.
+// EN-23: another client may release it, too.
 TEST_F(ClientsTest, AHeldStopReleasedByAnotherClientIsNotRenewed) {
   Clients clients = Make();
   clients.OnCommand(Command(1, "stop", "{hold: true}"), 0);
@@ -305,8 +305,7 @@ TEST_F(ClientsTest, AHeldStopReleasedByAnotherClientIsNotRenewed) {
   EXPECT_TRUE(Renewed().empty());
 }
 
-// EN-22, EN-24: what was meant for another start of the engine, as in a log that is played into the network, does
-// nothing.
+// EN-22, EN-24: a message for another run of the engine, as in a log that is played into the network, has no effect.
 TEST_F(ClientsTest, WhatIsMeantForAnotherStartIsRefused) {
   Clients clients = Make();
   clients.OnCommand(Jog(1), 0);
@@ -322,11 +321,11 @@ TEST_F(ClientsTest, WhatIsMeantForAnotherStartIsRefused) {
   clients.OnHeartbeat(heartbeat, 1);
   ExpectError(OneReply(clients), ErrorId::kOtherRun, "another start");
   EXPECT_TRUE(submitted_.empty());
-  clients.OnCommand(Command(2), 2);  // the refusal used up no id
+  clients.OnCommand(Command(2), 2);  // the refusal used no id
   EXPECT_EQ(submitted_.size(), 1u);
 }
 
-// EN-23: letting go while the axis still brakes does not take the lease from the ramp.
+// EN-23: a release while the axis still brakes does not take the lease from the ramp.
 TEST_F(ClientsTest, AReleasedCommandIsRenewedUntilItIsDone) {
   Clients clients = Make();
   clients.OnCommand(Command(1, "stop", "{hold: true}"), 0);
@@ -341,7 +340,7 @@ TEST_F(ClientsTest, AReleasedCommandIsRenewedUntilItIsDone) {
   EXPECT_TRUE(Renewed().empty());
 }
 
-// EN-22: memory is bounded, and what was forgotten is not taken for new.
+// EN-22: memory is bounded, and a forgotten id is not taken for a new one.
 TEST_F(ClientsTest, OldIdsAreForgottenAndStayHarmless) {
   Clients clients = Make({.ids_per_client = 10});
   for (std::int64_t id = 1; id <= 100; ++id) {
@@ -367,7 +366,7 @@ TEST_F(ClientsTest, TooManyUnfinishedCommandsAreRefused) {
   ExpectError(replies[0], ErrorId::kQueueFull, "not finished");
   clients.OnFeedback({2, 1, FeedbackState::kDone, false, ErrorId::kNone});
   Replies(clients);
-  clients.OnCommand(Command(5), 0);  // refused once, refused for good
+  clients.OnCommand(Command(5), 0);  // refused once, always refused
   EXPECT_EQ(OneReply(clients).state, msgs::feedback::STATE_ERROR);
   clients.OnCommand(Command(6), 0);
   EXPECT_EQ(submitted_.size(), 5u);
@@ -386,7 +385,7 @@ TEST_F(ClientsTest, TheNumberOfClientsIsBounded) {
   EXPECT_EQ(clients.figures(3 * kSecond).alive, 0u);
   msgs::command m = Command(1);
   m.client = "d";
-  clients.OnCommand(m, 3 * kSecond);  // the longest silent one makes room
+  clients.OnCommand(m, 3 * kSecond);  // the one that was silent for longest makes room
   EXPECT_TRUE(Replies(clients).empty());
   EXPECT_EQ(submitted_.size(), 4u);
 }
@@ -411,7 +410,8 @@ TEST_F(ClientsTest, OddNamesAreRefused) {
   EXPECT_EQ(clients.figures(0).alive, 0u);
 }
 
-// EN-32: with all places taken by others a stranger's stop is taken and answered, of every kind; nothing else is.
+// EN-32: with the maximum number of clients, the stop of a further client is accepted and answered, of every kind;
+// nothing else is.
 TEST_F(ClientsTest, AStrangerMayStop) {
   Clients clients = Make({.clients = 3, .guests = 2});
   for (int i = 0; i < 3; ++i) {
@@ -458,7 +458,7 @@ TEST_F(ClientsTest, AStrangerMayStop) {
     EXPECT_EQ(done.session, session);
     EXPECT_EQ(done.state, msgs::feedback::STATE_DONE);
   }
-  // Sent again it is answered, not given again; the stranger's heartbeats keep a held stop.
+  // Sent again it is answered, but not given again; the guest's heartbeats keep a held stop in force.
   submitted_.clear();
   const msgs::command held = give("x", "stop", "{hold: true}");
   clients.OnCommand(held, kSecond / 10);
@@ -470,7 +470,7 @@ TEST_F(ClientsTest, AStrangerMayStop) {
   EXPECT_EQ(clients.figures(kSecond / 5).alive, 3u);
 }
 
-// EN-32: somebody else has taken the name meanwhile: the client before may still stop what it began.
+// EN-32: another client has taken the name meanwhile: the former client may still stop what it began.
 TEST_F(ClientsTest, AClientThatLostItsNameMayStop) {
   Clients clients = Make();
   clients.OnCommand(Jog(1), 0);
@@ -489,7 +489,7 @@ TEST_F(ClientsTest, AClientThatLostItsNameMayStop) {
   EXPECT_TRUE(Replies(clients).empty());  // the cycle answers
 }
 
-// EN-32: as many commands are unfinished as may be; what stops is taken besides.
+// EN-32: with the maximum number of unfinished commands, a stop is still accepted.
 TEST_F(ClientsTest, ACrowdedClientMayStop) {
   Clients clients = Make({.ids_per_client = 5, .stops_per_client = 2});
   for (int id = 1; id <= 6; ++id) clients.OnCommand(Command(id), 0);
@@ -498,7 +498,7 @@ TEST_F(ClientsTest, ACrowdedClientMayStop) {
   EXPECT_EQ(submitted_.size(), 7u);
 }
 
-// EN-33: commands grow old, and the one that gave them is told; what lets go does not.
+// EN-33: old commands are refused with a reply; those with LetsGo() are not.
 TEST_F(ClientsTest, OldCommandsAreRefused) {
   Clients clients = Make();
   clients.OnCommand(Command(1), 10 * kSecond, kSecond);
@@ -509,17 +509,17 @@ TEST_F(ClientsTest, OldCommandsAreRefused) {
   clients.OnCommand(Command(3), 10 * kSecond, 8 * kSecond + kSecond / 2);
   EXPECT_EQ(submitted_.size(), 2u);
   ExpectError(OneReply(clients), ErrorId::kTooOld, "the command is 8.5 s old");
-  clients.OnCommand(Command(3), 10 * kSecond, 0);  // it does not become young again
+  clients.OnCommand(Command(3), 10 * kSecond, 0);  // its age is not reset
   EXPECT_EQ(submitted_.size(), 2u);
   EXPECT_EQ(OneReply(clients).state, msgs::feedback::STATE_ERROR);
   clients.OnCommand(Command(4, "stop", ""), 10 * kSecond, 100 * kSecond);
   EXPECT_EQ(submitted_.size(), 3u);
-  clients.OnCommand(Command(1), 10 * kSecond, 100 * kSecond);  // asked after once more: answered as it stands
+  clients.OnCommand(Command(1), 10 * kSecond, 100 * kSecond);  // repeated: answered with its present state
   EXPECT_EQ(OneReply(clients).state, msgs::feedback::STATE_BUSY);
   EXPECT_EQ(clients.figures(0).ignored, 1u);
 }
 
-// EN-33: heartbeats that waited longer than the lease keep nothing alive.
+// EN-33: heartbeats older than the lease keep nothing in force.
 TEST_F(ClientsTest, OldHeartbeatsRenewNothing) {
   Clients clients = Make();
   clients.OnCommand(Jog(1), 0);

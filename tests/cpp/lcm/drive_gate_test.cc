@@ -1,4 +1,4 @@
-// AX-87, EN-26: what external drives send is looked at before the engine gets it.
+// AX-87, EN-26: the messages of external drives are checked before the engine receives them.
 #include "takt/lcm/drive_gate.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint32_t kMissing = 3;
 
-// Three axes, x and z with their drives elsewhere; the set points of cycles -1 to 10 went out.
+// Three axes, x and z with external drives; the set points of cycles -1 to 10 were sent.
 class DriveGateTest : public testing::Test {
  protected:
   DriveGateTest() : machine(TestMachine(3)) {
@@ -50,7 +50,7 @@ class DriveGateTest : public testing::Test {
     Encode(message, bytes);
     return gate->Take(channel, bytes);
   }
-  // Refused, with this sentence if it is the first of its kind.
+  // Expects a refusal, with this sentence if it is the first of its kind.
   void ExpectRefused(const msgs::drive_feedback& message, const std::string& sentence) {
     const std::size_t before = sentences.size();
     const int refused_before = refused;
@@ -175,7 +175,7 @@ TEST_F(DriveGateTest, OldOnesAndDoublesAreIgnored) {
   EXPECT_EQ(gate->answered(0), 6);
 }
 
-// EN-31: the sender's own numbers decide nothing: one message with the largest of them does not lock the drive out.
+// EN-31: the sender's own sequence is ignored: a message with the largest number does not lock the drive out.
 TEST_F(DriveGateTest, NoSequenceLocksTheDriveOut) {
   EXPECT_TRUE(Take(Answer(5, std::numeric_limits<std::int64_t>::max())));
   EXPECT_TRUE(Take(Answer(6, 3)));
@@ -191,7 +191,7 @@ TEST_F(DriveGateTest, DoublesThatWereAskedForAreNoFault) {
   EXPECT_EQ(refused, 0);
 }
 
-// On a busy host the second answer comes when later cycles were asked for again, too.
+// On a busy host the second answer may come when set points of later cycles were repeated, too.
 TEST_F(DriveGateTest, DoublesThatWereAskedForMayComeLate) {
   Send(10);
   EXPECT_TRUE(Take(Answer(10, 0)));
@@ -228,8 +228,8 @@ TEST_F(DriveGateTest, WrongChannelsAndTypes) {
   EXPECT_FALSE(gate->Take("takt/drive/x/feedback", {}));
 }
 
-// Two plants for one axis: the first one is listened to. Another one may take over once the engine has had to do
-// without, so that a plant that was started anew never goes unnoticed.
+// Two plants for one axis: the first one is used. Another one may take over once the engine had to run without answers,
+// so that a restarted plant is never overlooked.
 TEST_F(DriveGateTest, ASecondPlantWaits) {
   EXPECT_TRUE(Take(Answer(9, 0, 1)));
   ExpectRefused(Answer(10, 0, 2), "a second plant answers for this axis; the first one is listened to");
@@ -243,7 +243,8 @@ TEST_F(DriveGateTest, ASecondPlantWaits) {
   ExpectRefused(Answer(10 + kMissing + 1, 9, 1), "");
 }
 
-// Whatever comes: no crash, nothing that is not a finite answer to what was asked, and not more than so many words.
+// Random messages: no crash, only finite answers to sent set points are accepted, and the number of sentences is
+// bounded.
 TEST_F(DriveGateTest, Fuzz) {
   std::mt19937 random(3);
   std::int64_t last = -2;

@@ -25,7 +25,7 @@ engine::Machine ExternalMachine(double answer_within_s, std::uint32_t missing_cy
   return machine;
 }
 
-// The simulated servo of axis x on a thread of its own.
+// The simulated servo of axis x on its own thread.
 class Plant {
  public:
   Plant(const std::string& url, const engine::Machine& machine, std::int64_t id = 1)
@@ -113,7 +113,7 @@ struct Stepped {
   std::vector<std::string> said;
 };
 
-// EN-26, AX-87: simulated time waits for the plant, whenever that is started; the motion is the built-in servo's.
+// EN-26, AX-87: simulated time waits for the plant, whenever it is started; the motion is that of the built-in servo.
 TEST(DrivesOverANetwork, LockStep) {
   const std::string url = NewUrl();
   const engine::Machine machine = ExternalMachine(20, 5);
@@ -143,11 +143,11 @@ TEST(DrivesOverANetwork, LockStep) {
   run.drives.reset();
 }
 
-// AX-87: cycles that get no answer go on after the time the machine file gives them; N - 1 are nothing, N a drive
-// error, and then nobody waits any more. Which cycle it is does not depend on any clock.
+// AX-87: cycles without an answer run after the time in the machine file; N - 1 missing answers have no effect, N are a
+// drive error, and then the drive is not waited for. The cycle does not depend on any clock.
 TEST(DrivesOverANetwork, MissingAnswers) {
   const std::string url = NewUrl();
-  const engine::Machine machine = ExternalMachine(1, 2);  // s: no loaded computer takes so long
+  const engine::Machine machine = ExternalMachine(1, 2);  // [s] longer than any delay of a loaded computer
   Plant plant(url, machine);
   Stepped run(url, machine);
   run.engine.Submit(ToX(axis::Power{}));
@@ -162,7 +162,7 @@ TEST(DrivesOverANetwork, MissingAnswers) {
   EXPECT_TRUE(run.said.empty());
   plant.silent_from = 360;
   plant.silent_to = 1'000'000'000;
-  run.Run(12);  // cycles 350 to 361; 361 has answers to 359, so one is missing
+  run.Run(12);  // cycles 350 to 361; in 361 there are answers up to 359, so one is missing
   EXPECT_EQ(run.engine.cycle().count, 362u);
   EXPECT_EQ(run.engine.outputs(0).state, axis::PlcState::kContinuousMotion);
   run.Run(1);
@@ -175,7 +175,7 @@ TEST(DrivesOverANetwork, MissingAnswers) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 100s);
   EXPECT_FALSE(run.engine.outputs(0).loop_closed);
 
-  plant.silent_to = 0;  // heard again: waited for again
+  plant.silent_to = 0;  // it answers again: waited for again
   for (int i = 0; i < 2000 && run.engine.outputs(0).error != ErrorId::kNone; ++i) {
     run.engine.Submit(ToX(axis::Reset{}));
     run.Run(1);
@@ -188,7 +188,7 @@ TEST(DrivesOverANetwork, MissingAnswers) {
   run.drives.reset();
 }
 
-// EN-26: at the end the drives hear that they are off.
+// EN-26: at the end the drives receive that they are off.
 TEST(DrivesOverANetwork, TheEndIsHeard) {
   const engine::Machine machine = ExternalMachine(20, 5);
   const std::string url = NewUrl();
@@ -207,8 +207,8 @@ TEST(DrivesOverANetwork, TheEndIsHeard) {
   EXPECT_FALSE(plant.enabled);
 }
 
-// EN-02, EN-21, EN-26: real time: the cycle waits for nobody. Threads exchange what there is; the thread sanitizer
-// looks at this test.
+// EN-02, EN-21, EN-26: real time: the cycle does not wait. Threads exchange whatever is available; the thread sanitizer
+// checks this test.
 TEST(Drives, RealTime) {
   const std::string url = NewUrl();
   const engine::Machine machine = ExternalMachine(1, 2000);  // a loaded computer is slow

@@ -34,7 +34,7 @@ Bytes Encoded(const Message& message) {
   return bytes;
 }
 
-// Random bytes, and valid messages cut short, made longer, or with some bytes changed.
+// Random bytes, and valid messages that are truncated, extended, or have some bytes changed.
 class Fuzz {
  public:
   Bytes Next() {
@@ -90,7 +90,7 @@ struct GatewayTest : testing::Test {
     for (msgs::feedback reply; clients.TakeReply(reply);) replies.push_back(reply);
     return replies;
   }
-  // What the publisher does with feedback.
+  // Forwards feedback as the publisher does.
   void Step() {
     engine.RunCycle();
     for (FeedbackEvent event; engine.feedback().TryPop(event);) clients.OnFeedback(event);
@@ -139,14 +139,14 @@ TEST_F(GatewayTest, AnotherEngineOnTheNetworkIsSaidOnceInOneLine) {
     network.publish(kMachineChannel, &machine);
     const Bytes command = Encoded(Command(1, "x", "no_such_verb"));
     network.publish(kCommandChannel, command.data(), static_cast<unsigned>(command.size()));
-    EXPECT_TRUE(Eventually([&] { return !Replies().empty(); }));  // all before has arrived
+    EXPECT_TRUE(Eventually([&] { return !Replies().empty(); }));  // all earlier ones have arrived
   }
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
   EXPECT_TRUE(said.starts_with("another engine runs on this LCM network, machine 'other")) << said;
 }
 
-// EN-22: nothing crashes, nothing grows without bound, and what comes afterwards is still served.
+// EN-22: nothing crashes, nothing grows without bound, and later messages are still served.
 TEST_F(GatewayTest, Fuzz) {
   Fuzz fuzz;
   std::int64_t now_ns = 0;
@@ -213,7 +213,7 @@ TEST_F(GatewayTest, FuzzThroughLcm) {
   EXPECT_GT(clients.figures(SteadyNs()).malformed, 1000u);
 }
 
-// EN-22: at 100 times the cycle's rate, every command comes to exactly one end, and what the queue cannot hold is
+// EN-22: at 100 times the cycle's rate, every command has exactly one final state, and commands beyond the queue are
 // refused.
 TEST_F(GatewayTest, CommandsAtAHundredTimesTheCyclesRate) {
   std::map<std::int64_t, int> ends;
@@ -245,7 +245,7 @@ TEST_F(GatewayTest, CommandsAtAHundredTimesTheCyclesRate) {
   EXPECT_GT(engine.figures().commands_applied, 5'000u);
 }
 
-// EN-23: a jog goes on as long as heartbeats come, and releases itself when the client is killed in the middle of it.
+// EN-23: a jog continues while heartbeats arrive, and releases itself when the client is killed during it.
 TEST_F(GatewayTest, DeadMan) {
   std::int64_t now_ns = 0;
   std::vector<msgs::feedback> replies;

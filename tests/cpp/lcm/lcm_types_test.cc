@@ -1,4 +1,4 @@
-// Holds lcmtypes/*.lcm against the descriptions of what they carry.
+// Compares lcmtypes/*.lcm with the descriptions of their contents.
 
 #include <gtest/gtest.h>
 
@@ -204,7 +204,7 @@ TEST(LcmTypes, ConstantsAreTheEnumsMembers) {
   EXPECT_EQ(E::PACE_FAST, static_cast<int>(engine::Pace::kFast));
 }
 
-// EN-20: but for what counts in the units of a cam, or of a master that is known to the machine file only.
+// EN-20: except quantities in the units of a cam, or of a master that is known to the machine file only.
 TEST(LcmTypes, EveryRealNumberAndEveryTimeHasAUnit) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(Folder())) {

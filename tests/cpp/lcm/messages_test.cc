@@ -14,7 +14,7 @@
 namespace takt::lcm {
 namespace {
 
-// As a receiver of any language sees it.
+// Encoded and decoded, as by a receiver in any language.
 template <typename Message>
 Message ThroughBytes(const Message& message) {
   std::vector<std::uint8_t> bytes;
@@ -77,7 +77,7 @@ TEST(Messages, AxisStateKeepsEveryNumber) {
   EXPECT_EQ(m.touch_probe, 0);
 }
 
-// A number in a type of any size.
+// Stores a number in a type of any size.
 void Put(const Type& type, std::int64_t value, void* at) {
   switch (type.kind) {
     case Kind::kReal:
@@ -88,11 +88,11 @@ void Put(const Type& type, std::int64_t value, void* at) {
       return;
     default:
       ASSERT_TRUE(type.kind == Kind::kInteger || type.kind == Kind::kEnum);
-      std::memcpy(at, &value, type.size);  // little-endian, as all this runs on
+      std::memcpy(at, &value, type.size);  // little-endian, as on all supported platforms
   }
 }
 
-// How a test sees one field of a message.
+// The access of a test to one field of a message.
 template <typename Message>
 struct MessageField {
   std::string_view name;
@@ -110,7 +110,7 @@ struct MessageField {
 #field "_" #part, [](const msgs::message& m) { return m.field.part; } \
   }
 
-// Each output has its own field of the same name, and changes no other.
+// Each output has its own field of the same name, and affects no other.
 template <typename Message, typename Outputs>
 void ExpectKeepsEveryNumber(const std::vector<MessageField<Message>>& fields, const engine::Machine& machine,
                             const std::string& name) {
@@ -665,7 +665,7 @@ TEST(Messages, CommandAndHeartbeatDecode) {
   EXPECT_FALSE(DecodeCommand(bytes));
 }
 
-// EN-22: what the generated decoder alone would read beyond its bytes for, or throw at.
+// EN-22: lengths for which the generated decoder alone would read beyond its bytes, or throw.
 TEST(Messages, WrongLengthsAreRefused) {
   std::vector<std::uint8_t> good;
   Encode(GoodCommand(), good);
@@ -675,7 +675,7 @@ TEST(Messages, WrongLengthsAreRefused) {
   std::vector<std::uint8_t> longer = good;
   longer.push_back(0);
   EXPECT_FALSE(DecodeCommand(longer));
-  constexpr std::size_t kClientLength = 24;  // behind the fingerprint, utime and run_id
+  constexpr std::size_t kClientLength = 24;  // after the fingerprint, utime and run_id
   for (const std::uint32_t length : {0u, 1u, 4u, 6u, 0x7fff'ffffu, 0x8000'0000u, 0x8000'0001u, 0xffff'ffffu}) {
     std::vector<std::uint8_t> bad = good;
     for (std::size_t i = 0; i < 4; ++i) bad[kClientLength + i] = static_cast<std::uint8_t>(length >> (24 - 8 * i));

@@ -24,7 +24,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// The numbers said on the channel "n", as they stand in a log.
+// Returns the numbers sent on channel "n", as they are in a log.
 std::vector<int> Said(const std::string& path) {
   std::vector<int> numbers;
   ::lcm::LogFile log(path, "r");
@@ -52,7 +52,7 @@ std::vector<int> Numbers(int last) {
   return numbers;
 }
 
-// EN-24: what is said before it is closed is in it, and nothing else of the kind.
+// EN-24: all messages sent before the log is closed are in it, and no others of the kind.
 TEST(NetworkLog, HoldsAllThatWasSaidBeforeItWasClosed) {
   const TemporaryFile place("takt_network_log_");
   const std::string url = NewUrl();
@@ -75,7 +75,7 @@ TEST(NetworkLog, HoldsAsManyAsComeWhileNobodyTakesThem) {
   const int end = open(pipe.path.c_str(), O_RDONLY | O_NONBLOCK);
   ASSERT_GE(end, 0);
   ASSERT_EQ(fcntl(end, F_SETPIPE_SZ, 4096), 4096);
-  ASSERT_EQ(fcntl(end, F_SETFL, 0), 0);  // waits from now on
+  ASSERT_EQ(fcntl(end, F_SETFL, 0), 0);  // blocks from now on
   const std::string url = NewUrl();
   const Network client = OpenNetwork(url);
   std::string problem;
@@ -83,7 +83,7 @@ TEST(NetworkLog, HoldsAsManyAsComeWhileNobodyTakesThem) {
   ASSERT_TRUE(log) << problem;
   constexpr int kMany = 100;  // the pipe holds two dozen, a socket buffer as systems give them more than these
   Say(*client.lcm, 0, kMany);
-  std::this_thread::sleep_for(300ms);  // so long nobody reads
+  std::this_thread::sleep_for(300ms);  // no reader during this time
   std::thread reader([&] {
     std::ofstream file(place.path, std::ios::binary);
     std::array<char, 4096> bytes;
@@ -106,7 +106,7 @@ TEST(NetworkLog, IsClosedInOrderByWhoForgetsTo) {
   EXPECT_TRUE(std::filesystem::exists(place.path));
 }
 
-// A server of tcpq:// that takes one client, and goes away when told.
+// A server of tcpq:// that accepts one client, and ends on request.
 class Server {
  public:
   Server() : listening_(socket(AF_INET, SOCK_STREAM, 0)) {
@@ -140,7 +140,7 @@ class Server {
   std::thread thread_;
 };
 
-// LCM itself ends a program that goes on listening to a server that is gone.
+// LCM itself ends a program that continues to listen to a lost server.
 TEST(NetworkLog, SaysThatItsServerWentAway) {
   const TemporaryFile place("takt_network_log_server_");
   Server server;
@@ -148,7 +148,7 @@ TEST(NetworkLog, SaysThatItsServerWentAway) {
   const auto log = NetworkLog::Open(server.url, place.path, problem);
   ASSERT_TRUE(log) << problem;
   server.GoAway();
-  std::this_thread::sleep_for(500ms);  // it goes on listening
+  std::this_thread::sleep_for(500ms);  // it continues to listen
   EXPECT_FALSE(log->Close(1s));
 }
 
@@ -163,7 +163,7 @@ TEST(Network, IsHandledWhenItsServerIsGone) {
   EXPECT_LT(heard, 0);
 }
 
-// Two of them in one file would write across each other.
+// Two writers in one file would corrupt it.
 TEST(NetworkLog, LeavesAloneWhatIsBeingWritten) {
   const TemporaryFile place("takt_network_log_twice_");
   const std::string url = NewUrl();
@@ -178,7 +178,7 @@ TEST(NetworkLog, LeavesAloneWhatIsBeingWritten) {
   EXPECT_EQ(Said(place.path), Numbers(20));
 }
 
-// EN-36: a log that is there is kept, each under a name of its own.
+// EN-36: an existing log is kept, each under its own name.
 TEST(NetworkLog, ReplacesNoLog) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("takt_kept_" + std::to_string(getpid()));

@@ -1,4 +1,4 @@
-// LCM's packets on UDP, made by the book (LC02, LC03), for tests that send them right and wrong.
+// LCM's packets on UDP, by the specification (LC02, LC03), for tests that send valid and invalid ones.
 #pragma once
 
 #include <algorithm>

@@ -19,7 +19,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Keeps what it is given; can be made as slow as one likes.
+// Keeps the messages; can be made slow.
 class TestOutlet : public Outlet {
  public:
   bool Send(const std::string& channel, std::span<const std::uint8_t> bytes, std::int64_t) override {
@@ -50,7 +50,7 @@ class TestOutlet : public Outlet {
     }
     return decoded;
   }
-  // In the order in which they came.
+  // Returns the channels in the order of arrival.
   std::vector<std::string> Order() {
     const std::lock_guard lock(mutex_);
     return order_;
@@ -75,7 +75,7 @@ struct TestRun {
       : engine(std::move(machine), options),
         clients(engine.machine(), kRunId, [this](const engine::Command& c) { return engine.Submit(c); }) {}
 
-  // Steps without running away from the publisher.
+  // Runs cycles without outrunning the publisher.
   void Step(int cycles) {
     for (int i = 0; i < cycles; ++i) {
       engine.RunCycle();
@@ -142,7 +142,7 @@ TEST(Publisher, EveryKindIsPublishedAtItsRateWithoutGaps) {
   EXPECT_EQ(network.Channels().count("takt/journal/start"), 0u);
 }
 
-// EN-20, CAM-11: a module is published beside the axes, at a rate of its own; the log holds every cycle of it.
+// EN-20, CAM-11: a module is published like the axes, at its own rate; the log contains every cycle of it.
 TEST(Publisher, ModulesArePublishedAsAxesAre) {
   engine::Machine machine = WithModule(TestMachine());
   machine.lcm.axis_rate_hz = 100;
@@ -205,7 +205,8 @@ TEST(Publisher, GroupsArePublishedAsAxesAre) {
   EXPECT_EQ(kept.back().z, 0);
 }
 
-// EN-20, PL-10: the shape of a track, when it is made, as commands change it, and again for those who come later.
+// EN-20, PL-10: the shape of a track is published when it is made, when commands change it, and again for later
+// subscribers.
 TEST(Publisher, TheShapesOfTracksArePublishedWhenTheyChange) {
   const engine::LoadResult loaded = engine::LoadMachine(R"(
 name: test
@@ -256,7 +257,7 @@ tracks:
   EXPECT_EQ(sent.back().count, 101);
 }
 
-// EN-07, EN-20: the log holds every cycle, every command and every hash; the network goes on at its own rate.
+// EN-07, EN-20: the log contains every cycle, every command and every hash; the network has its own rate.
 TEST(Publisher, TheLogHoldsEverything) {
   constexpr int kCycles = 2500;
   TestRun run({.publish = true, .every_cycle = true, .journal = true});
@@ -285,7 +286,7 @@ TEST(Publisher, TheLogHoldsEverything) {
   EXPECT_EQ(commands[1].target, "x");
   EXPECT_EQ(commands[1].verb, "move_relative");
 
-  // Given again in the same cycles, they make the same states.
+  // Given again in the same cycles, they produce the same states.
   engine::Engine replay(run.engine.machine(), {.journal = true});
   std::size_t next_command = 0;
   std::int64_t cycle = 0;
@@ -309,7 +310,7 @@ TEST(Publisher, TheLogHoldsEverything) {
   EXPECT_EQ(cycle, kCycles);
 }
 
-// EN-21: a network that takes nothing any more costs counted drops; the cycle does not wait for it.
+// EN-21: a network that accepts nothing causes counted drops; the cycle does not wait for it.
 TEST(Publisher, ASlowNetworkCostsCountedDropsAndNoCycle) {
   engine::Machine machine = TestMachine();
   machine.lcm.axis_rate_hz = 1000;
@@ -335,7 +336,7 @@ TEST(Publisher, ASlowNetworkCostsCountedDropsAndNoCycle) {
   EXPECT_EQ(engine.back().snapshots_dropped, static_cast<std::int64_t>(dropped));
 }
 
-// EN-20: the end of a burst is what a receiver with a small buffer loses; it is not always the same component's.
+// EN-20: a receiver with a small buffer loses the end of a burst, which is not always of the same component.
 TEST(Publisher, EndsEachBurstWithAnother) {
   engine::Machine machine = WithModule(TestMachine());
   machine.lcm.axis_rate_hz = 1000;
@@ -358,7 +359,7 @@ TEST(Publisher, EndsEachBurstWithAnother) {
   for (const auto& [channel, times] : last) EXPECT_GT(times, 1) << channel;
 }
 
-// EN-20: what the network refuses is counted, and a receiver sees the gap.
+// EN-20: messages that the network refuses are counted, and a receiver sees the gap.
 TEST(Publisher, RefusedMessagesAreCountedAndLeaveAGap) {
   TestRun run({.publish = true});
   TestOutlet network;
@@ -377,8 +378,8 @@ TEST(Publisher, RefusedMessagesAreCountedAndLeaveAGap) {
   EXPECT_EQ(x[10].sequence, 20);
 }
 
-// EN-22: commands come in on one thread while the cycle runs on another and a third one publishes: each gets exactly
-// one final state.
+// EN-22: commands arrive on one thread while the cycle runs on another and a third one publishes: each has exactly one
+// final state.
 TEST(Publisher, FeedbackFindsItsCommandAcrossThreads) {
   constexpr int kCommands = 2000;
   TestRun run({.publish = true});

@@ -28,8 +28,8 @@ TEST(Reassembly, TakesShortMessages) {
   EXPECT_EQ(reassembly.malformed(), 0u);
 }
 
-// EN-30: a long message comes out whole whatever the order of its fragments, with doubles among them, and mixed with
-// those of other senders.
+// EN-30: a long message is reassembled with its fragments in any order, with duplicates, and mixed with those of other
+// senders.
 TEST(Reassembly, JoinsFragmentsInAnyOrder) {
   std::mt19937 random(20261125);
   Reassembly reassembly;
@@ -54,7 +54,7 @@ TEST(Reassembly, JoinsFragmentsInAnyOrder) {
   EXPECT_EQ(reassembly.malformed(), 0u);
 }
 
-// EN-30: what a fragment says of itself does not fit into the message, or to the others.
+// EN-30: the fields of a fragment do not fit the message, or the other fragments.
 TEST(Reassembly, RefusesFragmentsThatDoNotFit) {
   const Packet data = Counting(10);
   struct Wrong {
@@ -102,7 +102,7 @@ TEST(Reassembly, ASenderMayBeginAnew) {
   EXPECT_EQ(reassembly.held_bytes(), 0u);
 }
 
-// EN-30: messages that never end hold a bounded amount of memory, and do not keep those out that do.
+// EN-30: unfinished messages use bounded memory, and do not block others.
 TEST(Reassembly, UnfinishedMessagesAreBounded) {
   Reassembly reassembly({.messages = 8, .bytes = 100'000});
   for (std::uint32_t i = 0; i < 10'000; ++i) {
@@ -115,8 +115,8 @@ TEST(Reassembly, UnfinishedMessagesAreBounded) {
   EXPECT_TRUE(message);
 }
 
-// EN-30: whatever comes, nothing crashes, memory stays bounded, and of a message comes out what was put in or nothing,
-// unless one of its own packets was changed. Run with TAKT_LONG for millions of packets.
+// EN-30: with random packets, nothing crashes, memory stays bounded, and a message is reassembled as it was sent or not
+// at all, unless one of its own packets was changed. Run with TAKT_LONG for millions of packets.
 TEST(Reassembly, Fuzz) {
   std::mt19937 random(4711);
   const auto uniform = [&](std::uint32_t low, std::uint32_t high) {
@@ -146,7 +146,7 @@ TEST(Reassembly, Fuzz) {
           packet.resize(uniform(0, static_cast<std::uint32_t>(packet.size())));
         }
       }
-      const Packet exact(packet.begin(), packet.end());  // of its own size, so that a read beyond it is found
+      const Packet exact(packet.begin(), packet.end());  // with its exact size, so that a read beyond it is detected
       const auto message = reassembly.Take(genuine ? 1 : uniform(2, 9), exact);
       ASSERT_LE(reassembly.held_bytes(), std::size_t{1} << 20);
       if (!message || !genuine) continue;

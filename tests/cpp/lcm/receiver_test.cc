@@ -1,4 +1,4 @@
-// What reads the network, at the socket.
+// The receiver at the socket.
 #include "takt/lcm/receiver.h"
 
 #include <arpa/inet.h>
@@ -56,7 +56,7 @@ std::unique_ptr<Receiver> Open(const std::string& url) {
   return receiver;
 }
 
-// EN-30: liblcm sends, this hears, short and long ones.
+// EN-30: short and long messages sent by liblcm are received.
 TEST(Receiver, HearsWhatLiblcmSends) {
   const std::string url = NewUrl();
   const auto receiver = Open(url);
@@ -80,7 +80,7 @@ TEST(Receiver, HearsWhatLiblcmSends) {
   EXPECT_EQ(heard, (std::map<std::string, std::size_t>{{"takt/one", 5}, {"takt/two", 300'000}, {"again", 300'000}}));
 }
 
-// What waits beyond a subscription's capacity is dropped; others still get it.
+// Messages beyond a subscription's capacity are dropped; other subscriptions still get them.
 TEST(Receiver, KeepsToTheCapacity) {
   const std::string url = NewUrl();
   const auto receiver = Open(url);
@@ -98,7 +98,7 @@ TEST(Receiver, KeepsToTheCapacity) {
   EXPECT_EQ(all, 100);
 }
 
-// EN-25, EN-30: the socket has the group's address: what is sent to this host itself does not come in.
+// EN-25, EN-30: the socket has the group's address: datagrams to this host itself are not received.
 TEST(Receiver, HearsTheGroupAlone) {
   const std::string url = NewUrl();
   const auto receiver = Open(url);
@@ -122,8 +122,7 @@ TEST(Receiver, ReadsUrls) {
   }
 }
 
-// EN-30: several senders say all kinds of things; what is right among them still arrives. With TAKT_LONG by the
-// million.
+// EN-30: several senders send valid and malformed data; the valid messages still arrive. With TAKT_LONG by the million.
 TEST(Receiver, FuzzAtTheSocket) {
   const std::string url = NewUrl();
   const auto receiver = Open(url + "&recv_buf_size=4194304");
@@ -167,8 +166,8 @@ TEST(Receiver, FuzzAtTheSocket) {
   EXPECT_GT(receiver->malformed(), rounds / 4);
 }
 
-// EN-30, EN-31: with a key: what holders say arrives once, short or in fragments, among copies of it that were changed,
-// cut, said again, moved to another channel or tagged with another key; nothing else arrives. With TAKT_LONG by the
+// EN-30, EN-31: with a key: messages of its holders arrive once, short or in fragments, among copies that were changed,
+// truncated, repeated, moved to another channel or tagged with another key; nothing else arrives. With TAKT_LONG by the
 // million.
 TEST(Receiver, FuzzAtTheSocketWithAKey) {
   const std::string url = NewUrl();
@@ -227,7 +226,7 @@ TEST(Receiver, FuzzAtTheSocketWithAKey) {
         case 5:
           copy = message;
           break;
-        default:  // said again as it was
+        default:  // repeated unchanged
           break;
       }
       std::ranges::shuffle(senders.begin() + 1, senders.end(), random);

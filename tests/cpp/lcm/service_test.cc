@@ -21,7 +21,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// What a client has heard.
+// The messages that a client has received.
 struct Received {
   std::map<std::int64_t, msgs::feedback> last;  // by id
   double position = 0;
@@ -67,7 +67,7 @@ TEST(Service, AClientMovesAnAxisOverTheNetwork) {
     m.verb = verb;
     m.arguments = arguments;
     const auto until = std::chrono::steady_clock::now() + 5s;
-    while (std::chrono::steady_clock::now() < until) {  // again and again: harmless
+    while (std::chrono::steady_clock::now() < until) {  // repeatedly: harmless
       client.lcm->publish(kCommandChannel, &m);
       for (int i = 0; i < 20; ++i) client.lcm->handleTimeout(5);
       if (last.contains(id) && IsFinal(static_cast<FeedbackState>(last[id].state))) return last[id].state;
@@ -77,7 +77,7 @@ TEST(Service, AClientMovesAnAxisOverTheNetwork) {
   EXPECT_EQ(give("power", ""), msgs::feedback::STATE_DONE) << last[id].sentence;
   EXPECT_EQ(give("move_relative", "{distance: 7}"), msgs::feedback::STATE_DONE) << last[id].sentence;
   for (int i = 0; i < 50; ++i) client.lcm->handleTimeout(5);
-  EXPECT_NEAR(position, 7, 1e-6);  // given once, however often it was sent
+  EXPECT_NEAR(position, 7, 1e-6);  // given once, regardless of the repetitions
   EXPECT_EQ(give("move_relative", "{distance: much}"), msgs::feedback::STATE_ERROR);
   EXPECT_FALSE(last[id].sentence.empty());
   const auto until = std::chrono::steady_clock::now() + 2s;
@@ -132,7 +132,7 @@ TEST(Service, ALogThatCannotBeWrittenIsSaidInOneLine) {
   EXPECT_EQ(problem, "log file /no/such/folder/log cannot be written: No such file or directory");
 }
 
-// EN-07, EN-20: a log that lost something is an error, said in one line when it happens first.
+// EN-07, EN-20: a log with losses is an error, reported in one line when it first occurs.
 TEST(Service, ADiskThatIsFullIsSaidInOneLine) {
   engine::Engine engine(TestMachine(), {.publish = true, .every_cycle = true, .journal = true});
   std::string problem;
@@ -144,7 +144,7 @@ TEST(Service, ADiskThatIsFullIsSaidInOneLine) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "log file /dev/full is incomplete: No space left on device\n");
 }
 
-// The little that fits into the buffer is lost at the end only.
+// The small rest in the buffer is only lost at the end.
 TEST(Service, ADiskThatIsFullAtTheEndIsSaid) {
   engine::Engine engine(TestMachine());
   std::string problem;
@@ -179,7 +179,7 @@ TEST(Network, WrongUrlsAreSaidInOneLine) {
   }
 }
 
-// The network is absent: in a network of its own, with no interface up, a child looks for it.
+// No network: in a network namespace without an interface that is up, a child process tries to join.
 TEST(Network, AnAbsentNetworkNamesTheRouteCommand) {
   const pid_t child = fork();
   if (child == 0) {

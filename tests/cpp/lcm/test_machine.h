@@ -29,7 +29,7 @@ inline engine::Machine TestMachine(int axes = 2) {
   return machine;
 }
 
-// With a module "cutter" that leads y after x.
+// With a module "cutter": y is the slave of x.
 inline engine::Machine WithModule(engine::Machine machine) {
   cam::CamParams cam;
   cam.name = "line";
@@ -119,7 +119,7 @@ inline msgs::command Command(std::int64_t id, const std::string& target, const s
   return m;
 }
 
-// Of this process alone; gone with this.
+// Private to this process; removed with this object.
 struct TemporaryFile {
   explicit TemporaryFile(const std::string& name)
       : path((std::filesystem::temp_directory_path() / (name + std::to_string(getpid()))).string()) {}
@@ -127,7 +127,7 @@ struct TemporaryFile {
   std::string path;
 };
 
-// An LCM network that no other test uses; its port is below those that systems give away by themselves.
+// Returns an LCM network that no other test uses; its port is below the ephemeral ports of systems.
 inline std::string NewUrl() {
   static int port = 10'000 + getpid() % 500 * 4;
   return "udpm://239.255.76.67:" + std::to_string(port++) + "?ttl=0";

@@ -14,7 +14,7 @@
 namespace takt::plant {
 namespace {
 
-// A servo with its wires. Ready from the first cycle, brake released, unless a test says otherwise.
+// A servo with its signals. Ready from the first cycle, brake released, unless a test says otherwise.
 struct Bench {
   ServoParams params;
   double period = 0.001;
@@ -77,7 +77,7 @@ TEST(Servo, LimitedTorqueGivesConstantAcceleration) {  // AX-85: inertia, larges
   EXPECT_NEAR(bench.state.velocity, 400, 1e-9);
   EXPECT_NEAR(bench.state.motor_position, 40, 1e-9);
   EXPECT_DOUBLE_EQ(bench.measured.torque_nm, 4);
-  // Up to 498 u/s at full torque, the rest with the time constant: 2 u/s (1 - e^-1) more after another 1 ms.
+  // Up to 498 u/s at full torque, then with the time constant: 2 u/s (1 - e^-1) more after another 1 ms.
   bench.Run(0.049);
   EXPECT_NEAR(bench.state.velocity, 498, 1e-9);
   bench.Run(0.001);
@@ -185,7 +185,7 @@ TEST(Servo, LoadDroopsTheSpeedWithoutCompensation) {  // AX-85: M T / J
   bench.Run(2);
   EXPECT_NEAR(bench.state.velocity, 100, 1e-9);
   EXPECT_NEAR(bench.measured.torque_nm, 2, 1e-9);
-  // The compensation learns with its own time constant, whatever the speed does meanwhile.
+  // The compensation learns with its own time constant, independent of the velocity.
   bench.state.faults.extra_load = 1;
   bench.Run(0.01);
   EXPECT_NEAR(bench.state.compensation, 2000 + 1000 * (1 - std::exp(-1.0)), 20);
@@ -232,7 +232,7 @@ TEST(Servo, EndStopsAreInelastic) {  // AX-85
   }
 }
 
-TEST(Servo, AnImpactTeachesTheDriveNothing) {  // AX-85: what the drive learns is load
+TEST(Servo, AnImpactTeachesTheDriveNothing) {  // AX-85: only load is learnt
   ServoParams p;
   p.drive.power_up_s = 0;
   p.mechanics.upper_stop = 5;
@@ -259,7 +259,7 @@ TEST(Servo, CyclicPositionLagsByTheVelocityLoopWhileAccelerating) {  // AX-81: t
 }
 
 TEST(Servo, CyclicPositionReachesTheSetPointAndTracks) {  // AX-81: csp
-  ServoParams p;                                          // as a machine file with `plant: {}` has it
+  ServoParams p;                                          // as in a machine file with `plant: {}`
   Bench bench(p, DriveMode::kCyclicPosition);
   bench.commanded.position_counts = 0;
   bench.Run(0.2);
@@ -530,8 +530,8 @@ TEST(Servo, NotFiniteSetPointsAreNoSetPoints) {  // AX-82
   }
 }
 
-// AX-85: whatever the parameters and the period, the state stays finite and an axis that is told to stand comes to
-// rest. Run twice: the same bits.
+// AX-85: for any parameters and period, the state stays finite and an axis that is commanded to stop comes to rest. Run
+// twice: the same bits.
 TEST(Servo, StableAndTheSameOverAllParameters) {
   const auto run = [](unsigned seed) {
     std::mt19937 random(seed);
@@ -562,7 +562,7 @@ TEST(Servo, StableAndTheSameOverAllParameters) {
     bench.commanded.velocity_counts_s = 0;
     bench.Run(15);
     EXPECT_TRUE(std::isfinite(bench.state.motor_position)) << seed;
-    // What remains without compensation is the load's droop.
+    // Without compensation, the droop of the load remains.
     const double droop = (std::abs(p.mechanics.load_torque) + p.mechanics.coulomb_friction) / p.mechanics.inertia *
                          p.drive.velocity_time_constant_s;
     const bool slow = mode == DriveMode::kCyclicPosition;

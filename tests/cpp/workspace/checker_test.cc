@@ -1,4 +1,4 @@
-// GR-13: where on a path something meets something, by hand.
+// GR-13: positions of collisions on a path, computed by hand.
 #include "takt/workspace/checker.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ using testing::kScara;
 using testing::Line;
 using testing::Say;
 
-constexpr double kResolution = 0.1;  // of all tests here, mm
+constexpr double kResolution = 0.1;  // [mm] of all tests here
 
 const char* const kBall = "gripper: [{name: ball, sphere: {radius: 10}}]";
 
@@ -36,13 +36,13 @@ Finding Found(Checker& checker, const std::vector<Sample>& path) {
   return found.value_or(Finding{});
 }
 
-// Reported at `s` or behind it by what moves things by the resolution; `speed`: mm of what moves for 1 mm of s.
+// Reported at `s` or after it by the motion over the resolution; `speed`: [mm] of motion per mm of s.
 void ExpectAt(const Finding& found, double s, double speed = 1) {
   EXPECT_GE(found.s, s - kDistanceError / speed);
   EXPECT_LE(found.s, s + (kResolution + kDistanceError) / speed);
 }
 
-// GR-13: a ball of radius 10 on its way along X comes within 5 mm of what stands 200 mm ahead.
+// GR-13: a ball of radius 10 moving along X comes within 5 mm of an obstacle 200 mm ahead.
 TEST(Checker, FindsThePlaceBeforeEachShape) {
   const struct {
     const char* shape;
@@ -73,7 +73,7 @@ TEST(Checker, FindsThePlaceBeforeEachShape) {
   }
 }
 
-// GR-13: what moves may have any shape, too.
+// GR-13: a moving object may have any shape, too.
 TEST(Checker, FindsThePlaceOfEachMovingShape) {
   const struct {
     const char* shape;
@@ -93,17 +93,18 @@ TEST(Checker, FindsThePlaceOfEachMovingShape) {
   }
 }
 
-// GR-13: a ball 100 mm from the axis that turns it meets another one at 60 degrees when the chord between them is
-// 10 + 10 + 5.
+// GR-13: a ball 100 mm from its axis of rotation meets another one at 60 degrees when the chord between them is 10 + 10
+// + 5.
 TEST(Checker, FindsThePlaceOfATurn) {
   Checker checker = Among("{name: pin, sphere: {radius: 10}, pose: {x: 50, y: 86.602540378}}",
                           "gripper: [{name: ball, sphere: {radius: 10}, pose: {x: 100}}]");
   const double angle = 60 - 2 * std::asin(12.5 / 100) / kDegree;
-  const double speed = 100 * kDegree * std::cos(std::asin(12.5 / 100));  // at which the chord gets shorter, mm per deg
+  // rate at which the chord gets shorter [mm/deg]
+  const double speed = 100 * kDegree * std::cos(std::asin(12.5 / 100));
   ExpectAt(Found(checker, Line({}, {0, 0, 0, 350}, 350)), angle, speed);
 }
 
-// GR-13: no wall is thin enough and no step long enough to get through.
+// GR-13: no wall is too thin and no step too long to be detected.
 TEST(Checker, SeesThinWallsBetweenFarSamples) {
   const std::string wall = "{name: foil, box: {x: 0.001, y: 900, z: 900}, pose: {x: 7000}}";
   const std::string needle = "gripper: [{name: needle, capsule: {radius: 0.01, length: 20}}]";
@@ -139,7 +140,7 @@ TEST(Checker, LooksAtBothEnds) {
   EXPECT_EQ(Say(checker, {}), "free");
 }
 
-// GR-13: of all that is wrong the first one on the path is told, whatever stands first in the file.
+// GR-13: of several findings the first one on the path is reported, in any order of the file.
 TEST(Checker, TellsTheFirstOfMany) {
   const std::string gripper =
       "gripper: [{name: left, sphere: {radius: 10}, pose: {y: -50}}, {name: right, sphere: {radius: 10}, pose: {y: "
@@ -157,7 +158,7 @@ TEST(Checker, TellsTheFirstOfMany) {
   ExpectAt(found, 275);
   EXPECT_EQ(Say(checker, Line({0, -200}, {1200, -200}, 1200)), "free");
 
-  // One after the other within the resolution.
+  // Two within the resolution.
   Checker both = Among(
       "{name: near, sphere: {radius: 10}, pose: {x: 600, y: -50}}, "
       "{name: nearly, sphere: {radius: 10}, pose: {x: 600.06, y: 50}}",
@@ -183,7 +184,7 @@ TEST(Checker, IgnoresPairs) {
   EXPECT_EQ(said("[[tip, xy]]"), "xy/pile_1");
 }
 
-// GR-13: links stay within their coordinates: what moves along X alone does not go down with Z.
+// GR-13: links follow their own coordinates only: a part that moves along X alone does not move with Z.
 TEST(Checker, MovesLinksOfAGantryByThemselves) {
   const auto said = [](const std::string& link) {
     Checker checker = CheckerOf(kGantry, "{margin: 5, links: [{link: " + link +
@@ -201,7 +202,7 @@ TEST(Checker, MovesLinksOfAGantryByThemselves) {
   EXPECT_EQ(said("base"), "free");
 }
 
-// GR-13: the tool stays in its bounds, also between samples that both lie inside.
+// GR-13: the tool stays within its bounds, also between samples that are both inside.
 TEST(Checker, KeepsTheToolInItsBounds) {
   Checker gantry = CheckerOf(kGantry, "{resolution: 0.1, bounds: {lower: {z: -50}, upper: {x: 300, y: 40}}}");
   EXPECT_EQ(Say(gantry, Line({0, 0, -50}, {300, 40, 900}, 300)), "free");
@@ -221,7 +222,7 @@ TEST(Checker, KeepsTheToolInItsBounds) {
   EXPECT_EQ(Say(wide, Line({-60}, {60}, 120)), "free");
 }
 
-// GR-13: where there is no position of the links, that is said, unless something happens before.
+// GR-13: positions without a solution are reported, unless something is found before.
 TEST(Checker, SaysWhereThereIsNoPosition) {
   Checker gantry = Among("{name: post, cylinder: {radius: 20, height: 100}, pose: {x: 200}}");
   std::vector<Sample> path = Line({0}, {400}, 400, 4);
@@ -238,8 +239,8 @@ TEST(Checker, SaysWhereThereIsNoPosition) {
   EXPECT_EQ(Found(gantry, path).index, 0u);
   EXPECT_TRUE(gantry.Check(Line({-1e300}, {1e300}, 400)));
 
-  // Short lower arms do not reach from one knee to the other. Between two positions that are good the knees meet, at
-  // cos = -155/235 of the arms.
+  // Short lower arms do not reach from one knee to the other. Between two valid positions the knees meet, at cos =
+  // -155/235 of the arms.
   const std::string cell =
       "{gripper: [{name: cup, sphere: {radius: 20}}], obstacles: [{name: far, sphere: {radius: 1}, pose: {z: 5000}}]}";
   const char* const small = "{delta: {base_radius: 200, platform_radius: 45, upper_arm: 235, lower_arm: 300}}";
@@ -252,7 +253,7 @@ TEST(Checker, SaysWhereThereIsNoPosition) {
   EXPECT_NEAR(singular.s, (30 + std::acos(-155 / 235.0) / kDegree) / 2, 0.5);
 }
 
-// GR-13: the same question has the same answer.
+// GR-13: equal requests have equal results.
 TEST(Checker, RemembersNothing) {
   Checker checker = Among("{name: post, cylinder: {radius: 20, height: 100}, pose: {x: 200}}");
   const std::string first = Say(checker, Line({0}, {400}, 400, 30));

@@ -27,7 +27,7 @@ std::string Diagnose(const std::string& bytes) {
   return why;
 }
 
-// GR-13: both kinds say the same, and vertices that facets share come once.
+// GR-13: both formats are equivalent, and common vertices of facets are merged.
 TEST(Stl, IsReadFromBinaryAndText) {
   for (const std::string& bytes : {Binary(BoxFacets(20, 40, 60)), Text(BoxFacets(20, 40, 60))}) {
     std::string why;
@@ -52,7 +52,7 @@ TEST(Stl, IsReadAsProgramsWriteIt) {
       1, why);
   ASSERT_TRUE(mesh) << why;
   EXPECT_EQ(mesh->vertices[1].x(), 15);
-  // Old line ends, all in one line, a name that holds keywords.
+  // Old line ends, all in one line, a name that contains keywords.
   const std::string words =
       "solid vertex 1 facet normal 0 0 1 outer loop vertex 0 0 0 vertex 15 0 0 vertex 0 -2 0 "
       "endloop endfacet endsolid vertex";
@@ -92,7 +92,7 @@ TEST(Stl, SaysWhatIsWrong) {
   EXPECT_EQ(Diagnose(infinite), "triangle 2 has a corner that is no number");
 }
 
-// GR-13: a broken file is named by the place in the machine file and its own name.
+// GR-13: a broken file is reported by its key in the machine file and its own name.
 TEST(Stl, IsNamedWhenItIsBroken) {
   const Folder folder;
   folder.Write("guard.stl", "solid\nfacet\n vertex 1 2 x\n");
@@ -102,7 +102,7 @@ TEST(Stl, IsNamedWhenItIsBroken) {
   EXPECT_EQ(made.problem, folder.path() + "/guard.stl: line 3: expected three numbers behind 'vertex'");
 }
 
-// GR-13: whichever way the facets look.
+// GR-13: for either orientation of the facets.
 TEST(Mesh, KnowsWhatItEncloses) {
   std::string why;
   for (const bool inside_out : {false, true}) {
@@ -117,7 +117,7 @@ TEST(Mesh, KnowsWhatItEncloses) {
   EXPECT_FALSE(Encloses(*ReadStl(Text(open), 1, why), {0, 0, 0}));
 }
 
-// GR-13: a box of triangles is found where a box is, by all shapes, near and far, turned and scaled.
+// GR-13: a box of triangles is found like a box, by all shapes, near and far, rotated and scaled.
 TEST(Mesh, IsMetWhereABoxIs) {
   const Folder folder;
   folder.Write("box.stl", Binary(BoxFacets(0.04, 0.3, 0.5)));
@@ -139,13 +139,13 @@ TEST(Mesh, IsMetWhereABoxIs) {
   }
 }
 
-// GR-13: a path that begins inside of a closed surface meets it, though it touches no triangle; one through an open
-// surface does not begin inside of it.
+// GR-13: a path that begins inside a closed surface collides with it, though it touches no triangle; one through an
+// open surface does not begin inside.
 TEST(Mesh, BelongsWithWhatItEncloses) {
   const Folder folder;
   folder.Write("box.stl", Text(BoxFacets(200, 200, 200)));
   std::vector<testing::Facet> open = BoxFacets(200, 200, 200);
-  open.resize(4);  // two faces across X
+  open.resize(4);  // two faces perpendicular to X
   folder.Write("open.stl", Text(open));
   const auto said = [&](const std::string& file, const std::string& rest) {
     Checker checker = testing::CheckerOf(testing::kGantry,
@@ -158,7 +158,7 @@ TEST(Mesh, BelongsWithWhatItEncloses) {
   const std::string tip = "gripper: [{name: tip, sphere: {radius: 5}}]";
   EXPECT_EQ(said("box.stl", tip), "tip meets tank 0.0 mm along the path (5 mm are to be kept)");
   EXPECT_EQ(said("open.stl", tip), "free");
-  // The other way round: the gripper is a box around an obstacle.
+  // Vice versa: the gripper is a box around an obstacle.
   const std::string hood = "gripper: [{name: hood, mesh: {file: box.stl}, pose: {x: 500}}]";
   EXPECT_EQ(said("open.stl", hood), "hood meets pin 0.0 mm along the path (5 mm are to be kept)");
 }

@@ -1,4 +1,4 @@
-// GR-13: what a machine file may say about a workspace.
+// GR-13: the workspace section of a machine file.
 #include "takt/workspace/params.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace takt::workspace {
 namespace {
 
-// Reader's or maker's sentence.
+// Returns the sentence of the reader or of Make.
 std::string ProblemOf(const std::string& text, const std::string& kinematics = testing::kGantry) {
   const auto read = ReadYaml<WorkspaceParams>(text, "m.yaml");
   if (!read.ok()) return read.problems.front().path + ": " + read.problems.front().message;
@@ -56,7 +56,7 @@ TEST(WorkspaceParams, SayWhatIsWrong) {
             "obstacles[0].mesh.scale: expected a number above 0, found 0");
 }
 
-// GR-13: names of links stand for several, as far as they agree.
+// GR-13: a name may mean several links, as far as they agree.
 TEST(WorkspaceParams, PutOneShapeOnSeveralLinks) {
   const auto read = ReadYaml<WorkspaceParams>(
       "{links: [{link: lower_arm_2, capsule: {radius: 8}}, {link: upper_arm, capsule: {radius: 20}}, "

@@ -1,4 +1,5 @@
-// GR-13: what the checker promises, over random cells, held against distances without FCL at thousands of places.
+// GR-13: the guarantees of the checker, for random cells, compared with distances without FCL at thousands of
+// positions.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -69,8 +70,8 @@ TEST(Scene, MeasuresAsWellAsItSays) {
 struct Machine {
   const char* kinematics;
   const char* links;
-  double range;  // of obstacles in X and Y, mm
-  double up;     // where they are, mm
+  double range;  // [mm] of obstacles in X and Y
+  double up;     // [mm] height of the obstacles
   std::vector<std::array<double, 2>> axes;
 };
 
@@ -91,7 +92,7 @@ const Machine kMachines[] = {
      {{-170, 170}, {-90, 90}, {-90, 90}, {-180, 180}, {-100, 100}, {-300, 300}}},
 };
 
-// The least distance that what moves has to what stands, by reference.
+// Returns the smallest distance between moving bodies and obstacles, by the reference.
 double Nearest(const Cell& cell, const Joints& joints) {
   kinematics::LinkFrameArray frames;
   EXPECT_EQ(kinematics::LinkFrames(cell.kinematics, joints, frames), kinematics::Reason::kNone);
@@ -106,8 +107,8 @@ double Nearest(const Cell& cell, const Joints& joints) {
   return nearest;
 }
 
-// GR-13: what is reported is so, nothing before it was nearer than margin - resolution, and where nothing is reported
-// nothing is nearer than that.
+// GR-13: findings are true, no earlier approach was nearer than margin - resolution, and without a finding nothing is
+// nearer than that.
 TEST(Checker, KeepsItsPromises) {
   Random random(6);
   int free = 0;

@@ -1,5 +1,4 @@
-// How far apart two shapes are, without FCL: exact for balls, else by going to and fro between the nearest points of
-// both. Slow.
+// The distance of two shapes without FCL: exact for balls, otherwise by alternating projections between both. Slow.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +11,7 @@
 
 namespace takt::workspace::testing {
 
-// The point of a box, cylinder, ball or capsule that is nearest to `point`, both in its pose.
+// Returns the point of a box, cylinder, ball or capsule that is nearest to `point`, both in its pose.
 inline KDL::Vector NearestIn(const Form& form, const KDL::Vector& p) {
   const auto round = [](const KDL::Vector& middle, const KDL::Vector& point, double radius) {
     const KDL::Vector way = point - middle;

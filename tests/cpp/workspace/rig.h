@@ -1,4 +1,4 @@
-// Checkers from the words of a machine file, and paths for them.
+// Checkers from the text of a machine file, and paths for them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ inline Checker CheckerOf(const std::string& kinematics, const std::string& works
   return made.checker ? std::move(*made.checker) : Checker(Cell{});
 }
 
-// Straight for all axes, in equal steps; `length` in mm.
+// A linear path of all axes, in equal steps; `length` in [mm].
 inline std::vector<Sample> Line(const kinematics::Joints& from, const kinematics::Joints& to, double length,
                                 int steps = 1) {
   std::vector<Sample> path;
@@ -46,7 +46,7 @@ inline std::vector<Sample> Line(const kinematics::Joints& from, const kinematics
   return path;
 }
 
-// The finding's sentence; "free" without one.
+// Returns the finding's sentence; "free" if there is none.
 inline std::string Say(Checker& checker, const std::vector<Sample>& path) {
   const std::optional<Finding> found = checker.Check(path);
   return found ? checker.Describe(*found) : "free";

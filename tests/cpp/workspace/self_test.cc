@@ -1,4 +1,4 @@
-// GR-13: mechanisms that would meet themselves.
+// GR-13: self-collisions of mechanisms.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using ::testing::Pair;
 using testing::Say;
 using ::testing::UnorderedElementsAre;
 
-// GR-13: as the elbow closes the gripper, at the end of the second arm, comes to the first one.
+// GR-13: as the elbow closes the gripper, at the end of the second arm, approaches the first one.
 TEST(SelfCollision, OfAScara) {
   const std::string cell =
       "{margin: 5, resolution: 0.1, links: [{link: base, cylinder: {radius: 80, height: 400}}, "
@@ -31,14 +31,14 @@ TEST(SelfCollision, OfAScara) {
   EXPECT_NEAR(found->s, 180 - std::asin((30 + 20 + 5) / 200.0) / kDegree, 0.1);
 
   Checker turning = CheckerOf(kScara, cell + "}");
-  EXPECT_EQ(Say(turning, Line({-170, 90}, {170, 90}, 340)), "free");  // all together: nothing moves within
+  EXPECT_EQ(Say(turning, Line({-170, 90}, {170, 90}, 340)), "free");  // all together: no relative motion
   Checker off = CheckerOf(kScara, cell + ", self_collisions: false}");
   EXPECT_EQ(Say(off, Line({0, 0}, {0, 179}, 179)), "free");
   Checker ignored = CheckerOf(kScara, cell + ", ignore: [[base, arm_2], [bit, base], [arm, bit]]}");
   EXPECT_EQ(Say(ignored, Line({0, 0}, {0, 179}, 179)), "free");
 }
 
-// GR-13: with large steps the place is the same as with small ones.
+// GR-13: with large steps the reported position is the same as with small ones.
 TEST(SelfCollision, DoesNotDependOnTheSteps) {
   Checker checker = CheckerOf(kDelta,
                               "{margin: 5, resolution: 0.1, links: [{link: lower_arm, capsule: {radius: 8}}], "
@@ -54,7 +54,7 @@ TEST(SelfCollision, DoesNotDependOnTheSteps) {
   EXPECT_GT(coarse->s, 5);
 }
 
-// GR-13: neighbours touch at all times, and some others as they are built.
+// GR-13: neighbours always touch, and some other pairs by design.
 TEST(SelfCollision, LeavesOutWhatMeetsAtRest) {
   Checker checker =
       CheckerOf(kScara,

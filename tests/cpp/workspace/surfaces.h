@@ -16,7 +16,7 @@ namespace takt::workspace::testing {
 
 using Facet = std::array<std::array<float, 3>, 3>;
 
-// The twelve triangles of a box about the origin; the first four are those across X.
+// The twelve triangles of a box about the origin; the first four are perpendicular to X.
 inline std::vector<Facet> BoxFacets(double x, double y, double z, bool inside_out = false) {
   const std::array<double, 3> half{x / 2, y / 2, z / 2};
   std::vector<Facet> facets;
@@ -68,7 +68,7 @@ inline std::string Binary(const std::vector<Facet>& facets) {
   return out;
 }
 
-// A folder of its own for each test, gone with it.
+// A temporary folder for each test.
 class Folder {
  public:
   Folder() {
