@@ -13,8 +13,8 @@
 namespace takt::bindings {
 namespace {
 
+using routing::CellIndex;
 using routing::MoverIndex;
-using routing::PlaceIndex;
 using LegRow = py::typing::Tuple<double, int, int>;
 using VisitRow = py::typing::Tuple<int, double, double, int, int>;
 
@@ -31,9 +31,9 @@ void Check(const routing::SurfaceProblem& problem) {
           "expected a pitch and dynamics above 0");
   require(problem.targets.size() == problem.starts.size(), "expected a target for each mover, or none");
   require(problem.pools.empty() || problem.pools.size() == problem.starts.size(), "expected a pool for each mover");
-  const auto check = [&](const std::vector<PlaceIndex>& places, bool may_be_none) {
+  const auto check = [&](const std::vector<CellIndex>& places, bool may_be_none) {
     std::vector<bool> taken(blocked.size(), false);
-    for (const PlaceIndex place : places) {
+    for (const CellIndex place : places) {
       if (place == routing::kNone && may_be_none) continue;
       require(place >= 0 && static_cast<std::size_t>(place) < blocked.size(), "a place is beyond the last one");
       require(!blocked[static_cast<std::size_t>(place)], "a place of a mover is blocked");
@@ -46,8 +46,8 @@ void Check(const routing::SurfaceProblem& problem) {
 }
 
 routing::SurfacePlan Plan(int width, int height, double pitch, double mover_size, double velocity, double acceleration,
-                          double jerk, std::vector<bool> blocked, std::vector<PlaceIndex> starts,
-                          std::vector<PlaceIndex> targets, std::vector<routing::PoolIndex> pools, std::int64_t effort,
+                          double jerk, std::vector<bool> blocked, std::vector<CellIndex> starts,
+                          std::vector<CellIndex> targets, std::vector<routing::PoolIndex> pools, std::int64_t effort,
                           std::uint64_t seed) {
   const routing::SurfaceProblem problem{.width = width,
                                         .height = height,

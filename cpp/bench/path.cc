@@ -88,7 +88,7 @@ void RoundCorners(benchmark::State& state) {
   const Segment second = Line(PointOf(1, 0, 0, 0), PointOf(2, 0.03, 0, 0));
   const Segment third = Line(PointOf(2, 0.03, 0, 0), PointOf(3, 0.09, 0, 0));
   for (auto _ : state) {
-    const Triple bend = BendBetween(first, second, third).value_or(Triple{});
+    const Triple bend = ChordCurvature(first, second, third).value_or(Triple{});
     Segment before, after;
     Blend(first, 0.5, second, 0.5, {{}, bend}, before);
     Blend(second, 0.5, third, 0.5, {bend, {}}, after);

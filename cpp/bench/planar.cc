@@ -324,7 +324,7 @@ class Ring {
         Link(way, next, network_);
       }
     }
-    NameNodes(network_);
+    NumberNodes(network_);
     for (std::uint32_t i = 0; i < Tracks(); ++i) SetRanges(i, network_);
     for (std::uint32_t i = 0; i < Tracks(); ++i) SetLeads(i, network_);
     for (std::uint32_t i = 0; i < movers; ++i) {

@@ -37,7 +37,7 @@ from takt.track import Track
 QUEUE = 100_000  # messages waiting to be received before LCM drops some
 DESCRIPTION_S = 2.5  # the engine describes itself within that, every second
 SILENCE_S = 3.0  # without any message: the engine is gone (it sends its own state, and the machine every second)
-RESEND_S = 0.2  # between two tries of a command that is not answered
+RESEND_S = 0.1  # [s] between two tries of a command that is not answered: some 15 before it is given up
 REFRESH_S = 2.0  # after which a command that is not finished is asked about: its last answer may have been lost
 ANSWER_S = 2.0  # after which a command that is not answered is given up
 LATE_S = 1.0  # how long published values may take to catch up with a feedback, or with one another

@@ -32,7 +32,7 @@ Status Enqueue(const Context& c, const Request& r, State& s) {
                                      [](const Request& waiting) { return waiting.blends(); });
   if (all_blend) ReplanActive(c, s);  // there is more room ahead
   // Beneath an overlay no command is in control: the command begins now.
-  if (s.buffered == 1 && s.active.kind == RequestKind::kNone && Carries(r) && StandsBeneath(s)) {
+  if (s.buffered == 1 && s.active.kind == RequestKind::kNone && Carries(r) && BaseAtRest(s)) {
     const ScopedBaseMotion beneath(s);
     StartNext(c, 0, s);
   }
@@ -62,7 +62,7 @@ Status JogBy(const Context& c, const Request& r, State& s) {
   Plan plan;
   const Status status = r.forward != r.backward ? PlanJog(c, r, s, plan) : Status::Ok();
   if (status.failed()) return status;
-  const std::optional<double> furthest = SurroundingsOfBoth(c, s).furthest;
+  const std::optional<double> furthest = SumPlanningContext(c, s).furthest;
   AbortAll(c, s);
   if (s.plc != PlcState::kStandstill) ComeToRest(c, r.limits(), FromCycleBefore(c), s, furthest);
   Grant(c, r, s);
@@ -102,7 +102,7 @@ Status Change(const Context& c, const Request& r, State& s) {
     return Status::Ok();
   }
   Plan plan;
-  const PlanningContext around = SurroundingsOf(c, s);
+  const PlanningContext around = BasePlanningContext(c, s);
   const Status status = PlanRequest(c.params, around, c.planner, s.setpoint, r, BlendingQueue(s), plan);
   if (status.failed()) return status;
   if (r.positions() && !Inside(c.params.limits, plan.target + AddedAtEnd(s))) {
@@ -125,7 +125,7 @@ Status TakeOver(const Context& c, const Request& r, State& s) {
     return Status::Ok();
   }
   Plan plan;
-  const Status status = PlanRequest(c.params, SurroundingsOfBoth(c, s), c.planner, s.setpoint, r, {}, plan);
+  const Status status = PlanRequest(c.params, SumPlanningContext(c, s), c.planner, s.setpoint, r, {}, plan);
   if (status.failed()) return status;
   AbortAll(c, s);
   TakeControl(c, r, plan, FromCycleBefore(c), s);

@@ -198,7 +198,7 @@ void GuardSwitches(const Context& c, const KinematicState& before, State& s) {
   const KinematicState next = s.setpoint;
   s.setpoint = before;
   const ErrorId at_switch = up ? ErrorId::kLimitSwitchPositive : ErrorId::kLimitSwitchNegative;
-  if (!own && !barred) s.fault_of = FollowerThatBars(c, s, up ? 1 : -1);
+  if (!own && !barred) s.fault_of = BlockingFollower(c, s, up ? 1 : -1);
   Fail(c, own ? at_switch : barred ? ErrorId::kDirection : ErrorId::kAxisFault, false, s);
   if (IsGuided(s)) {  // its component brakes it, together with others: it has no motion of its own
     s.setpoint = next;
@@ -477,7 +477,7 @@ bool Control(const Context& c, State& s, ServoOutputs& out) noexcept {
   const ControlLoopInputs inputs{p.drive.mode,     s.loop_closed && engine_closes, p.drive.invert, s.due, mean_velocity,
                                  s.actual.position};
   if (s.blind) {
-    Step(SpeedAlone(p.loop), inputs, c.cycle, s.loop, loop);
+    Step(WithoutFeedback(p.loop), inputs, c.cycle, s.loop, loop);
   } else {
     Step(p.loop, inputs, c.cycle, s.loop, loop);
   }

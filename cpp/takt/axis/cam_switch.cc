@@ -233,7 +233,7 @@ Status CarryOut(const Context& c, Ticket ticket, const DigitalCamSwitch& command
   return Status::Ok();
 }
 
-std::string CannotSwitch(const CamSwitches& list, const AxisParams& params) {
+std::string DiagnoseCamSwitches(const CamSwitches& list, const AxisParams& params) {
   if (CanSwitch(list, params)) return {};
   std::ostringstream text;
   if (!FitsTurn(list, params)) {

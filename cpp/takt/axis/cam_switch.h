@@ -100,7 +100,7 @@ Status CarryOut(const Context& context, Ticket ticket, const DigitalCamSwitch& c
 
 // Returns why this axis cannot have the list; empty if it can. Reasons: a range ends below its beginning although
 // positions do not repeat, or the turn of the axis is no multiple of the list's modulus.
-std::string CannotSwitch(const CamSwitches& list, const AxisParams& params);
+std::string DiagnoseCamSwitches(const CamSwitches& list, const AxisParams& params);
 
 void describe(Enumeration<CamDirection>&);
 void describe(Enumeration<CamSwitchMode>&);

@@ -157,13 +157,13 @@ cam::Value InStep(const Context& c, double master, const State& s) {
 }
 
 KinematicState DemandOf(const cam::Value& at, const KinematicState& master) {
-  return trajectory::AlongWay({at.y, at.dy, at.ddy}, master);
+  return trajectory::ComposeWithMaster({at.y, at.dy, at.ddy}, master);
 }
 
 // Chooses the slave position where synchronisation ends: of its repetitions the one that the SyncMode selects for a
 // slave that would reach about `expected` meanwhile; for a relative cam `expected` plus the offset. `master_sense`: of
 // the master's travel.
-void PlaceSlave(const Context& c, double expected, double master_sense, State& s) {
+void ChooseSlaveSync(const Context& c, double expected, double master_sense, State& s) {
   CouplingState& k = s.coupling;
   const cam::Value place = InStep(c, k.master_sync, s);
   const double sense = place.dy != 0 ? place.dy * master_sense : s.setpoint.velocity;
@@ -184,7 +184,7 @@ void BeginCurve(const Context& c, const KinematicState& master, State& s) {
   const double way = k.master_sync - master.position;
   const double own = s.setpoint.position + s.origin - k.chase.offset;
   if (way * planned <= 0) {
-    PlaceSlave(c, own, master.velocity, s);
+    ChooseSlaveSync(c, own, master.velocity, s);
     k.joining = Joining::kJoined;
     return;
   }
@@ -196,13 +196,13 @@ void BeginCurve(const Context& c, const KinematicState& master, State& s) {
     slope = s.setpoint.velocity / master.velocity;
     bend = (s.setpoint.acceleration - slope * master.acceleration) / (master.velocity * master.velocity);
   }
-  PlaceSlave(c, own + 0.5 * (slope + InStep(c, k.master_sync, s).dy) * way, way, s);
+  ChooseSlaveSync(c, own + 0.5 * (slope + InStep(c, k.master_sync, s).dy) * way, way, s);
   const cam::Value end = InStep(c, k.master_sync, s);
   k.curve = trajectory::Connect(way, {own, slope, bend}, {end.y, end.dy, end.ddy});
 }
 
 KinematicState OnCurve(const CouplingState& k, const KinematicState& master) {
-  return trajectory::AlongWay(k.curve.At(master.position - k.curve_begin), master);
+  return trajectory::ComposeWithMaster(k.curve.At(master.position - k.curve_begin), master);
 }
 
 // Begins the wait for the master position, `distance` before `master_sync`, at which synchronisation starts.
@@ -215,7 +215,7 @@ void Wait(double master, double distance, CouplingState& k) {
 
 // Returns true if the wait is over: the master has passed the start, or is between it and `master_sync`, moving towards
 // the latter. If a master on a circle moves away from `master_sync`, the next repetition in its sense replaces it.
-bool HasBegun(double standing, const KinematicState& master, CouplingState& k) {
+bool WaitIsOver(double standing, const KinematicState& master, CouplingState& k) {
   const double way = k.master_sync - k.curve_begin;
   const double side = master.position - k.curve_begin;
   const bool passes = side == 0 || (side > 0) != (k.begin_side > 0);
@@ -242,7 +242,7 @@ bool JoinedDemand(const Context& c, const KinematicState& phase, State& s, Kinem
   const CouplingTerm& term = k.law.terms[0];
   const KinematicState master = Seen(c, k, term, phase);
   if (k.joining == Joining::kWaiting) {
-    if (!HasBegun(Standing(c, term.master), master, k)) return false;
+    if (!WaitIsOver(Standing(c, term.master), master, k)) return false;
     BeginCurve(c, master, s);
   }
   if (k.joining == Joining::kOnCurve) {
@@ -311,7 +311,7 @@ void BeginCam(const Context& c, const Request& r, State& s) {
   k.cam.share = ShareOf(law, k.cam, at);
   k.master_sync = at;
   if (waits) return Wait(seen.position, distance, k);
-  PlaceSlave(c, takes_over ? k.cam.end_slave : s.setpoint.position + s.origin, sense, s);
+  ChooseSlaveSync(c, takes_over ? k.cam.end_slave : s.setpoint.position + s.origin, sense, s);
 }
 
 // Returns the tolerance [u] for being in step with measured masters, which are known only to their increments.
@@ -607,7 +607,7 @@ Status CarryOut(const Context& c, Ticket ticket, const PhasingRelative& p, State
 namespace {
 
 // The target of synchronisation has changed: begins the curve anew if the slave is on it.
-void JoinAnew(const Context& c, State& s) {
+void RestartCurve(const Context& c, State& s) {
   CouplingState& k = s.coupling;
   if (k.joining == Joining::kOnCurve) BeginCurve(c, Seen(c, k, k.law.terms[0], PhaseAt(c, k)), s);
 }
@@ -640,7 +640,7 @@ Status CarryOut(const Context& c, Ticket ticket, const CamAdd& command, State& s
   added.cam.slave = command.slave_offset;
   if (!command.slave_absolute) added.cam.slave -= ValueAt(law, added.cam, master).y - command.slave_offset;
   *place = added;
-  JoinAnew(c, s);
+  RestartCurve(c, s);
   Report(c, ticket, FeedbackState::kActive);
   Report(c, ticket, FeedbackState::kDone);
   return Status::Ok();
@@ -651,7 +651,7 @@ Status CarryOut(const Context& c, Ticket ticket, const CamRemove& command, State
   for (AddedCam& added : s.coupling.added) {
     if (added.table == kNoTable || c.machine.cams[added.table].name() != command.cam.view()) continue;
     added = {};
-    JoinAnew(c, s);
+    RestartCurve(c, s);
     Report(c, ticket, FeedbackState::kActive);
     Report(c, ticket, FeedbackState::kDone);
     return Status::Ok();

@@ -27,7 +27,7 @@ void WatchLink(const Context& c, State& s) noexcept {
   }
 }
 
-ControlLoop SpeedAlone(const ControlLoop& params) noexcept {
+ControlLoop WithoutFeedback(const ControlLoop& params) noexcept {
   ControlLoop alone = params;
   alone.kp = alone.ki = alone.kd = 0;
   alone.ff = 1;

@@ -22,6 +22,6 @@ void Locate(const Context& context, const KinematicState& sampled, State& state)
 void WatchLink(const Context& context, State& state) noexcept;
 
 // Returns the parameters of a position loop without feedback, which passes the set velocity on.
-ControlLoop SpeedAlone(const ControlLoop& params) noexcept;
+ControlLoop WithoutFeedback(const ControlLoop& params) noexcept;
 
 }  // namespace takt::axis

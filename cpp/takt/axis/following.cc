@@ -232,7 +232,7 @@ bool FollowerOnLimit(const Context& c, const State& s, int sense, bool since_bef
   return on;
 }
 
-std::uint32_t FollowerThatBars(const Context& c, const State& s, int sense) noexcept {
+std::uint32_t BlockingFollower(const Context& c, const State& s, int sense) noexcept {
   std::uint32_t found = kNoAxis;
   if (!s.leads) return found;
   ForFollowers(c, [&](const AxisParams&, const State& follower, double ratio) {

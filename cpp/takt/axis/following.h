@@ -37,7 +37,7 @@ Status FollowersReady(const Context& context, const State& state) noexcept;
 bool FollowerOnLimit(const Context& context, const State& state, int sense, bool since_before = false) noexcept;
 
 // Returns the first follower that is on the limit switch ahead, or may not move, in this sense; kNoAxis if none is.
-std::uint32_t FollowerThatBars(const Context& context, const State& state, int sense) noexcept;
+std::uint32_t BlockingFollower(const Context& context, const State& state, int sense) noexcept;
 
 // Checks that the axis and all its followers, also indirect ones, may begin a motion in this sense. Returns
 // kAwayFromLimitOnly if a limit switch ahead is on, kDirection if the sense is not enabled. `sense` 0: no motion.

@@ -57,7 +57,7 @@ bool IsGuided(const State& s) noexcept {
   return s.active.kind == RequestKind::kGuided;
 }
 
-void LetGoOfGuidance(const Context& c, State& s) noexcept {
+void EndGuidance(const Context& c, State& s) noexcept {
   if (!IsGuided(s)) return;
   EndActive(c, FeedbackState::kDone, ErrorId::kNone, s);
   if (s.plc == PlcState::kErrorStop) {

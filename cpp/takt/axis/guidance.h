@@ -40,7 +40,7 @@ Status Guide(const Context& c, State& s) noexcept;
 // Returns true while a component gives the set points.
 bool IsGuided(const State& s) noexcept;
 // Ends the guidance: an axis that moves comes to rest, in ErrorStop on the ramp of its fault (StopLimits).
-void LetGoOfGuidance(const Context& c, State& s) noexcept;
+void EndGuidance(const Context& c, State& s) noexcept;
 // Returns the jerk [u/s³] for braking on a ramp with `jerk` an axis whose own limit is `own` (0: none). If the axis is
 // speeding up, the jerk is raised so that it gains at most 5 % of its velocity before it slows down.
 double BrakingJerk(const KinematicState& from, double jerk, double own) noexcept;

@@ -114,7 +114,7 @@ std::optional<HomingEvent> ReadCode(const Context& c, State& s) {
   return HomingEvent::kFound;
 }
 
-bool OnTheWay(HomingStage stage) {
+bool IsSearching(HomingStage stage) {
   return stage == HomingStage::kSearching || stage == HomingStage::kTurning;
 }
 
@@ -152,7 +152,7 @@ std::optional<HomingEvent> EventOf(const Context& c, State& s) {
       return HomingEvent::kFound;
     }
   }
-  if (OnTheWay(h.stage)) {
+  if (IsSearching(h.stage)) {
     if (h.stage == HomingStage::kTurning && BySwitch(r.kind)) h.switch_before = SwitchOf(r, s);
     const double elapsed_s = static_cast<double>(c.cycle.count - h.begin_cycle) * c.cycle.period_s;
     if (r.homing.time_limit > 0 && elapsed_s > r.homing.time_limit) return HomingEvent::kTimeOver;
@@ -338,7 +338,7 @@ Status BeginHoming(const Context& c, const Request& r, bool aborts, State& s) no
   if (r.kind == RequestKind::kFinishHoming && r.value != 0) {
     Request leave = r;
     leave.kind = RequestKind::kMoveRelative;
-    PlanningContext around = SurroundingsOf(c, s);
+    PlanningContext around = BasePlanningContext(c, s);
     around.factors = {};
     const Status status = PlanRequest(c.params, around, c.planner, s.setpoint, leave, {}, plan);
     if (status.failed()) return status;

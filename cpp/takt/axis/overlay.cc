@@ -287,7 +287,7 @@ void AbortOverlay(const Context& c, FeedbackState feedback, ErrorId error, State
   Report(c, s.overlay.ticket, feedback, error, false, s.overlay.covered);
 }
 
-bool StandsBeneath(const State& s) noexcept {
+bool BaseAtRest(const State& s) noexcept {
   return Stands(s.overlay.base);
 }
 

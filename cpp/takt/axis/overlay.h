@@ -78,7 +78,7 @@ void Superimpose(const Context& c, State& s) noexcept;
 // Ends the superimposed motion, if any; the caller must replace the motion of the axis.
 void AbortOverlay(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
 // Returns true if the base motion is at rest.
-bool StandsBeneath(const State& s) noexcept;
+bool BaseAtRest(const State& s) noexcept;
 // Returns true if a motion can be superimposed on this command. If it cannot, the buffered command waits for the
 // overlay while the base motion is at rest, and aborts the overlay if the base motion moves.
 bool Carries(const Request& r) noexcept;

@@ -117,7 +117,7 @@ Status TakeTouch(const Context& c, State& s) {
   request.jerk = probe.jerk;
   Plan plan;
   plan.target = probe.touch_position;
-  const PlanningContext around = SurroundingsOfBoth(c, s);
+  const PlanningContext around = SumPlanningContext(c, s);
   Status status = Replan(c.params, around, c.planner, s.setpoint, request, {}, plan);
   if (status.ok()) status = CheckSwitches(around, s.setpoint, plan.profile);
   if (status.failed()) return status;

@@ -44,7 +44,7 @@ double FurthestOf(const Context& c, const State& s) {
 
 }  // namespace
 
-PlanningContext SurroundingsOf(const Context& c, const State& s) noexcept {
+PlanningContext BasePlanningContext(const Context& c, const State& s) noexcept {
   PlanningContext around;
   around.limit_positive = s.limit_positive || FollowerOnLimit(c, s, 1);
   around.limit_negative = s.limit_negative || FollowerOnLimit(c, s, -1);
@@ -60,8 +60,8 @@ PlanningContext SurroundingsOf(const Context& c, const State& s) noexcept {
   return around;
 }
 
-PlanningContext SurroundingsOfBoth(const Context& c, const State& s) noexcept {
-  PlanningContext around = SurroundingsOf(c, s);
+PlanningContext SumPlanningContext(const Context& c, const State& s) noexcept {
+  PlanningContext around = BasePlanningContext(c, s);
   if (!s.superimposed) return around;
   const double covered = s.setpoint.position - s.overlay.base.position;
   if (around.promised) *around.promised += covered;
@@ -140,7 +140,7 @@ void NoteReached(const Context& c, State& s) {
 }
 
 // Hands over from a command that never ends by itself to the next one.
-void GiveWay(const Context& c, State& s) {
+void HandOver(const Context& c, State& s) {
   if (s.buffered == 0) return;
   const Ticket ticket = s.active.ticket;
   if (Couples(s.active.kind)) Uncouple(c, false, s);
@@ -156,7 +156,7 @@ void GiveWay(const Context& c, State& s) {
 // Handles a command that never ends by itself and has reached its goal.
 void ConcludeReached(const Context& c, State& s) {
   NoteReached(c, s);
-  GiveWay(c, s);
+  HandOver(c, s);
 }
 
 // Returns the request for the velocity with which a continuous move continues from its position.
@@ -180,7 +180,7 @@ void BrakeFromEnd(const Context& c, double late_s, State& s) {
 Status GoOn(const Context& c, double late_s, State& s) {
   const Profile passing = s.motion.profile;
   Plan plan;
-  const Status status = PlanRequest(c.params, SurroundingsOf(c, s), c.planner, passing.end(), Onward(s), {}, plan);
+  const Status status = PlanRequest(c.params, BasePlanningContext(c, s), c.planner, passing.end(), Onward(s), {}, plan);
   if (status.failed()) {
     BrakeFromEnd(c, late_s, s);
     return status;
@@ -219,12 +219,12 @@ void ConcludeContinuous(const Context& c, double late_s, State& s) {
       return ComeToRest(c, c.params.planner_limits(), FromThisCycle(c), s);
     }
   }
-  GiveWay(c, s);
+  HandOver(c, s);
 }
 
 void ConcludeCam(const Context& c, State& s) {
   if (s.coupling.in_step) NoteReached(c, s);
-  if (s.coupling.cam.over) GiveWay(c, s);
+  if (s.coupling.cam.over) HandOver(c, s);
 }
 
 // The last velocity is kept.
@@ -249,7 +249,7 @@ void ConcludePower(const Context& c, State& s) {
 void ConcludeStop(const Context& c, State& s) {
   if (FollowersStraighten(c, s)) return;  // they must come to rest, too
   const bool just_arrived = c.cycle.count == s.motion.arrived_cycle;
-  TellStopped(c, just_arrived, s);
+  ReportStopped(c, just_arrived, s);
   if (just_arrived || IsHeldStopped(s)) return;
   s.active = Request{};
   StartNext(c, 0, s);
@@ -358,7 +358,7 @@ void StartNext(const Context& c, double late_s, State& s, bool committed) noexce
   const bool homes_on = s.plc == PlcState::kHoming && s.buffered > 0 && Homes(s.buffer[0].kind);
   if (AtRest(s) && IsLegal(s.plc, PlcState::kStandstill) && !homes_on) EnterRest(s);
   const bool seamless = s.motion.profile.end().velocity != 0 && late_s > 0;
-  PlanningContext around = SurroundingsOf(c, s);
+  PlanningContext around = BasePlanningContext(c, s);
   around.committed = committed;
   while (s.buffered > 0) {
     if (s.superimposed && !Carries(s.buffer[0])) return;
@@ -408,7 +408,7 @@ namespace {
 
 void ReplanPositioning(const Context& c, State& s) {
   if (!s.active.positions() || HasPassed(s) || (s.motion.arrived && !s.motion.held)) return;
-  PlanningContext around = SurroundingsOf(c, s);
+  PlanningContext around = BasePlanningContext(c, s);
   around.again = true;
   around.passes = s.motion.profile.end().velocity != 0;
   Plan plan;
@@ -436,7 +436,7 @@ void PlanAgain(const Context& c, State& s) noexcept {
     status = PlanJog(c, held, s, plan);
   } else if (s.active.kind == RequestKind::kMoveVelocity || HasPassed(s)) {
     const Request velocity = HasPassed(s) ? Onward(s) : s.active;
-    PlanningContext around = SurroundingsOf(c, s);
+    PlanningContext around = BasePlanningContext(c, s);
     around.again = true;
     status = PlanRequest(c.params, around, c.planner, s.setpoint, velocity, {}, plan);
   } else {
@@ -525,7 +525,7 @@ Status PlanJog(const Context& c, const Request& jog, const State& s, Plan& plan)
   Request move = jog;
   move.kind = RequestKind::kMoveVelocity;
   move.direction = jog.forward ? Direction::kPositive : Direction::kNegative;
-  return PlanRequest(c.params, SurroundingsOf(c, s), c.planner, s.setpoint, move, {}, plan);
+  return PlanRequest(c.params, BasePlanningContext(c, s), c.planner, s.setpoint, move, {}, plan);
 }
 
 }  // namespace takt::axis

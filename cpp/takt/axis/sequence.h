@@ -32,9 +32,9 @@ void ReportEnd(const Context& c, Ticket ticket, FeedbackState feedback, ErrorId 
 // Changes the state, and counts illegal transitions.
 void Enter(State& s, PlcState to) noexcept;
 // Returns the input for planning a motion that continues beneath a superimposed one.
-PlanningContext SurroundingsOf(const Context& c, const State& s) noexcept;
+PlanningContext BasePlanningContext(const Context& c, const State& s) noexcept;
 // Returns the input for planning a motion that takes over from both.
-PlanningContext SurroundingsOfBoth(const Context& c, const State& s) noexcept;
+PlanningContext SumPlanningContext(const Context& c, const State& s) noexcept;
 // Returns the consecutive blending commands behind the one in control.
 std::span<const Request> BlendingQueue(const State& s) noexcept;
 // Returns the time [s] of the motion in progress at this cycle.

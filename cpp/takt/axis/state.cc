@@ -16,11 +16,11 @@ void describe(Description<Motion>& d) {
   d.internal<&M::arrived_cycle>("Since when.");
 }
 
-void describe(Description<Dormant>& d) {
+void describe(Description<DisabledSupervision>& d) {
   d.about("Supervision that was switched off at run time, with the values it comes back with.");
-  d.internal<&Dormant::lower>(unit::u, "SW limit LimNeg.");
-  d.internal<&Dormant::upper>(unit::u, "SW limit LimPos.");
-  d.internal<&Dormant::lag>(unit::u, "Largest following error in motion.");
+  d.internal<&DisabledSupervision::lower>(unit::u, "SW limit LimNeg.");
+  d.internal<&DisabledSupervision::upper>(unit::u, "SW limit LimPos.");
+  d.internal<&DisabledSupervision::lag>(unit::u, "Largest following error in motion.");
 }
 
 void describe(Description<Pulse>& d) {

@@ -69,7 +69,7 @@ struct SkewState {
 };
 
 // Supervision that was switched off at run time and can be switched on again.
-struct Dormant {
+struct DisabledSupervision {
   std::optional<double> lower{}, upper{};  // [u] SW limits
   std::optional<double> lag{};             // [u] largest following error in motion
 };
@@ -166,7 +166,7 @@ struct State {
   FaultRamp fault_ramp;
   TimeTableState time_table;
 
-  Dormant dormant;
+  DisabledSupervision dormant;
   Pulse pulse;
   Ticket reset_ticket = 0;
   std::array<Request, kBufferSize> buffer;                       // [0] is next
@@ -174,7 +174,7 @@ struct State {
   double most_torque = std::numeric_limits<double>::infinity();  // [Nm] of the machine file
   trajectory::Limits system;  // of the machine file; those of the application, in the parameters, do not exceed them
   OverlayState overlay;
-  StopOrders stops;
+  StopRequests stops;
   StreamState stream;
   SkewState skew;
   std::uint32_t fault_of = kNoAxis;  // the follower whose fault stopped this axis
@@ -184,7 +184,7 @@ void describe(Enumeration<Emergency>&);
 void describe(Description<SkewState>&);
 
 void describe(Description<Motion>&);
-void describe(Description<Dormant>&);
+void describe(Description<DisabledSupervision>&);
 void describe(Description<Pulse>&);
 void describe(Description<State>&);
 

@@ -10,10 +10,10 @@ namespace takt::axis {
 
 namespace {
 
-std::span<StopOrder> All(State& s) {
+std::span<StopRequest> All(State& s) {
   return {s.stops.of.data(), s.stops.count};
 }
-std::span<const StopOrder> All(const State& s) {
+std::span<const StopRequest> All(const State& s) {
   return {s.stops.of.data(), s.stops.count};
 }
 
@@ -22,21 +22,21 @@ void Note(const Context& c, const Request& r, bool stands, State& s) {
   Report(c, r.ticket, FeedbackState::kError, ErrorId::kBufferFull);
 }
 
-StopOrder* Find(Ticket ticket, StopOrders& stops) {
+StopRequest* Find(Ticket ticket, StopRequests& stops) {
   const auto end = stops.of.begin() + stops.count;
-  const auto found = std::find_if(stops.of.begin(), end, [&](const StopOrder& o) { return o.ticket == ticket; });
+  const auto found = std::find_if(stops.of.begin(), end, [&](const StopRequest& o) { return o.ticket == ticket; });
   return found == end ? nullptr : &*found;
 }
 
 }  // namespace
 
-const StopOrder* StopOrders::Holder() const noexcept {
-  const auto found = std::find_if(of.begin(), of.begin() + count, [](const StopOrder& o) { return o.hold; });
+const StopRequest* StopRequests::Holder() const noexcept {
+  const auto found = std::find_if(of.begin(), of.begin() + count, [](const StopRequest& o) { return o.hold; });
   return found == of.begin() + count ? nullptr : &*found;
 }
 
-bool StopOrders::Add(const StopOrder& order) noexcept {
-  if (StopOrder* const known = axis::Find(order.ticket, *this)) {  // another component has one at most
+bool StopRequests::Add(const StopRequest& order) noexcept {
+  if (StopRequest* const known = axis::Find(order.ticket, *this)) {  // another component has one at most
     known->hold |= order.hold;
     known->reported &= order.reported;
     return true;
@@ -46,22 +46,22 @@ bool StopOrders::Add(const StopOrder& order) noexcept {
   return true;
 }
 
-bool StopOrders::LetGo(Ticket ticket) noexcept {
-  StopOrder* const order = axis::Find(ticket, *this);
+bool StopRequests::LetGo(Ticket ticket) noexcept {
+  StopRequest* const order = axis::Find(ticket, *this);
   if (order == nullptr) return false;
   order->hold = false;
   Tidy();
   return true;
 }
 
-bool StopOrders::Renew(const Cycle& cycle, Ticket ticket) noexcept {
-  StopOrder* const order = axis::Find(ticket, *this);
+bool StopRequests::Renew(const Cycle& cycle, Ticket ticket) noexcept {
+  StopRequest* const order = axis::Find(ticket, *this);
   if (order == nullptr || order->lease_s <= 0) return false;
   order->lease_end_cycle = CycleIn(cycle, order->lease_s);
   return true;
 }
 
-bool StopOrders::EndLeases(const Cycle& cycle) noexcept {
+bool StopRequests::EndLeases(const Cycle& cycle) noexcept {
   const bool held = Holder() != nullptr;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (of[i].lease_s > 0 && cycle.count >= of[i].lease_end_cycle) of[i].hold = false;
@@ -70,10 +70,10 @@ bool StopOrders::EndLeases(const Cycle& cycle) noexcept {
   return held && Holder() == nullptr;
 }
 
-void StopOrders::Tidy() noexcept {
+void StopRequests::Tidy() noexcept {
   const auto end = of.begin() + count;
-  const auto kept = std::remove_if(of.begin(), end, [](const StopOrder& o) { return o.reported && !o.hold; });
-  std::fill(kept, end, StopOrder{});
+  const auto kept = std::remove_if(of.begin(), end, [](const StopRequest& o) { return o.reported && !o.hold; });
+  std::fill(kept, end, StopRequest{});
   count = static_cast<std::uint32_t>(kept - of.begin());
 }
 
@@ -82,7 +82,7 @@ bool IsHeldStopped(const State& s) noexcept {
 }
 
 bool HoldsStop(Ticket ticket, const State& s) noexcept {
-  return std::ranges::any_of(All(s), [&](const StopOrder& o) { return o.ticket == ticket && o.hold; });
+  return std::ranges::any_of(All(s), [&](const StopRequest& o) { return o.ticket == ticket && o.hold; });
 }
 
 void BeginStop(const Context& c, const Request& r, State& s) noexcept {
@@ -107,8 +107,8 @@ void StopAtOnce(const Context& c, const Request& r, State& s) noexcept {
   if (r.hold) Note(c, r, true, s);
 }
 
-void TellStopped(const Context& c, bool just_arrived, State& s) noexcept {
-  for (StopOrder& order : All(s)) {
+void ReportStopped(const Context& c, bool just_arrived, State& s) noexcept {
+  for (StopRequest& order : All(s)) {
     if (order.reported || (just_arrived && !order.hold)) continue;
     Report(c, order.ticket, FeedbackState::kDone);
     order.reported = true;
@@ -117,7 +117,7 @@ void TellStopped(const Context& c, bool just_arrived, State& s) noexcept {
 }
 
 void EndStops(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept {
-  for (StopOrder& order : All(s)) {
+  for (StopRequest& order : All(s)) {
     if (!order.reported) ReportEnd(c, order.ticket, feedback, error, s);
     order.reported = true;
   }
@@ -128,7 +128,7 @@ void FollowStops(const Context& c, State& s) noexcept {
   const bool lost = s.stops.EndLeases(c.cycle);
   // Without a release buffered motions must not begin, except another stop.
   if (lost && s.buffered > 0 && s.buffer[0].kind != RequestKind::kStop) AbortBuffer(c, s);
-  const StopOrder* const holder = s.stops.Holder();
+  const StopRequest* const holder = s.stops.Holder();
   const bool free = s.plc == PlcState::kStandstill && s.active.kind == RequestKind::kNone && !s.superimposed;
   if (holder == nullptr || !free) return;
   s.active = Request{};
@@ -138,8 +138,8 @@ void FollowStops(const Context& c, State& s) noexcept {
   Enter(s, PlcState::kStopping);
 }
 
-void describe(Description<StopOrder>& d) {
-  using O = StopOrder;
+void describe(Description<StopRequest>& d) {
+  using O = StopRequest;
   d.about("A command that stops the axis.");
   d.internal<&O::ticket>("Of the command.");
   d.internal<&O::lease_s>(unit::s, "How long it holds after it was renewed; 0: until released.");
@@ -148,8 +148,8 @@ void describe(Description<StopOrder>& d) {
   d.internal<&O::reported>("Its final feedback is out.");
 }
 
-void describe(Description<StopOrders>& d) {
-  using O = StopOrders;
+void describe(Description<StopRequests>& d) {
+  using O = StopRequests;
   d.about("Commands that stop the axis.");
   d.internal<&O::of>("The oldest first.");
   d.internal<&O::count>("How many.");

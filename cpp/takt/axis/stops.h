@@ -20,7 +20,7 @@ struct State;
 //   faults, resets and emergency stops do not end a hold; its release or the end of its lease does.
 // - The axis brakes on the ramp with the shortest time to rest; all stops are done at standstill.
 // - A stop that is reported and not held is removed. While one is not reported a stop is in control.
-struct StopOrder {
+struct StopRequest {
   Ticket ticket = 0;  // 0: of another component
   double lease_s = 0;
   std::uint64_t lease_end_cycle = 0;
@@ -29,15 +29,15 @@ struct StopOrder {
 };
 
 // The stops of an axis, or of a group of axes.
-struct StopOrders {
+struct StopRequests {
   static constexpr std::size_t kMost = 8;
-  std::array<StopOrder, kMost> of{};
+  std::array<StopRequest, kMost> of{};
   std::uint32_t count = 0;
 
   // Returns the oldest stop that is held; null if there is none.
-  const StopOrder* Holder() const noexcept;
+  const StopRequest* Holder() const noexcept;
   // Adds a stop, or joins it to one with the same ticket. Returns false if there is no room.
-  bool Add(const StopOrder& order) noexcept;
+  bool Add(const StopRequest& order) noexcept;
   // Ends a hold. Returns false if there is no stop with this ticket.
   bool LetGo(Ticket ticket) noexcept;
   // Extends a lease. Returns false if there is no stop with a lease and this ticket.
@@ -61,14 +61,14 @@ void JoinStop(const Context& c, const Request& request, State& s) noexcept;
 // the loop open. Buffered commands are aborted; the stop is done at once.
 void StopAtOnce(const Context& c, const Request& request, State& s) noexcept;
 // Handles an axis at rest: held stops are reported as done, the others one cycle later, so that Stopping is visible.
-void TellStopped(const Context& c, bool just_arrived, State& s) noexcept;
+void ReportStopped(const Context& c, bool just_arrived, State& s) noexcept;
 // Ends the stop in control before the axis is at rest; holds stay.
 void EndStops(const Context& c, FeedbackState feedback, ErrorId error, State& s) noexcept;
 // Ends expired leases, and enters Stopping again if the axis is held and has reached Standstill (powered or reset
 // since).
 void FollowStops(const Context& c, State& s) noexcept;
 
-void describe(Description<StopOrder>&);
-void describe(Description<StopOrders>&);
+void describe(Description<StopRequest>&);
+void describe(Description<StopRequests>&);
 
 }  // namespace takt::axis

@@ -14,8 +14,9 @@
 //   }
 //
 // A described struct is an aggregate whose members are bool, integers, double, std::string, Name, described enums and
-// structs, or std::array, std::vector, InlineVector, std::optional of these. Texts are literals: the tables keep views
-// of them.
+// structs, or std::array, std::vector, InlineVector, std::optional of these; of state (internal members) also
+// std::variant. Texts are literals: the tables keep views of them. A wrong description (a member twice, a rule before
+// its member) aborts the process at its first use.
 #pragma once
 
 #include <array>
@@ -80,7 +81,7 @@ struct Rule {
   bool (*holds)(const void* object) = nullptr;
 };
 
-// A piece of an object for the hash: bytes without padding, or (`type` set) a value stored elsewhere.
+// A piece of an object for the hash: bytes without padding, or (`type` set) a value that is hashed through its type.
 struct HashStep {
   std::size_t offset = 0;
   std::size_t bytes = 0;
@@ -172,7 +173,7 @@ class Description {
     type_.about = text;
     type_.arity = internal::Arity<T>();
   }
-  // Name of a template; other structs have their own name.
+  // Overrides the name: for templates, and where two structs have the same name in different namespaces.
   void named(std::string_view name) { type_.name = name; }
   template <auto Member, typename... Details>
   void required(Details... details) {
@@ -186,7 +187,8 @@ class Description {
   void internal(Details... details) {
     Add<Member>(Presence::kInternal, details...);
   }
-  // `holds` is a lambda without captures over const T&; called only when all fields of the struct were read well.
+  // A condition on several members, reported at `Member`, which is described before. `holds` is a lambda without
+  // captures over const T&; readers call it once all members are valid, InRange does not.
   template <auto Member, typename Holds>
   void rule(std::string_view text, Holds) {
     internal::AddRule(type_, internal::MemberName<Member>(), text,

@@ -408,10 +408,11 @@ std::string_view PhraseOf(std::string_view target_kind) {
 }
 
 // Returns what is wrong with a list of cam switches for this axis. An unknown list is found in the cycle.
-std::string CannotSwitch(const Machine& machine, const axis::DigitalCamSwitch& command, const axis::AxisParams& axis) {
+std::string DiagnoseCamSwitches(const Machine& machine, const axis::DigitalCamSwitch& command,
+                                const axis::AxisParams& axis) {
   for (const axis::CamSwitches& list : machine.cam_switches) {
     if (list.name != command.switches.view()) continue;
-    std::string why = axis::CannotSwitch(list, axis);
+    std::string why = axis::DiagnoseCamSwitches(list, axis);
     return why.empty() ? why : "switches: " + Quoted(list.name) + ": " + why;
   }
   return {};
@@ -420,7 +421,7 @@ std::string CannotSwitch(const Machine& machine, const axis::DigitalCamSwitch& c
 std::string Diagnose(const Machine& machine, const axis::Command& command, const axis::AxisParams& axis) {
   std::string why = axis::Diagnose(command, axis);
   const auto* switches = std::get_if<axis::DigitalCamSwitch>(&command);
-  return why.empty() && switches ? CannotSwitch(machine, *switches, axis) : why;
+  return why.empty() && switches ? DiagnoseCamSwitches(machine, *switches, axis) : why;
 }
 
 template <typename T>
@@ -605,7 +606,7 @@ std::string Diagnose(const Machine& machine, const pickplace::Command& command, 
   const std::size_t count = module->belts.size();
   const auto named = [](const char* field, const std::string& why) { return why.empty() ? why : field + (": " + why); };
   const auto belt = [&](const char* field, const std::optional<std::uint32_t>& number, std::string_view none) {
-    return number ? named(field, pickplace::WhyNotBelt(*number, count, none)) : std::string();
+    return number ? named(field, pickplace::DiagnoseBelt(*number, count, none)) : std::string();
   };
   if (const auto* control = std::get_if<pickplace::Control>(&command)) {
     return belt("set_target", control->set_target, pickplace::kStaticTarget);
@@ -614,7 +615,7 @@ std::string Diagnose(const Machine& machine, const pickplace::Command& command, 
     std::string why = belt("pick_belt", configure->pick_belt, pickplace::kStaticTarget);
     if (why.empty()) why = belt("place_belt", configure->place_belt, pickplace::kStaticTarget);
     if (why.empty() && configure->tracking_mode) {
-      why = named("tracking_mode", pickplace::WhyNotMode(*configure->tracking_mode, count));
+      why = named("tracking_mode", pickplace::DiagnoseMode(*configure->tracking_mode, count));
     }
     return why;
   }
@@ -629,8 +630,8 @@ std::string Diagnose(const Machine& machine, const pickplace::Command& command, 
   range.upper_limit = *configure->upper_limit;
   range.leave = configure->leave.value_or(0);
   if (found == machine.belts.end() || !pickplace::RangeFits(range)) return {};
-  why = named("lower_limit", pickplace::WhyNotRange(range, *found));
-  return why.empty() ? named("leave", pickplace::WhyNotLeave(range, *found)) : why;
+  why = named("lower_limit", pickplace::DiagnoseRange(range, *found));
+  return why.empty() ? named("leave", pickplace::DiagnoseLeave(range, *found)) : why;
 }
 
 // Returns why this component cannot carry out the command, as far as the machine file tells; empty if it can.

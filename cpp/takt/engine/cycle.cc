@@ -148,7 +148,7 @@ void UseTracks(World& w) {
   planar::AdvanceTracks(w.grounds);
 }
 
-mover::Everyone AllMovers(World& w) {
+mover::RoutedMovers AllMovers(World& w) {
   const auto context = [](void* owner, std::size_t i) noexcept { return MoverContext(*static_cast<World*>(owner), i); };
   return {&w, context, w.mover_states, w.routes};
 }

@@ -268,7 +268,7 @@ struct Engine::Impl {
     const auto repeat = static_cast<std::uint64_t>(1 / machine.cycle.period_s);  // 1 s
     for (std::uint32_t i = 0; i < movers.divisors.size(); ++i) {
       if (movers.divisors[i] == 0 || world.cycle.count % movers.divisors[i] != 0) continue;
-      const planar::Route trail = planar::TrailOf(world.streets.riders[i]);
+      const planar::Route trail = planar::RemainingTracks(world.streets.riders[i]);
       Said& said = trails[i];
       if (trail == said.trail && (trail.count == 0 || world.cycle.count - said.cycle < repeat)) continue;
       if (mover_trails.TryPush({world.cycle.count, i, trail})) {
@@ -440,7 +440,7 @@ void Engine::MakePlans() {
   for (std::size_t i = 0; i < impl_->world.look_aheads.size(); ++i) {
     if (const auto number = impl_->world.look_aheads[i].timing.MakePlan()) {
       const bool told = impl_->GiveAnswer(i, group::Command(group::PathPlanned{*number}));
-      if (!told) impl_->world.look_aheads[i].timing.MakeAgain();
+      if (!told) impl_->world.look_aheads[i].timing.RepeatPlan();
     }
   }
 }
@@ -627,7 +627,7 @@ RouteSnapshot Engine::mover_route(std::size_t mover) const noexcept {
   return impl_->RouteOf(static_cast<std::uint32_t>(mover));
 }
 planar::Route Engine::mover_trail(std::size_t mover) const noexcept {
-  return planar::TrailOf(impl_->world.streets.riders[mover]);
+  return planar::RemainingTracks(impl_->world.streets.riders[mover]);
 }
 SpscQueue<cam::CamPiece>& Engine::cam_pieces() noexcept {
   return impl_->world.cams.pieces;

@@ -83,7 +83,7 @@ class Engine {
   const pickplace::Outputs& pick_place_outputs(std::size_t module) const noexcept;
   const mover::Outputs& mover_outputs(std::size_t mover) const noexcept;
   const mover::State& mover_state(std::size_t mover) const noexcept;
-  // Returns the tracks that a mover has yet to travel (planar::TrailOf).
+  // Returns the tracks that a mover has yet to travel (planar::RemainingTracks).
   planar::Route mover_trail(std::size_t mover) const noexcept;
   // Returns the positions that a mover visits on its route over the free surface.
   RouteSnapshot mover_route(std::size_t mover) const noexcept;

@@ -280,14 +280,15 @@ class CrossCheck {
         CheckReference(place + ".belt", module.belts[k].belt, used, belts, "belt");
         const auto belt = std::ranges::find(machine_.belts, module.belts[k].belt, &conveyor::BeltParams::name);
         if (belt == machine_.belts.end()) continue;
-        AddIf(place + ".settings.lower_limit", pickplace::WhyNotRange(module.belts[k].settings, *belt));
-        AddIf(place + ".settings.leave", pickplace::WhyNotLeave(module.belts[k].settings, *belt));
+        AddIf(place + ".settings.lower_limit", pickplace::DiagnoseRange(module.belts[k].settings, *belt));
+        AddIf(place + ".settings.leave", pickplace::DiagnoseLeave(module.belts[k].settings, *belt));
       }
       const pickplace::Settings& settings = module.settings;
       const std::size_t count = module.belts.size();
-      AddIf(path + ".settings.tracking_mode", pickplace::WhyNotMode(settings.tracking_mode, count));
-      AddIf(path + ".settings.pick_belt", pickplace::WhyNotBelt(settings.pick_belt, count, pickplace::kStaticTarget));
-      AddIf(path + ".settings.place_belt", pickplace::WhyNotBelt(settings.place_belt, count, pickplace::kStaticTarget));
+      AddIf(path + ".settings.tracking_mode", pickplace::DiagnoseMode(settings.tracking_mode, count));
+      AddIf(path + ".settings.pick_belt", pickplace::DiagnoseBelt(settings.pick_belt, count, pickplace::kStaticTarget));
+      AddIf(path + ".settings.place_belt",
+            pickplace::DiagnoseBelt(settings.place_belt, count, pickplace::kStaticTarget));
       for (const group::GroupParams& group : machine_.groups) {
         if (group.name != module.group) continue;
         const std::vector<std::string_view> members(group.axes.begin(), group.axes.end());
@@ -377,7 +378,7 @@ class CrossCheck {
       CheckUnique("environments", i, environment.name);
       if (environment.stators.empty()) continue;
       planar::Environment surface;
-      const planar::Surfacing surfacing = planar::MakeEnvironment(environment.stators, surface);
+      const planar::SurfaceResult surfacing = planar::MakeEnvironment(environment.stators, surface);
       if (surfacing.problem == planar::StatorProblem::kNone) continue;
       std::string path = "environments[" + std::to_string(i) + "].stators";
       if (surfacing.stator < environment.stators.size()) path += "[" + std::to_string(surfacing.stator) + "]";
@@ -412,10 +413,10 @@ class CrossCheck {
   void CheckCamSwitches() {
     for (std::size_t i = 0; i < machine_.cam_switches.size(); ++i) {
       const axis::CamSwitches& list = machine_.cam_switches[i];
-      const auto cannot = [&](const axis::AxisParams& axis) { return !axis::CannotSwitch(list, axis).empty(); };
+      const auto cannot = [&](const axis::AxisParams& axis) { return !axis::DiagnoseCamSwitches(list, axis).empty(); };
       if (machine_.axes.empty() || !std::ranges::all_of(machine_.axes, cannot)) continue;
       Add("cam_switches[" + std::to_string(i) + "].switches",
-          "no axis can have this list: " + axis::CannotSwitch(list, machine_.axes.front()));
+          "no axis can have this list: " + axis::DiagnoseCamSwitches(list, machine_.axes.front()));
     }
   }
 

@@ -96,11 +96,11 @@ class Checker {
     }
     planar::Environment shape;
     const std::vector<planar::Place> stators = part::StatorsOf(part);
-    const planar::Surfacing made = planar::MakeEnvironment(stators, shape);
+    const planar::SurfaceResult made = planar::MakeEnvironment(stators, shape);
     if (made.problem != planar::StatorProblem::kNone) {
       const bool one = made.stator < part.stators.size();
       Add(path + (one ? At(".stators", made.stator) : ".stators"), std::string(planar::Text(made.problem)));
-    } else if (!planar::HangTogether(stators)) {
+    } else if (!planar::AreConnected(stators)) {
       Add(path + ".stators", "expected stators that hang together, each beside another one");
     }
   }

@@ -26,7 +26,7 @@ void Order::Close() noexcept {
 }
 
 // The path leads from followers to masters, and reaches `again` a second time.
-void Order::NoteLoop(std::uint32_t again) noexcept {
+void Order::RecordCycle(std::uint32_t again) noexcept {
   while (depth_ > 0) {
     const std::uint32_t member = path_[--depth_].component;
     loop_[loop_size_++] = member;

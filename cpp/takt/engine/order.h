@@ -31,7 +31,7 @@ class Order {
         if (!master) {
           Close();
         } else if (marks_[*master] == Mark::kOpen) {
-          NoteLoop(*master);
+          RecordCycle(*master);
           return false;
         } else if (marks_[*master] == Mark::kNew) {
           Open(*master);
@@ -56,7 +56,7 @@ class Order {
   void Begin() noexcept;
   void Open(std::uint32_t component) noexcept;
   void Close() noexcept;
-  void NoteLoop(std::uint32_t again) noexcept;
+  void RecordCycle(std::uint32_t again) noexcept;
 
   std::vector<Mark> marks_;
   std::vector<Visit> path_;  // from the root of the search to the current component

@@ -14,14 +14,14 @@ namespace takt::engine {
 
 namespace {
 
-using part::Hindrance;
+using part::MoveBlocker;
 using planar::ObjectState;
 
 part::Context ContextOfPart(World& w, std::size_t i) {
   return {w.parts[i], w.cycle, w.feedback};
 }
 
-Hindrance By(ErrorId error, ObjectKind kind, std::size_t index) {
+MoveBlocker By(ErrorId error, ObjectKind kind, std::size_t index) {
   return {error, ObjectAt(kind, index)};
 }
 
@@ -125,8 +125,8 @@ bool AreTooNear(const World& w, const planar::Rider& one, const planar::Rider& o
 
 // Returns the object of a mover's group that the mover would collide with at its part's new position: of all objects
 // that do not move along, and that movers on tracks do not avoid by themselves.
-Hindrance InGroup(const World& w, std::size_t mover, std::uint32_t part, const planar::Spot& from,
-                  const planar::Spot& to) {
+MoveBlocker InGroup(const World& w, std::size_t mover, std::uint32_t part, const planar::Spot& from,
+                    const planar::Spot& to) {
   const planar::GroupRegistry& g = w.grounds;
   const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
   if (group == 0) return {};
@@ -157,12 +157,12 @@ Hindrance InGroup(const World& w, std::size_t mover, std::uint32_t part, const p
 }
 
 // Returns the object that would be too close to a mover that the part carries, at the new position.
-Hindrance TooNear(World& w, std::uint32_t part, std::uint32_t position) {
+MoveBlocker TooNear(World& w, std::uint32_t part, std::uint32_t position) {
   const planar::PartNow before = w.surface.now[part];
   const planar::Spot from = w.surface.spot(part), to = w.surface.all[part].positions[position];
   w.surface.now[part].commanded = position;
   track::MakeNodes(w.tracks);
-  Hindrance found;
+  MoveBlocker found;
   for (std::size_t i = 0; i < w.movers.size() && found.error == ErrorId::kNone; ++i) {
     if (w.mover_states[i].part == part) found = InGroup(w, i, part, from, to);
     if (!IsOnTrackOf(w, i, part) || found.error != ErrorId::kNone) continue;
@@ -212,7 +212,7 @@ bool ComesUnder(const World& w, std::size_t mover, const planar::Part& shape, co
   return now.comes && planar::Touches(shape, to, now.goal.system, planar::AreaThere(now));
 }
 
-Hindrance HindranceOf(World& w, std::uint32_t part, std::uint32_t position) {
+MoveBlocker HindranceOf(World& w, std::uint32_t part, std::uint32_t position) {
   const planar::Part& shape = w.surface.all[part];
   const planar::Spot& from = w.surface.spot(part);
   const planar::Spot& to = shape.positions[position];
@@ -246,7 +246,7 @@ Hindrance HindranceOf(World& w, std::uint32_t part, std::uint32_t position) {
     if (near != planar::kNobody) return By(ErrorId::kPartMover, ObjectKind::kMover, near);
     for (const planar::Area& area : cover.all()) {
       const planar::Area there = Shifted(area, to.origin - from.origin);
-      const ObjectInfo comes = planar::WhoComes(static_cast<std::uint32_t>(i), to.system, there, w.grounds);
+      const ObjectInfo comes = planar::MoverArrivingAt(static_cast<std::uint32_t>(i), to.system, there, w.grounds);
       if (comes) return {ErrorId::kPartMover, comes};
       const planar::Extent extent = planar::ExtentOf(there);
       for (std::size_t k = 0; k < w.movers.size(); ++k) {
@@ -283,7 +283,7 @@ part::Around AroundOf(World& w, std::uint32_t part) {
 }  // namespace
 
 void ApplyToPart(World& w, std::size_t i, Ticket ticket, const part::Command& command) noexcept {
-  Hindrance hindrance;
+  MoveBlocker hindrance;
   const auto* goes = std::get_if<part::ActivatePosition>(&command);
   if (goes && goes->index >= 1 && goes->index <= w.parts[i].positions.size()) {
     hindrance = HindranceOf(w, static_cast<std::uint32_t>(i), goes->index - 1);

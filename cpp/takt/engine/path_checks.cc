@@ -61,12 +61,12 @@ std::string CamSentence(double value) {
 }
 
 std::string_view NoWaySentence(double value) {
-  switch (static_cast<planar::NoWay>(value)) {
-    case planar::NoWay::kDirection:
+  switch (static_cast<planar::UnreachableReason>(value)) {
+    case planar::UnreachableReason::kDirection:
       return "the direction does not lead to the target from where the mover can stop";
-    case planar::NoWay::kTooLong:
+    case planar::UnreachableReason::kTooLong:
       return "the way has more than 256 tracks";
-    case planar::NoWay::kPartAway:
+    case planar::UnreachableReason::kPartAway:
       return "the way leads over a part that is elsewhere";
     default:
       return ErrorText(ErrorId::kNoRoute);

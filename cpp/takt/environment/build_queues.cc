@@ -22,7 +22,7 @@ std::optional<BuiltBoundary> Make(BuildQueues& desk) {
   BuildRequest question;
   if (!desk.questions.TryPop(question)) return std::nullopt;
   auto surface = std::make_unique<planar::Environment>();
-  const planar::Surfacing surfacing = planar::MakeEnvironment(*question.stators, *surface);
+  const planar::SurfaceResult surfacing = planar::MakeEnvironment(*question.stators, *surface);
   BuiltBoundary answer{question.environment, {question.number, surfacing.problem, 0}};
   if (surfacing.problem != planar::StatorProblem::kNone) {
     if (surfacing.problem != planar::StatorProblem::kEmpty) {

@@ -365,11 +365,11 @@ void EndCurve(const ClutchContext& c, const Way& way, ClutchState& s) {
   if (std::abs(left.position) < kTiny * size && std::abs(left.velocity) < kTiny * (1 + std::abs(now.velocity))) return;
   s.phase = ClutchPhase::kClosing;
   s.mode = ClutchMode::kRampVelAcc;
-  BeginShift(c, trajectory::AlongWay(left, c.master), 0, s);
+  BeginShift(c, trajectory::ComposeWithMaster(left, c.master), 0, s);
 }
 
 KinematicState OnCurve(const ClutchContext& c, const ClutchState& s) {
-  return trajectory::AlongWay(OverMaster(Top(s), c.master.position), c.master);
+  return trajectory::ComposeWithMaster(OverMaster(Top(s), c.master.position), c.master);
 }
 
 KinematicState Closing(const ClutchContext& c, const KinematicState& wanted, const Way& way, ClutchState& s) {

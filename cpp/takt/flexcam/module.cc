@@ -384,7 +384,7 @@ void InSync(const Context& c, axis::State& slave, State& s) {
   slave.guidance.demand = demand;
   slave.fault_ramp.leaves_limits = LeavesLimits(c, slave, s);
   if (s.clutch.phase == ClutchPhase::kOpen) {
-    axis::LetGoOfGuidance(c.slave, slave);
+    axis::EndGuidance(c.slave, slave);
     if (s.action == Action::kSyncOut) EndAction(c, FeedbackState::kDone, ErrorId::kNone, s);
     Abandon(c, s);
     Enter(c, ModuleState::kReady, s);
@@ -426,7 +426,7 @@ void ReadyOrService(const Context& c, const axis::State& slave, State& s) {
 void Disable(const Context& c, axis::State& slave, State& s) {
   Refuse(c, ErrorId::kState, s);
   if (s.state == ModuleState::kInit) return;
-  axis::LetGoOfGuidance(c.slave, slave);
+  axis::EndGuidance(c.slave, slave);
   if (s.state == ModuleState::kJogPos || s.state == ModuleState::kJogNeg) {
     slave.active.forward = slave.active.backward = false;
   }

@@ -88,7 +88,7 @@ struct Applier {
     if (waits && (s.task == Task::kHalt || Jogs(s) || Streams(s))) return Refuse(ErrorId::kState);
     const std::uint32_t carrier = made.move.system == CoordinateSystem::kPcs ? s.cargoes[made.move.pcs].carrier : 0;
     // While boarding a carrier, the tool turns back for a move that leads elsewhere.
-    if (!waits) AbortAll({}, TurnsBack(c, s, carrier));
+    if (!waits) AbortAll({}, ShouldAbortBoarding(c, s, carrier));
     if (!c.ahead.known && !s.begun) c.ahead.window.SetLimits(LimitsOf(c, s));
     Request move = made.move;
     move.ticket = ticket;
@@ -134,7 +134,7 @@ struct Applier {
     if (SwitchingOff()) return Refuse(ErrorId::kAxisStopping);
     EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
     AbortAll({m.deceleration.value_or(0), m.jerk.value_or(0)});
-    if (Is(GroupState::kHoming)) TellAll(c, s, axis::Stop{});
+    if (Is(GroupState::kHoming)) CommandAll(c, s, axis::Stop{});
     // A drive may home before it is ready: its member is not on the path and stops individually.
     for (std::size_t k = 0; k < kMaxAxes; ++k) {
       const bool gets_ready = s.members[k] != 0 && MemberOf(c, s, k).enable && !MemberOf(c, s, k).loop_closed;
@@ -160,7 +160,7 @@ struct Applier {
     if (Is(GroupState::kStandby)) Enter(GroupState::kMoving, s);
   }
   void operator()(const Interrupt& m) const {
-    if (!Is(GroupState::kMoving) || s.ends || Streams(s) || RidesFreely(c, s)) return Refuse(ErrorId::kState);
+    if (!Is(GroupState::kMoving) || s.ends || Streams(s) || IsOnFreeCarrier(c, s)) return Refuse(ErrorId::kState);
     AbortTask();
     s.interrupted = s.lets_go = true;
     for (Clutch& clutch : s.clutches) clutch.law_length = 0;
@@ -212,9 +212,9 @@ struct Applier {
   void LeaveAll() const {
     EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
     AbortAll();
-    if (s.state == GroupState::kHoming) TellAll(c, s, axis::Stop{});
-    LetGoOfMembers(c, s);
-    LetGoOfSynced(c, FeedbackState::kDone, s);
+    if (s.state == GroupState::kHoming) CommandAll(c, s, axis::Stop{});
+    ReleaseMembers(c, s);
+    ReleaseSynced(c, FeedbackState::kDone, s);
     ForgetPlan(c, s);
     s.begun = s.ends = s.lets_go = false;
     s.active = 0;
@@ -257,7 +257,7 @@ struct Applier {
     AbortTask();
     if (!m.enable) EndTracking(c, FeedbackState::kAborted, ErrorId::kNone, s);
     if (!m.enable && Is(GroupState::kStopping)) Enter(GroupState::kStandby, s);
-    const ErrorId error = m.enable ? TellAll(c, s, axis::Power{}) : SwitchOffAll(c, s);
+    const ErrorId error = m.enable ? CommandAll(c, s, axis::Power{}) : SwitchOffAll(c, s);
     if (error != ErrorId::kNone) return Refuse(error);
     s.task = Task::kPower;
     s.power_on = m.enable;
@@ -267,7 +267,7 @@ struct Applier {
   void operator()(const Home&) const {
     if (!Is(GroupState::kStandby)) return Refuse(Is(GroupState::kDisabled) ? ErrorId::kGroupDisabled : ErrorId::kState);
     if (s.holds.Holder() != nullptr) return Refuse(ErrorId::kAxisStopping);
-    const ErrorId error = TellAll(c, s, axis::Home{});
+    const ErrorId error = CommandAll(c, s, axis::Home{});
     if (error != ErrorId::kNone) {
       // Members that have begun stop; until then the group is homing.
       for (std::size_t k = 0; k < kMaxAxes; ++k) {

@@ -70,7 +70,7 @@ bool BeginsOnCarrier(const Context& c) noexcept {
   return c.ahead.rides[c.ahead.next.from_ride % kRides].displaces;
 }
 
-bool CanAsk(const Context& c, const State& s) noexcept {
+bool CanBeChecked(const Context& c, const State& s) noexcept {
   if (!HasWorkspace(c, s)) return false;
   const MoveKind kind = MoveAt(s, s.planning.move).kind;
   return !BeginsOnCarrier(c) || kind == MoveKind::kLinear || kind == MoveKind::kDirect || kind == MoveKind::kArch;
@@ -82,7 +82,7 @@ void Ask(const Context& c, State& s) noexcept {
   c.ahead.asked = false;
 }
 
-bool IsAnswered(const Context& c, State& s) noexcept {
+bool HasAnswer(const Context& c, State& s) noexcept {
   // Whether it was sent does not enter the state: in a replay nothing takes requests.
   if (!c.ahead.asked) c.ahead.asked = c.questions->TryPush(QuestionOf(c, s));
   return s.answer.number == s.planning.question;

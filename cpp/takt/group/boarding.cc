@@ -52,7 +52,7 @@ bool MayBoard(const Context& c, const State& s) noexcept {
 
 bool CanBoard(const Context& c, const State& s) noexcept {
   const Stretch& next = c.ahead.next;
-  const bool rests = !s.begun || StandsAtEnd(c, s);
+  const bool rests = !s.begun || IsAtRestAtEnd(c, s);
   return s.planning.move == s.done && rests && next.from_ride != next.to_ride && MayBoard(c, s);
 }
 
@@ -63,7 +63,7 @@ bool Board(const Context& c, State& s) noexcept {
   if (!PlanBoarding(c, s, to, plan) || TakeMembers(c, s) != ErrorId::kNone) return false;
 
   s.boards = MoveAt(s, s.done).ticket;
-  Clutch& clutch = SitDown(c, to.cargo, plan.carrier.position + plan.lead, s);
+  Clutch& clutch = BindAtRest(c, to.cargo, plan.carrier.position + plan.lead, s);
   clutch.apart = {plan.lead, -plan.carrier.velocity, 0};
   clutch.catches_up = clutch.boards = true;
   SetLimits(plan.limits, clutch);
@@ -97,16 +97,16 @@ void CutReserve(const Context& c, const trajectory::PathNode& last, Boarding& bo
   boarding.square = last.own;
 }
 
-double SpeedBesideBoarding(const trajectory::PathPoint& point, const trajectory::CoordinateLimits& limits,
-                           double build_up_s, const Boarding& boarding) noexcept {
+double PathSpeedBound(const trajectory::PathPoint& point, const trajectory::CoordinateLimits& limits, double build_up_s,
+                      const Boarding& boarding) noexcept {
   const double done_s = std::isnan(boarding.earliest_s) ? 0 : boarding.earliest_s;
   const double left_s = std::max(0.0, boarding.apart.duration() - done_s);
   const double a = std::min(trajectory::BoundsAt(point, limits, build_up_s, 1).Most(0),
                             trajectory::AccelerationCapAt(point, {}, limits, 0, build_up_s).At(0));
-  return kReachesFurther * (std::sqrt(boarding.square) + std::max(0.0, a) * left_s);
+  return kReachMargin * (std::sqrt(boarding.square) + std::max(0.0, a) * left_s);
 }
 
-double FindReach(const trajectory::PathNode& last, Boarding& boarding) noexcept {
+double UpdateReach(const trajectory::PathNode& last, Boarding& boarding) noexcept {
   const double left_s = std::max(0.0, boarding.apart.duration() - boarding.earliest_s);
   const double a = MostAcceleration(last, boarding.square), v = std::sqrt(boarding.square);
   const double most = std::max(std::sqrt(last.own), v);
@@ -117,8 +117,8 @@ double FindReach(const trajectory::PathNode& last, Boarding& boarding) noexcept 
   return as_fast ? 0.5 * (last.at.s + boarding.reach) : boarding.reach;
 }
 
-void PassNode(const Context& c, const trajectory::PathNode& last, const trajectory::PathNode& node,
-              Boarding& boarding) noexcept {
+void AdvanceReserve(const Context& c, const trajectory::PathNode& last, const trajectory::PathNode& node,
+                    Boarding& boarding) noexcept {
   const double length = node.at.s - last.at.s;
   const double a = MostAcceleration(last, boarding.square);
   const double v = std::sqrt(boarding.square), most = std::max(std::sqrt(last.own), v);
@@ -129,7 +129,7 @@ void PassNode(const Context& c, const trajectory::PathNode& last, const trajecto
   if (!(boarding.apart.duration() - boarding.earliest_s > c.cycle.period_s)) boarding.reach = node.at.s;
 }
 
-bool TurnsBack(const Context& c, const State& s, std::uint32_t carrier) noexcept {
+bool ShouldAbortBoarding(const Context& c, const State& s, std::uint32_t carrier) noexcept {
   return std::ranges::any_of(s.clutches, [&](const Clutch& clutch) {
     if (!clutch.used || !clutch.boards) return false;
     const CarrierBinding& ride = RideOf(c, clutch.ride);

@@ -13,7 +13,7 @@
 namespace takt::group {
 
 // Margin on path speed and arc length that are estimated from the start of the path.
-inline constexpr double kReachesFurther = 1.2;
+inline constexpr double kReachMargin = 1.2;
 
 // Returns true if the tool may board, from rest, for the move that is planned next: nothing has to be known before it
 // moves (workspace, zones, times of a module's moves), and the carrier is steady. Else the path has a transition
@@ -34,19 +34,19 @@ Boarding* BoardingOn(LookAhead& ahead, const Stretch& stretch) noexcept;
 // from the bounds of the nodes as they are appended. Called at the first node, ...
 void BeginReserve(const Context& c, Boarding& boarding) noexcept;
 // ... with the last node before the next is appended: returns an upper bound of the arc length of the next; ...
-double FindReach(const trajectory::PathNode& last, Boarding& boarding) noexcept;
-// ... with both; ...
-void PassNode(const Context& c, const trajectory::PathNode& last, const trajectory::PathNode& node,
-              Boarding& boarding) noexcept;
+double UpdateReach(const trajectory::PathNode& last, Boarding& boarding) noexcept;
+// ... after it was appended, with both; ...
+void AdvanceReserve(const Context& c, const trajectory::PathNode& last, const trajectory::PathNode& node,
+                    Boarding& boarding) noexcept;
 // ... and when the nodes behind `last` are removed.
 void CutReserve(const Context& c, const trajectory::PathNode& last, Boarding& boarding) noexcept;
 // Returns an upper bound of the path speed until the tool is in sync, estimated from the bounds at a point [mm/s].
-double SpeedBesideBoarding(const trajectory::PathPoint& point, const trajectory::CoordinateLimits& limits,
-                           double build_up_s, const Boarding& boarding) noexcept;
+double PathSpeedBound(const trajectory::PathPoint& point, const trajectory::CoordinateLimits& limits, double build_up_s,
+                      const Boarding& boarding) noexcept;
 
 // Returns true if a tool that boards should come to rest at once for a move onto `carrier` (0: the world): it boards
 // another one and is still in the first half of boarding.
-bool TurnsBack(const Context& c, const State& s, std::uint32_t carrier) noexcept;
+bool ShouldAbortBoarding(const Context& c, const State& s, std::uint32_t carrier) noexcept;
 
 // Ends boarding for a move that cannot be carried out with it: the tool stops, then the move is planned from rest with
 // a transition between carrier bindings.

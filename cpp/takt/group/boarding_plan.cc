@@ -92,7 +92,7 @@ MovingFrame TakenBy(const Context& c, const Start& start, double rest, const Kin
   kinematics::Carrier carrier = CarrierOf(c, start.cargo);
   carrier.travel = travel;
   const MovingFrame place = kinematics::PoseOn(carrier, start.cargo.from, kinematics::ToFrame(start.cargo.lies));
-  return place * (RideAtRest(c, start.cargo, rest).reference_inverse * tool);
+  return place * (BindingAtRest(c, start.cargo, rest).reference_inverse * tool);
 }
 
 MovingFrame TakenBy(const Context& c, const Start& start, double rest, const KinematicState& travel) {
@@ -203,11 +203,11 @@ void EstimateTime(const Context& c, const State& s, const Start& start, Candidat
     // The build-up time is the same all along the path.
     const double build_up_s = full.acceleration / full.jerk;
     first = {left.velocity, std::min(left.acceleration, left.jerk * build_up_s), build_up_s};
-    const double attained = kReachesFurther * first.Speed(boards_s);
+    const double attained = kReachMargin * first.Speed(boards_s);
     speed = round == 0 ? 0.5 * attained : std::sqrt(speed * attained);
   }
   candidate.time_s = std::max(boards_s, EstimatePathTime(length, first, boards_s, full));
-  boarding.reach = kReachesFurther * first.Distance(boards_s);
+  boarding.reach = kReachMargin * first.Distance(boards_s);
 }
 
 // Returns a candidate, estimated with the derivatives at the initial state.

@@ -81,7 +81,7 @@ template <typename Displacement>
 MovingFrame ToolOn(const LookAhead& ahead, const Stretch& stretch, const KinematicState& way,
                    const Displacement& displacement) {
   const MovingFrame place = InTime(path::At(stretch.segment, way.position), way);
-  const KinematicState share = trajectory::AlongWay(ShareAt(ahead, stretch, way.position), way);
+  const KinematicState share = trajectory::ComposeWithMaster(ShareAt(ahead, stretch, way.position), way);
   if (stretch.from_ride == stretch.to_ride || share.position <= 0) return displacement(stretch.from_ride) * place;
   if (share.position >= 1) return displacement(stretch.to_ride) * place;
   return Mix(displacement(stretch.from_ride) * place, displacement(stretch.to_ride) * place, share);
@@ -150,7 +150,7 @@ MovingFrame DisplacementOf(const Context& c, const CarrierBinding& ride, double 
   return Displaced(ride, carrier);
 }
 
-std::uint64_t RideTo(const Context& c, const CarriedTarget& cargo, double arrival_s) noexcept {
+std::uint64_t BindTo(const Context& c, const CarriedTarget& cargo, double arrival_s) noexcept {
   LookAhead& ahead = c.ahead;
   const CarrierBinding& end = RideAt(ahead, ahead.end_ride);
   if (end.cargo == cargo) return ahead.end_ride;
@@ -164,7 +164,7 @@ std::uint64_t RideTo(const Context& c, const CarriedTarget& cargo, double arriva
   return ahead.rides_end;
 }
 
-CarrierBinding RideAtRest(const Context& c, const CarriedTarget& cargo, double travel) noexcept {
+CarrierBinding BindingAtRest(const Context& c, const CarriedTarget& cargo, double travel) noexcept {
   kinematics::Carrier carrier = CarrierOf(c, cargo);
   carrier.travel = {travel, 0, 0};
   CarrierBinding ride;

@@ -27,9 +27,9 @@ MovingFrame PlaceOf(const Context& c, const CarriedTarget& cargo, double ahead_s
 // Returns the number of the binding for a move onto `cargo` (carrier 0: at rest in the MCS): end_ride if that has the
 // same target, else a new one, prepared in slot rides_end and not in use before the move is joined. `arrival_s`: time
 // until the tool is expected there [s].
-std::uint64_t RideTo(const Context& c, const CarriedTarget& cargo, double arrival_s) noexcept;
+std::uint64_t BindTo(const Context& c, const CarriedTarget& cargo, double arrival_s) noexcept;
 // Returns a binding for which the planning frame is the MCS with the carrier at this travel [mm or rad].
-CarrierBinding RideAtRest(const Context& c, const CarriedTarget& cargo, double travel) noexcept;
+CarrierBinding BindingAtRest(const Context& c, const CarriedTarget& cargo, double travel) noexcept;
 // Returns the pose of its object in the planning frame.
 Frame ReferenceOf(const CarrierBinding& ride) noexcept;
 

@@ -71,7 +71,7 @@ bool FollowLaw(const KinematicState& carrier, bool out, Clutch& clutch, Kinemati
   }
   const trajectory::Quintic law =
       trajectory::Connect(clutch.law_length, {0, out ? 1.0 : 0.0, 0}, {clutch.law_way, out ? 0.0 : 1.0, 0});
-  demand = trajectory::AlongWay(law.At(x * clutch.law_length), carrier);
+  demand = trajectory::ComposeWithMaster(law.At(x * clutch.law_length), carrier);
   demand.position += clutch.law_from;
   return true;
 }
@@ -196,7 +196,7 @@ void StepOne(const Context& c, const Stretch& stretch, double way, std::uint64_t
   Clutch* clutch = Find(s, number);
   if (clutch) {
     // At rest apart from the carrier: limits for the motion to it. They stay until the tool is in sync, because
-    // CanLetGo relies on them.
+    // CanRelease relies on them.
     const bool stands = clutch->travel.velocity == 0 && clutch->travel.acceleration == 0;
     if (!s.lets_go && !clutch->coupled && !clutch->boards && stands) {
       const double way_to_go = carrier.travel.position - clutch->travel.position;
@@ -235,13 +235,13 @@ void StepClutches(const Context& c, const Stretch& stretch, State& s) noexcept {
   if (stretch.to_ride != stretch.from_ride) StepOne(c, stretch, way, stretch.to_ride, s);
 }
 
-bool RidesFreely(const Context& c, const State& s) noexcept {
+bool IsOnFreeCarrier(const Context& c, const State& s) noexcept {
   return std::ranges::any_of(s.ridden, [&](std::uint32_t carrier) {
     return carrier != 0 && c.carriers.At(carrier).kind == kinematics::CarrierKind::kFree;
   });
 }
 
-bool Slips(const State& s) noexcept {
+bool IsUncoupled(const State& s) noexcept {
   return std::ranges::any_of(s.clutches, [](const Clutch& k) { return k.used && !k.coupled; });
 }
 
@@ -257,7 +257,7 @@ Status ComeAboard(trajectory::Planner& planner, double velocity, const trajector
   return planner.ToPosition(apart, 0, closing, bounds, out);
 }
 
-bool ClutchesStand(const State& s) noexcept {
+bool ClutchesAtRest(const State& s) noexcept {
   return std::ranges::all_of(s.clutches, [](const Clutch& k) {
     return !k.used || (!k.coupled && k.travel.velocity == 0 && k.travel.acceleration == 0);
   });
@@ -265,7 +265,7 @@ bool ClutchesStand(const State& s) noexcept {
 
 double BrakeShare(const State& s) noexcept {
   const bool carried = std::ranges::any_of(s.clutches, &Clutch::used);
-  const bool both = carried && (s.lets_go || Slips(s)) && !trajectory::Stands(s.pace);
+  const bool both = carried && (s.lets_go || IsUncoupled(s)) && !trajectory::Stands(s.pace);
   return both && !s.ends ? kBothShare : 1;
 }
 
@@ -283,7 +283,7 @@ MovingFrame ToolBraked(const Context& c, const State& s, const Stretch& stretch,
   return ToolWith(c, stretch, {way, 0, 0}, braked);
 }
 
-bool CanLetGo(const Context& c, State& s) noexcept {
+bool CanRelease(const Context& c, State& s) noexcept {
   const double place = RestAt(c, s);
   const LookAhead& ahead = c.ahead;
   const Stretch& stretch = *ahead.At(place);

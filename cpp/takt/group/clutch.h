@@ -15,17 +15,17 @@ namespace takt::group {
 void StepClutches(const Context& c, const Stretch& stretch, State& s) noexcept;
 
 // Returns true if the tool is on a carrier without a travel to be braked (kFree): to release it is to release the axes.
-bool RidesFreely(const Context& c, const State& s) noexcept;
+bool IsOnFreeCarrier(const Context& c, const State& s) noexcept;
 
 // Returns true if a clutch is not coupled: the tool lags behind its carrier, or is ahead of it.
-bool Slips(const State& s) noexcept;
+bool IsUncoupled(const State& s) noexcept;
 // Returns true if the path waits for such a clutch: one that does not board.
 bool WaitsForClutch(const State& s) noexcept;
 // Plans how the tool gets into sync when it boards, in the frame of a carrier at this constant velocity.
 Status ComeAboard(trajectory::Planner& planner, double velocity, const trajectory::Limits& limits,
                   const KinematicState& apart, trajectory::Profile& out) noexcept;
 // Returns true if all clutches in use are released and at rest.
-bool ClutchesStand(const State& s) noexcept;
+bool ClutchesAtRest(const State& s) noexcept;
 
 // Returns the share of the deceleration limits for the path, and for the carriers, while both come to rest at once, so
 // that the tool stays on its path. 1 if the path is not continued afterwards: then axes may lag.
@@ -36,7 +36,7 @@ MovingFrame ToolBraked(const Context& c, const State& s, const Stretch& stretch,
 
 // Returns true if the tool can still be braked within the reach of the axes, path and carriers at once, and the axes
 // can move it there as fast as its carriers move now; sets s.reason if not.
-bool CanLetGo(const Context& c, State& s) noexcept;
+bool CanRelease(const Context& c, State& s) noexcept;
 
 // [s] over which the limits of a coupled clutch are computed ahead.
 inline constexpr double kAhead_s = 0.15;

@@ -32,7 +32,7 @@ void Fail(const Context& c, ErrorId error, State& s) {
   AbortMoves(c, error, s);
   EndMotion(c, {.full = true}, true, s);
   s.weighed = 0;
-  if (s.state == GroupState::kHoming) TellAll(c, s, axis::Stop{});
+  if (s.state == GroupState::kHoming) CommandAll(c, s, axis::Stop{});
   Enter(GroupState::kErrorStop, s);
 }
 
@@ -52,13 +52,13 @@ void ComeToRest(const Context& c, State& s) {
   if (s.task == Task::kStop) {
     if (!s.stop_reported) Report(c, s.ticket, FeedbackState::kDone);
     s.stop_reported = true;
-    if (s.holds.Holder() != nullptr) return LetGoOfMembers(c, s);
+    if (s.holds.Holder() != nullptr) return ReleaseMembers(c, s);
     s.ticket = 0;
     EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
   }
   // Waiting moves continue from here.
   if (s.queue.count > 0 && s.state != GroupState::kErrorStop) return;
-  LetGoOfMembers(c, s);
+  ReleaseMembers(c, s);
   if (s.task == Task::kPower && !s.power_on) SwitchOffAll(c, s);
   if (s.state != GroupState::kErrorStop) Enter(GroupState::kStandby, s);
 }
@@ -72,7 +72,7 @@ void EndCutShort(const Context& c, State& s) {
 }
 
 bool IsThrough(const Context& c, const State& s) {
-  return StandsAtEnd(c, s) && IsPlanned(c, s);
+  return IsAtRestAtEnd(c, s) && IsPlanned(c, s);
 }
 
 bool HasStopped(const axis::State& member) {
@@ -95,7 +95,7 @@ bool LeadsToBoarding(const Context& c, const State& s) {
 
 // Each member brakes individually, off the path.
 void BrakeEachAlone(const Context& c, State& s) {
-  LetGoOfMembers(c, s);
+  ReleaseMembers(c, s);
   s.begun = false;
   s.rise = {};
 }
@@ -108,32 +108,32 @@ void MoveOn(const Context& c, State& s) {
     return Fail(c, s.refused.any() ? RefusalOf(c, s) : ErrorId::kUnreachable, s);
   }
   if (!Rests(s)) return;
-  const bool rides = !s.lets_go && IsOnRide(c, s);
+  const bool rides = !s.lets_go && IsOnCarrier(c, s);
   if (s.ends && rides) {
     // Between two carrier bindings no path could be continued.
-    if (IsBetweenRides(c, s))
+    if (IsInTransition(c, s))
       s.lets_go = true;
     else
-      Sit(c, s);
+      RestOnBinding(c, s);
     return;
   }
-  if (s.ends && RidesFreely(c, s)) return BrakeEachAlone(c, s);
+  if (s.ends && IsOnFreeCarrier(c, s)) return BrakeEachAlone(c, s);
   // The members reach the last set point after this.
-  if (rides ? !AreInStep(c, s) : !AllMembers(c, s, axis::AtRest)) return;
+  if (rides ? !AreAtDemand(c, s) : !AllMembers(c, s, axis::AtRest)) return;
   if (s.ends) return ComeToRest(c, s);
   if (s.interrupted) {
     if (s.task == Task::kInterrupt) EndTask(c, FeedbackState::kDone, ErrorId::kNone, s);
     return;
   }
   // Before a zone, an object or a carrier to be boarded that the next move waits for, all moves up to there are done.
-  const bool for_object = LeadsToTracking(s) && StandsAtEnd(c, s);
+  const bool for_object = LeadsToTracking(s) && IsAtRestAtEnd(c, s);
   const bool waits = s.waits_for != 0 || LeadsToBoarding(c, s);
-  while ((for_object || (waits && StandsAtEnd(c, s))) && s.done < s.planning.move) {
+  while ((for_object || (waits && IsAtRestAtEnd(c, s))) && s.done < s.planning.move) {
     Pop(c, FeedbackState::kDone, ErrorId::kNone, s);
     s.active = 0;
   }
   if (for_object && !rides) return ComeToRest(c, s);
-  if (!IsThrough(c, s) || (rides && Slips(s))) return;
+  if (!IsThrough(c, s) || (rides && IsUncoupled(s))) return;
   if (c.ahead.cut_short) return EndCutShort(c, s);
   if (Jogs(s)) {
     if (AtBorder(c, s)) ComeToRest(c, s);
@@ -229,7 +229,7 @@ void EndStopping(const Context& c, State& s) {
 // reset, enabled since).
 void FollowHolds(const Context& c, State& s) {
   if (s.holds.EndLeases(c.cycle)) EndStopping(c, s);
-  const axis::StopOrder* const holder = s.holds.Holder();
+  const axis::StopRequest* const holder = s.holds.Holder();
   if (holder == nullptr || s.state != GroupState::kStandby || s.task != Task::kNone) return;
   if (!AllMembers(c, s, [](const axis::State& member) { return member.loop_closed; })) return;
   s.task = Task::kStop;
@@ -270,7 +270,7 @@ bool GoesFurtherThanAlone(const Context& c, State& s) {
     if (v == 0 || member.plc != axis::PlcState::kErrorStop || !axis::IsGuided(member)) continue;
     s.weighed |= bit;
     const bool at_switch = v > 0 ? member.limit_positive : member.limit_negative;
-    const bool barred = at_switch || axis::FollowerThatBars(own, member, v > 0 ? 1 : -1) != axis::kNoAxis ||
+    const bool barred = at_switch || axis::BlockingFollower(own, member, v > 0 ? 1 : -1) != axis::kNoAxis ||
                         axis::Bars(own, member, v > 0 ? 1 : -1);
     // Without a ramp of its own its distance is not bounded: the path takes precedence (GR-03).
     const axis::StopRamp& own_ramp = at_switch ? own.params.limit_stop : own.params.fault_stop;

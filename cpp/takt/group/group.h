@@ -35,10 +35,10 @@ struct Axes {
 // The mounting of the mechanism and of its tool, as frames: computed when a machine is made, and when its tool is
 // changed (SetTool).
 struct Mounting {
-  kinematics::Frame base;          // of the MCS in the world ...
-  kinematics::Frame base_inverse;  // ... and its inverse
-  kinematics::Frame tool;          // of the TCP on the flange
-  kinematics::Frame tool_inverse;
+  kinematics::Frame base;          // X_WM: of the machine (M) in the world (W)
+  kinematics::Frame base_inverse;  // X_MW
+  kinematics::Frame tool;          // X_FT: of the tool centre point (T) on the flange (F)
+  kinematics::Frame tool_inverse;  // X_TF
 };
 Mounting MakeMounting(const GroupParams& params);
 void MountTool(const kinematics::Frame& tool, Mounting& mounting) noexcept;
@@ -65,13 +65,16 @@ struct Context {
 // Returns the state at power-on. `axes`: index of each member.
 State MakeState(std::span<const std::uint32_t> axes) noexcept;
 
-// Stage command: executes, queues or refuses a command, and reports it. `lease_s` > 0: of a held stop or a jog.
+// Stage command: executes, queues or refuses a command, and reports it under `ticket`. `lease_s` [s]: a held stop or a
+// jog ends by itself so long after its last Renew; 0: never.
 void Apply(const Context& c, Ticket ticket, double lease_s, const Command& command, State& s) noexcept;
-// Releases a held stop or a jog with this ticket; extends its lease. Both return false if there is none.
+// Release ends the held stop or the jog with this ticket; Renew extends its lease from this cycle on. Both return false
+// if there is none, Renew also if it was given without a lease.
 bool Release(const Context& c, Ticket ticket, State& s) noexcept;
 bool Renew(const Context& c, Ticket ticket, State& s) noexcept;
 
-// Ends what the group does before its axes are switched off: ErrorStop if it was active (AX-100).
+// Emergency stop (AX-100); called before that of the members. A group that moves, homes, stops, has queued moves or
+// controls its members goes to GroupErrorStop, otherwise its state stays; all of its commands end with kEmergencyStop.
 void EmergencyStop(const Context& c, State& s) noexcept;
 
 // Stage move: before the members, after the axis that a path follows.
@@ -79,7 +82,7 @@ void Step(const Context& c, State& s) noexcept;
 
 void Publish(const Context& c, const State& s, Outputs& out) noexcept;
 
-// Returns true if its members may not be moved individually (error 1000).
+// Returns true in all states but GroupDisabled: motion commands to single members are refused (kGroupMember, 1000).
 bool Owns(const State& s) noexcept;
 
 }  // namespace takt::group

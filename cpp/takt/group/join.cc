@@ -246,7 +246,7 @@ bool GoOnFromLastCorner(const Context& c, const State& s, const CornerBlend& d, 
   if (is_sharp(ahead.corner.first, line, middle) && is_sharp(line, ahead.next.segment, std::min(middle, d.second))) {
     return false;
   }
-  const auto bend = path::BendBetween(ahead.corner.first, line, ahead.next.segment);
+  const auto bend = path::ChordCurvature(ahead.corner.first, line, ahead.next.segment);
   if (!bend) return false;
   Stretch last = ahead[last_one];
   OpenCorner corner{true, line, middle, {}, d.reach, d.deviation};

@@ -59,8 +59,8 @@ double EndOf(const Context& c, const State& s) {
 bool Begin(const Context& c, const State& s) {
   const double end = EndOf(c, s);
   if (end <= s.pace.raw.position) return false;
-  KeepUp& k = c.ahead.keep_up;
-  k = {.on = true, .begin = s.pace.raw.position, .apart = (end - s.pace.raw.position) / (kWatched - 1)};
+  CarriedSpeedBound& k = c.ahead.keep_up;
+  k = {.on = true, .begin = s.pace.raw.position, .apart = (end - s.pace.raw.position) / (kPointsAhead - 1)};
   const double none = std::numeric_limits<double>::infinity();
   k.places.fill({none, none, none});
   return true;
@@ -113,7 +113,7 @@ struct Brakes {
   }
 };
 
-void LookAt(const Context& c, const State& s, double place, double wish, KeepUp::Place& seen) {
+void LookAt(const Context& c, const State& s, double place, double wish, CarriedSpeedBound::Place& seen) {
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   const trajectory::CoordinateLimits& limits = c.ahead.window.limits();
   const double own = node.bounds.Gentle(s.pace.raw.velocity * s.pace.raw.velocity);
@@ -170,10 +170,10 @@ void LookAt(const Context& c, const State& s, double place, double wish, KeepUp:
 }  // namespace
 
 double SlowDown(const Context& c, const State& s, double wish) noexcept {
-  KeepUp& k = c.ahead.keep_up;
+  CarriedSpeedBound& k = c.ahead.keep_up;
   const KinematicState& raw = s.pace.raw;
   const bool late = IsLate(c, s);
-  if (k.on && raw.position >= k.begin + k.apart * (kWatched - 1)) {
+  if (k.on && raw.position >= k.begin + k.apart * (kPointsAhead - 1)) {
     // A blend may have made the transition longer.
     const Stretch* here = c.ahead.At(raw.position);
     if (!here || here->from_ride == here->to_ride || !Begin(c, s)) k = {};
@@ -188,10 +188,10 @@ double SlowDown(const Context& c, const State& s, double wish) noexcept {
   const double lag = 0.5 * raw.velocity * s.pace.cycles * period;
   const double seen_to = raw.position + lag + square / brake + raw.velocity * node.build_up_s;
   const auto index = [&](double place) {
-    return static_cast<std::uint32_t>(std::clamp(std::floor((place - k.begin) / k.apart), 0.0, kWatched - 1.0));
+    return static_cast<std::uint32_t>(std::clamp(std::floor((place - k.begin) / k.apart), 0.0, kPointsAhead - 1.0));
   };
   const std::uint32_t first = index(raw.position - lag),
-                      last = std::min<std::uint32_t>(index(seen_to) + 1, kWatched - 1);
+                      last = std::min<std::uint32_t>(index(seen_to) + 1, kPointsAhead - 1);
   if (k.next < first || k.next > last) k.next = first;
   LookAt(c, s, std::max(k.begin + k.next * k.apart, raw.position), wish, k.places[k.next]);
   ++k.next;

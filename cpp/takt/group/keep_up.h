@@ -16,10 +16,10 @@ namespace takt::group {
 struct Context;
 struct State;
 
-inline constexpr std::size_t kWatched = 16;  // points ahead
+inline constexpr std::size_t kPointsAhead = 16;  // points ahead
 
 // The points ahead; follows from the state and, like the plan, is not part of it.
-struct KeepUp {
+struct CarriedSpeedBound {
   struct Place {
     double velocity = 0;      // [mm/s] bound of the path speed
     double acceleration = 0;  // [mm/s²] path acceleration that the axes have left
@@ -31,7 +31,7 @@ struct KeepUp {
   double apart = 0;                                        // ... and distance from one point to the next
   double brake = std::numeric_limits<double>::infinity();  // [mm/s²] deceleration that the axes have left
   std::uint32_t next = 0;                                  // point to be checked
-  std::array<Place, kWatched> places{};
+  std::array<Place, kPointsAhead> places{};
 };
 
 // Returns the demanded path speed [mm/s]: at most `wish`, except as far as accelerations have to be taken back.

@@ -107,7 +107,7 @@ struct LookAhead {
   trajectory::PathWindow window;
   trajectory::PathTiming timing;
   trajectory::PathRehearsal rehearsal;
-  KeepUp keep_up;
+  CarriedSpeedBound keep_up;
   std::vector<Stretch> stretches;  // a ring
   std::uint64_t first = 0;         // number of the oldest stretch
   std::uint64_t count = 0;

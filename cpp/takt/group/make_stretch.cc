@@ -203,7 +203,7 @@ Frame StillFrameOf(const Context& c, const Request& move, LookAhead& ahead) {
     const Frame now = cargo.carrier != 0 ? PlaceOf(c, cargo).GetFrame() : frame;
     time = TimeFor(c, (now.p - from.p).Norm(), move.limits);
   }
-  stretch.to_ride = RideTo(c, cargo, std::max(0.0, ahead.end_eta + time - Now(c)));
+  stretch.to_ride = BindTo(c, cargo, std::max(0.0, ahead.end_eta + time - Now(c)));
   return ReferenceOf(ahead.rides[stretch.to_ride % kRides]) * frame;
 }
 
@@ -317,7 +317,7 @@ kinematics::Reason AxesFor(const Context& c, const State& s, const Stretch& stre
   for (std::size_t k = c.kinematics->count; k < kMaxAxes; ++k) {
     const std::size_t i = k - c.kinematics->count;
     const KinematicState at =
-        trajectory::AlongWay({behind.position[i], behind.velocity[i], behind.acceleration[i]}, along);
+        trajectory::ComposeWithMaster({behind.position[i], behind.velocity[i], behind.acceleration[i]}, along);
     motion.position[k] = at.position;
     motion.velocity[k] = at.velocity;
     motion.acceleration[k] = at.acceleration;
@@ -370,7 +370,7 @@ void Reserve(const Context& c, const trajectory::PathSlopes& moving, const traje
     const double before = speed;
     speed = std::sqrt(trajectory::SquareAt(point, limits, 1));
     if (boarding) {
-      const double attained = SpeedBesideBoarding(point, limits, c.ahead.window.build_up_s(), *boarding);
+      const double attained = PathSpeedBound(point, limits, c.ahead.window.build_up_s(), *boarding);
       speed = std::min(speed, round == 0 ? attained : std::sqrt(before * attained));
     }
     double most = 0;

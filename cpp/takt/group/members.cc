@@ -48,7 +48,7 @@ ErrorId Try(const Context& c, const State& s, std::size_t place, const axis::Com
   return c.feedback.TakeOwnError();
 }
 
-bool AreInStep(const Context& c, const State& s) noexcept {
+bool AreAtDemand(const Context& c, const State& s) noexcept {
   const double same = std::max(kSame, c.params.tracking.tolerance), period = c.cycle.period_s;
   return AllMembers(c, s, [&](const axis::State& member) {
     // Before the members have moved in this cycle they are at their demands of the previous one.
@@ -59,7 +59,7 @@ bool AreInStep(const Context& c, const State& s) noexcept {
   });
 }
 
-ErrorId TellAll(const Context& c, const State& s, const axis::Command& command) noexcept {
+ErrorId CommandAll(const Context& c, const State& s, const axis::Command& command) noexcept {
   ErrorId first = ErrorId::kNone;
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
@@ -71,7 +71,7 @@ ErrorId TellAll(const Context& c, const State& s, const axis::Command& command) 
 
 ErrorId SwitchOffAll(const Context& c, const State& s) noexcept {
   const axis::Power off{.enable = false};
-  const ErrorId error = TellAll(c, s, off);
+  const ErrorId error = CommandAll(c, s, off);
   for (std::size_t i = 0; i < c.axes.states.size(); ++i) {
     if (!c.axes.params[i].follows) continue;
     const axis::Context follower = c.axes.Of(i);

@@ -18,7 +18,7 @@ ErrorId Tell(const Context& c, const State& s, std::size_t place, const axis::Co
 // Returns the error that the member would report; changes nothing.
 ErrorId Try(const Context& c, const State& s, std::size_t place, const axis::Command& command) noexcept;
 // Tell for all members; all get the command. Returns the first error.
-ErrorId TellAll(const Context& c, const State& s, const axis::Command& command) noexcept;
+ErrorId CommandAll(const Context& c, const State& s, const axis::Command& command) noexcept;
 
 // Switches off all members and the gantry axes that follow them (AX-101). Returns the first error of a member.
 ErrorId SwitchOffAll(const Context& c, const State& s) noexcept;
@@ -32,7 +32,7 @@ bool AllMembers(const Context& c, const State& s, const Test& test) noexcept {
 }
 
 // Returns true if all members are at their demands: in sync, or within max(1e-3 u, TrackingParams::tolerance).
-bool AreInStep(const Context& c, const State& s) noexcept;
+bool AreAtDemand(const Context& c, const State& s) noexcept;
 
 ErrorId Add(const Context& c, const AddAxis& command, State& s) noexcept;
 ErrorId Remove(const Context& c, const RemoveAxis& command, State& s) noexcept;

@@ -80,7 +80,7 @@ void GoBackToTrial(LookAhead& ahead) {
 void EndTrial(const Context& c, State& s) {
   GoBackToTrial(c.ahead);
   BeginAgain(true, s);
-  if (CanAsk(c, s)) Ask(c, s);
+  if (CanBeChecked(c, s)) Ask(c, s);
 }
 
 void NextElement(const Context& c, State& s) {
@@ -306,7 +306,7 @@ void Verify(const Context& c, int& budget, State& s) {
     c.ahead.tried_way += c.ahead.next.to;
     c.ahead.tried_zones |= ZonesOf(c.ahead.next);
     NextElement(c, s);
-  } else if (!IsPath(s) && CanAsk(c, s)) {
+  } else if (!IsPath(s) && CanBeChecked(c, s)) {
     Ask(c, s);
   } else {
     EnterNext(c, s);
@@ -315,7 +315,7 @@ void Verify(const Context& c, int& budget, State& s) {
 
 // Evaluates the answer to a path check. Returns false if it has not arrived.
 bool Check(const Context& c, State& s) {
-  if (!IsAnswered(c, s)) return false;
+  if (!HasAnswer(c, s)) return false;
   const PathChecked& answer = s.answer;
   if (answer.trouble == workspace::Trouble::kNone) {
     if (IsPath(s)) {
@@ -531,7 +531,7 @@ void Rehearse(const Context& c, const State& s) noexcept {
 double TimeLeft(const Context& c, const State& s) noexcept {
   if (const trajectory::PathTiming& timing = c.ahead.timing; timing.active()) {
     const double end = c.ahead[c.ahead.end() - 1].end();
-    const bool known = s.begun && !s.ends && !s.interrupted && IsPlanned(c, s) && timing.Settles(end);
+    const bool known = s.begun && !s.ends && !s.interrupted && IsPlanned(c, s) && timing.IsFinalTo(end);
     return known ? c.cycle.period_s * static_cast<double>(timing.rest_cycles()) : kNotGiven;
   }
   std::uint64_t end = c.ahead.rehearsal.end_cycle();

@@ -30,7 +30,7 @@ void PublishTracking(const Context& c, const State& s, const kinematics::MovingF
   out.track_state = TrackStateOf(c, s);
   out.track_lag = out.object_x = out.object_y = out.object_z = out.object_a = out.object_b = out.object_c = kNotGiven;
   out.in_sync = out.track_state == TrackState::kInSync;
-  if (!IsOnRide(c, s)) return;
+  if (!IsOnCarrier(c, s)) return;
   const Stretch& stretch = *Here(c, s);
   // Until the transition begins the tool is on the previous binding.
   const double way = stretch.from + s.pace.now.position - stretch.begin;

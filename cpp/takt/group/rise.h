@@ -3,7 +3,7 @@
 //
 // The tool is offset from its path along Z of the object that carries it. The offset grows until the tool will come to
 // rest at the demanded height; it never shrinks. It ends, at its present height, when the tool comes to rest on the
-// carrier (Sit).
+// carrier (RestOnBinding).
 #pragma once
 
 #include "takt/group/group.h"

@@ -75,7 +75,7 @@ bool FollowCarried(const Context& c, const Stretch& stretch, double way, State& 
   if (GoesToClosed(c, motion, &tool, s)) return false;
   Demand(c, motion, s);
   // If the tool could no longer be braked in the next cycles, it is braked now.
-  if (!s.lets_go && !CanLetGo(c, s)) {
+  if (!s.lets_go && !CanRelease(c, s)) {
     EndTracking(c, FeedbackState::kError, ErrorId::kUnreachable, s);
     AbortMoves(c, ErrorId::kUnreachable, s);
     EndMotion(c, {}, true, s);
@@ -99,7 +99,7 @@ bool Follow(const Context& c, State& s) {
   kinematics::JointMotion motion = by_way;
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     const KinematicState at =
-        trajectory::AlongWay({by_way.position[k], by_way.velocity[k], by_way.acceleration[k]}, now);
+        trajectory::ComposeWithMaster({by_way.position[k], by_way.velocity[k], by_way.acceleration[k]}, now);
     motion.velocity[k] = at.velocity;
     motion.acceleration[k] = at.acceleration;
   }
@@ -119,7 +119,7 @@ bool Follow(const Context& c, State& s) {
 bool ToolLags(const Context& c, const State& s) {
   const bool at_end = s.pace.raw_stands && c.ahead.window[s.pace.node].stop;
   const bool rides = std::ranges::any_of(s.ridden, [](std::uint32_t carrier) { return carrier != 0; });
-  return at_end && rides && (s.lets_go || Slips(s) || !AreInStep(c, s));
+  return at_end && rides && (s.lets_go || IsUncoupled(s) || !AreAtDemand(c, s));
 }
 
 // Reports moves whose last stretch is complete as done, and the one in execution as active.
@@ -141,7 +141,7 @@ double Braked(const Context& c, const trajectory::PathNode& node, const Brake& b
   // The deceleration that builds up with this jerk within the build-up time of the path.
   if (brake.jerk > 0) deceleration = std::min(deceleration, brake.jerk * node.build_up_s);
   // What the axes have left while carriers are braked, too. Bends are accounted for by the pace.
-  if (s.lets_go || Slips(s)) {
+  if (s.lets_go || IsUncoupled(s)) {
     const double square = s.pace.raw.velocity * s.pace.raw.velocity;
     deceleration = std::min(deceleration, BrakeShare(s) * node.bounds.strength.Gentle(square));
   }
@@ -176,7 +176,7 @@ ErrorId TakeMembers(const Context& c, State& s) noexcept {
     axis::State& member = MemberOf(c, s, k);
     const Status status = axis::Guide(ContextOf(c, s, k), member);
     if (status.failed()) {
-      LetGoOfMembers(c, s);
+      ReleaseMembers(c, s);
       return status.error;
     }
     member.guidance.brakes_with_others = true;
@@ -187,10 +187,10 @@ ErrorId TakeMembers(const Context& c, State& s) noexcept {
   return ErrorId::kNone;
 }
 
-void LetGoOfMembers(const Context& c, State& s) noexcept {
+void ReleaseMembers(const Context& c, State& s) noexcept {
   for (std::size_t k = 0; k < kMaxAxes; ++k) {
     if (s.members[k] == 0) continue;
-    axis::LetGoOfGuidance(ContextOf(c, s, k), MemberOf(c, s, k));
+    axis::EndGuidance(ContextOf(c, s, k), MemberOf(c, s, k));
   }
   s.guides = false;
 }
@@ -266,18 +266,18 @@ bool Advance(const Context& c, State& s) noexcept {
   return true;
 }
 
-bool StandsAtEnd(const Context& c, const State& s) noexcept {
+bool IsAtRestAtEnd(const Context& c, const State& s) noexcept {
   const trajectory::PathWindow& window = c.ahead.window;
   const bool last = s.pace.node + 1 >= window.known();
   return s.pace.raw_stands && last && window.swept() && c.ahead.sampling >= c.ahead.end();
 }
 
 bool Rests(const State& s) noexcept {
-  return trajectory::Stands(s.pace) && RiseStands(s) && (!s.lets_go || ClutchesStand(s));
+  return trajectory::Stands(s.pace) && RiseStands(s) && (!s.lets_go || ClutchesAtRest(s));
 }
 
 double RestAt(const Context& c, const State& s) noexcept {
-  if (c.ahead.timing.active()) return c.ahead.timing.BrakesTo(c.ahead.window, s.pace);
+  if (c.ahead.timing.active()) return c.ahead.timing.EstimatedStop(c.ahead.window, s.pace);
   // The mean comes to rest where the raw motion does.
   const trajectory::PathNode& node = c.ahead.window[s.pace.node];
   const double v = s.pace.raw.velocity;
@@ -293,7 +293,7 @@ const Stretch* Here(const Context& c, const State& s) noexcept {
   return c.ahead.At(s.pace.now.position);
 }
 
-bool IsOnRide(const Context& c, const State& s) noexcept {
+bool IsOnCarrier(const Context& c, const State& s) noexcept {
   const Stretch* stretch = s.begun ? Here(c, s) : nullptr;
   if (!stretch || stretch->joints) return false;
   const double share = ShareAt(c.ahead, *stretch, stretch->from + s.pace.now.position - stretch->begin).position;
@@ -301,14 +301,14 @@ bool IsOnRide(const Context& c, const State& s) noexcept {
   return (share < 1 && moves(stretch->from_ride)) || (share > 0 && moves(stretch->to_ride));
 }
 
-bool IsBetweenRides(const Context& c, const State& s) noexcept {
+bool IsInTransition(const Context& c, const State& s) noexcept {
   const Stretch* stretch = Here(c, s);
   if (!stretch || stretch->from_ride == stretch->to_ride) return false;
   const double share = ShareAt(c.ahead, *stretch, stretch->from + s.pace.now.position - stretch->begin).position;
   return share > 0 && share < 1;
 }
 
-void Sit(const Context& c, State& s) noexcept {
+void RestOnBinding(const Context& c, State& s) noexcept {
   LookAhead& ahead = c.ahead;
   const Stretch* stretch = Here(c, s);
   const double way = std::clamp(stretch->from + s.pace.now.position - stretch->begin, stretch->from, stretch->to);
@@ -325,13 +325,13 @@ void Sit(const Context& c, State& s) noexcept {
   Clutch clutch = found != s.clutches.end() ? *found : Clutch{};
   s.way_before += s.pace.now.position;
   ForgetPlan(c, s);
-  SitOn(c, ride, place, s);
+  RestOn(c, ride, place, s);
   clutch.ride = ahead.end_ride;
   s.clutches = {};
   s.clutches[0] = clutch;
 }
 
-void SitOn(const Context& c, const CarrierBinding& ride, const path::Point& place, State& s) noexcept {
+void RestOn(const Context& c, const CarrierBinding& ride, const path::Point& place, State& s) noexcept {
   LookAhead& ahead = c.ahead;
   ahead.end_ride = ahead.rides_end++;
   ahead.rides[ahead.end_ride % kRides] = ride;
@@ -362,7 +362,7 @@ void SitOn(const Context& c, const CarrierBinding& ride, const path::Point& plac
   s.brake = {};
 }
 
-Clutch& SitDown(const Context& c, const CarriedTarget& cargo, double travel, State& s) noexcept {
+Clutch& BindAtRest(const Context& c, const CarriedTarget& cargo, double travel, State& s) noexcept {
   const End end = Present(c, s);
   s.joints = end.joints;
   if (s.begun) s.way_before += s.pace.now.position;
@@ -372,7 +372,7 @@ Clutch& SitDown(const Context& c, const CarriedTarget& cargo, double travel, Sta
     place.auxiliaries[k - c.kinematics->count] = end.joints[k];
   }
   c.ahead.window.SetLimits(LimitsOf(c, s));
-  SitOn(c, RideAtRest(c, cargo, travel), place, s);
+  RestOn(c, BindingAtRest(c, cargo, travel), place, s);
   s.clutches = {};
   Clutch& clutch = s.clutches[0];
   clutch.used = true;

@@ -7,7 +7,7 @@ namespace takt::group {
 
 // Puts the group in control of its members. Returns an error, with none controlled, if a member cannot be.
 ErrorId TakeMembers(const Context& c, State& s) noexcept;
-void LetGoOfMembers(const Context& c, State& s) noexcept;
+void ReleaseMembers(const Context& c, State& s) noexcept;
 
 // Returns true if PathTiming can time a move: it is not carried and follows no master.
 bool IsTimed(const Context& c, const Request& move, const Stretch& stretch) noexcept;
@@ -19,7 +19,7 @@ void BeginTiming(const Context& c, State& s) noexcept;
 bool Advance(const Context& c, State& s) noexcept;
 
 // Returns true if the path is at rest at the end of all that is planned.
-bool StandsAtEnd(const Context& c, const State& s) noexcept;
+bool IsAtRestAtEnd(const Context& c, const State& s) noexcept;
 
 // Returns true if the motion is at rest along the path, with the rise, and if carriers are released with their
 // clutches.
@@ -37,15 +37,15 @@ double RestAt(const Context& c, const State& s) noexcept;
 // Returns the stretch in execution; null if there is none.
 const Stretch* Here(const Context& c, const State& s) noexcept;
 // Returns true if a moving carrier carries the tool, fully or in part.
-bool IsOnRide(const Context& c, const State& s) noexcept;
+bool IsOnCarrier(const Context& c, const State& s) noexcept;
 // Returns true if the tool is changing over between two carrier bindings.
-bool IsBetweenRides(const Context& c, const State& s) noexcept;
+bool IsInTransition(const Context& c, const State& s) noexcept;
 // Binds the tool at its present pose to a carrier, with `travel` [mm or rad] as the carrier's travel. Returns the
 // clutch between them, which is not coupled.
-Clutch& SitDown(const Context& c, const CarriedTarget& cargo, double travel, State& s) noexcept;
+Clutch& BindAtRest(const Context& c, const CarriedTarget& cargo, double travel, State& s) noexcept;
 // Discards the path and keeps the tool where it is on its carrier binding.
-void Sit(const Context& c, State& s) noexcept;
+void RestOnBinding(const Context& c, State& s) noexcept;
 // The same on another binding, at a point in its planning frame.
-void SitOn(const Context& c, const CarrierBinding& ride, const path::Point& place, State& s) noexcept;
+void RestOn(const Context& c, const CarrierBinding& ride, const path::Point& place, State& s) noexcept;
 
 }  // namespace takt::group

@@ -76,7 +76,7 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   const double left = stretch.end() - c.ahead.last.s;
   double most = stretch.to - stretch.from;
   if (stretch.segment.shape == path::Shape::kLine) {
-    most = trajectory::StepBetweenSlowPlaces(c.ahead.last, stretch.begin, stretch.end(), limits,
+    most = trajectory::StepBetweenSlowPoints(c.ahead.last, stretch.begin, stretch.end(), limits,
                                              c.ahead.window.build_up_s(), c.cycle.period_s);
   }
   most = std::max(most, kLeastStep);
@@ -86,12 +86,12 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   Boarding* boarding = BoardingOn(c.ahead, stretch);
   if (boarding && c.ahead.last.s >= boarding->reach) boarding = nullptr;
   if (boarding) {
-    end = std::clamp(FindReach(window[window.end() - 1], *boarding), std::min(c.ahead.last.s + kLeastStep, end), end);
+    end = std::clamp(UpdateReach(window[window.end() - 1], *boarding), std::min(c.ahead.last.s + kLeastStep, end), end);
   }
   trajectory::PathPoint next;
-  const auto bends = carried                       ? trajectory::HiddenBends::kIgnored
-                     : c.params.path.planned_ahead ? trajectory::HiddenBends::kInJerk
-                                                   : trajectory::HiddenBends::kInAcceleration;
+  const auto bends = carried                       ? trajectory::BendSearch::kIgnored
+                     : c.params.path.planned_ahead ? trajectory::BendSearch::kInJerk
+                                                   : trajectory::BendSearch::kInAcceleration;
   for (bool even = false; !even;) {
     if (!trajectory::NextPoint(c.ahead.last, end, limits, c.ahead.window.build_up_s(), c.cycle.period_s, bends,
                                slopes_at, next)) {
@@ -107,7 +107,7 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
   c.ahead.last = next;
   next.renewed = boarding && next.s >= boarding->reach;
   window.Append(next, stretch.stops && next.s >= stretch.end());
-  if (boarding) PassNode(c, window[window.end() - 2], window[window.end() - 1], *boarding);
+  if (boarding) AdvanceReserve(c, window[window.end() - 2], window[window.end() - 1], *boarding);
   ++s.planning.nodes;
   return true;
 }
@@ -116,7 +116,7 @@ bool SampleNext(const Context& c, const Stretch& stretch, int& budget, State& s)
 bool GoesFreely(const Context& c, const State& s) {
   if (const trajectory::PathTiming& timing = c.ahead.timing; timing.active()) {
     const Stretch& blend = c.ahead[c.ahead.end() - 2];
-    const double way = blend.begin - timing.BrakesTo(c.ahead.window, s.pace);
+    const double way = blend.begin - timing.EstimatedStop(c.ahead.window, s.pace);
     return timing.rest_s() > kTimeAhead || way > kFarAhead_s * blend.limits.velocity;
   }
   const trajectory::PathWindow& window = c.ahead.window;

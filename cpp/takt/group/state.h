@@ -179,8 +179,8 @@ struct State {
   std::array<std::uint32_t, kClutches> ridden{};  // numbers of the carriers that take part in the motion now; 0: none
   Rise rise;
   Track track;
-  axis::StopOrders holds;  // stops that hold the group, whatever has been commanded since
-  Ticket ticket = 0;       // of the task
+  axis::StopRequests holds;  // stops that hold the group, whatever has been commanded since
+  Ticket ticket = 0;         // of the task
   Task task = Task::kNone;
   double lease_s = 0;  // [s] of a jog; 0: none
   std::uint64_t lease_end_cycle = 0;

@@ -252,7 +252,7 @@ void EndStream(const Context& c, FeedbackState feedback, ErrorId error, State& s
   Report(c, s.stream.ticket, feedback, error);
   s.stream = {};
   s.active = 0;
-  LetGoOfMembers(c, s);
+  ReleaseMembers(c, s);
   s.ends = true;
 }
 

@@ -18,7 +18,7 @@ std::uint32_t AxisThatCloses(const Context& c, const State& s, const Directions&
       const bool own =
           sense > 0 ? member.limit_positive || member.bars_positive : member.limit_negative || member.bars_negative;
       if (own) return s.members[k];
-      const std::uint32_t follower = axis::FollowerThatBars(ContextOf(c, s, k), member, sense);
+      const std::uint32_t follower = axis::BlockingFollower(ContextOf(c, s, k), member, sense);
       if (follower != axis::kNoAxis) return follower + 1;
     }
   }

@@ -127,10 +127,10 @@ void LeadSynced(const Context& c, State& s) noexcept {
   }
 }
 
-void LetGoOfSynced(const Context& c, FeedbackState feedback, State& s) noexcept {
+void ReleaseSynced(const Context& c, FeedbackState feedback, State& s) noexcept {
   for (SyncedAxis& synced : s.synced) {
     if (synced.axis == 0) continue;
-    axis::LetGoOfGuidance(ContextOf(c, synced), StateOf(c, synced));
+    axis::EndGuidance(ContextOf(c, synced), StateOf(c, synced));
     Report(c, synced.ticket, feedback);
     synced = {};
   }

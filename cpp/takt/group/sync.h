@@ -18,6 +18,6 @@ void WatchMaster(const Context& c, State& s) noexcept;
 ErrorId Sync(const Context& c, Ticket ticket, const SyncAxis& command, State& s) noexcept;
 // Computes the set points of the axes that follow the path.
 void LeadSynced(const Context& c, State& s) noexcept;
-void LetGoOfSynced(const Context& c, FeedbackState feedback, State& s) noexcept;
+void ReleaseSynced(const Context& c, FeedbackState feedback, State& s) noexcept;
 
 }  // namespace takt::group

@@ -81,7 +81,7 @@ void SitDownOnObject(const Context& c, const kinematics::Carrier& carrier, State
                                  : TravelOfTool(track, carrier, Present(c, s).tool);
   clutch.law_from = clutch.travel.position;
   clutch.law_way = clutch.law_begin + clutch.law_length - clutch.law_from;
-  Clutch& seated = SitDown(c, track.cargo, clutch.travel.position, s);
+  Clutch& seated = BindAtRest(c, track.cargo, clutch.travel.position, s);
   clutch.used = true;
   clutch.ride = seated.ride;
   seated = clutch;
@@ -97,7 +97,7 @@ void Wait(const Context& c, const kinematics::Carrier& carrier, State& s) {
   if (progress > s.track.end) return EndTracking(c, FeedbackState::kError, ErrorId::kTrackShort, s);
   if (s.ends) return;
   const bool by_move = s.planning.move < s.done + s.queue.count && WaitsForTracking(s, MoveAt(s, s.planning.move));
-  if (by_move && IsOnRide(c, s) && s.planning.move == s.done) {  // from one carrier to the next
+  if (by_move && IsOnCarrier(c, s) && s.planning.move == s.done) {  // from one carrier to the next
     s.track.started = true;
     return;
   }
@@ -210,7 +210,7 @@ void WatchTracking(const Context& c, State& s) noexcept {
   const double apart = std::abs(clutch->travel.position - CarrierOf(c, track.cargo).travel.position);
   const TrackingParams& params = c.params.tracking;
   const bool near = clutch->coupled || (clutch->law_length == 0 && apart <= params.tolerance && params.tolerance > 0);
-  track.near_cycles = near && AreInStep(c, s) ? track.near_cycles + 1 : 0;
+  track.near_cycles = near && AreAtDemand(c, s) ? track.near_cycles + 1 : 0;
   const bool was = track.in_sync;
   track.in_sync =
       track.near_cycles > 0 && static_cast<double>(track.near_cycles) * c.cycle.period_s >= params.tolerance_time_s;
@@ -229,15 +229,15 @@ bool WaitsForTracking(const State& s, const Request& move) noexcept {
 }
 
 TrackState TrackStateOf(const Context& c, const State& s) noexcept {
-  if (!IsOnRide(c, s)) return s.track.active && !s.track.started ? TrackState::kWaiting : TrackState::kNone;
+  if (!IsOnCarrier(c, s)) return s.track.active && !s.track.started ? TrackState::kWaiting : TrackState::kNone;
   if (s.lets_go) return TrackState::kDesynchronizing;
   const Stretch& stretch = *Here(c, s);
-  if (IsBetweenRides(c, s)) {
+  if (IsInTransition(c, s)) {
     const bool to = Moves(c.ahead.rides[stretch.to_ride % kRides]);
     return to ? TrackState::kSynchronizing : TrackState::kDesynchronizing;
   }
   if (s.track.started) return s.track.in_sync ? TrackState::kInSync : TrackState::kSynchronizing;
-  return Slips(s) || !AreInStep(c, s) ? TrackState::kSynchronizing : TrackState::kInSync;
+  return IsUncoupled(s) || !AreAtDemand(c, s) ? TrackState::kSynchronizing : TrackState::kInSync;
 }
 
 }  // namespace takt::group

@@ -1,4 +1,5 @@
-// Synchronization of the tool with an object (the manual's parameter TrackState, CV-11).
+// Synchronization of the tool with an object on a carrier that moves (CV-11). The order
+// counts: from kSynchronizing on the tool follows the carrier.
 #pragma once
 
 #include <cstdint>

@@ -144,7 +144,7 @@ void MeetBraking(const Context& c, const State& s, const kinematics::MovingFrame
   const double now = s.pace.now.position, rest = std::max(now, RestAt(c, s));
   if (!IsCarried(ahead, *ahead.At(now)) && !IsCarried(ahead, *ahead.At(rest))) return;
   const KDL::Vector here = c.mounting.base * tool.p.p;
-  if (RidesFreely(c, s)) MeetLine(c, here, c.mounting.base * FreelyBraked(c, tool), met);
+  if (IsOnFreeCarrier(c, s)) MeetLine(c, here, c.mounting.base * FreelyBraked(c, tool), met);
   KDL::Vector up = KDL::Vector::Zero();  // remaining rise
   if (s.rise.used) {
     const Stretch& stretch = *ahead.At(now);
@@ -208,7 +208,7 @@ void MeetRide(const Context& c, const Stretch& stretch, double way, double time_
 // Returns the zones into which the tool is carried within zones_ahead_s if its carriers move on as now, until tracking
 // ends.
 std::uint32_t ZonesOfRide(const Context& c, const State& s) {
-  if (!s.begun || s.ends || s.lets_go || !IsOnRide(c, s)) return 0;
+  if (!s.begun || s.ends || s.lets_go || !IsOnCarrier(c, s)) return 0;
   double time_s = c.params.tracking.zones_ahead_s;
   const Track& track = s.track;
   if (track.started) {
@@ -275,7 +275,7 @@ void NoteRide(const Context& c, const State& s) noexcept {
   Stretch& next = c.ahead.next;
   const CarrierBinding& ride = c.ahead.rides[next.to_ride % kRides];
   if (c.zones.of.empty() || !HasTool(c, s) || next.joints || !Moves(ride)) return;
-  const Stretch* here = IsOnRide(c, s) ? Here(c, s) : nullptr;
+  const Stretch* here = IsOnCarrier(c, s) ? Here(c, s) : nullptr;
   if (here && c.ahead.rides[here->to_ride % kRides].cargo == ride.cargo) return;  // the tool is on it already
   Met met;
   // From now on: a tool stopped during the transition comes to rest closer to the pose of its target at that time.

@@ -10,9 +10,9 @@
 //   in a circle.
 // - Carried motion: the tool moves with its carrier, planned or not. In each cycle the points are computed that the
 //   tool can still reach if path and carriers are braked from the next cycle on, as they can be in every cycle
-//   (CanLetGo). The group holds all zones that those points meet: it takes the free ones, and it is braked in the cycle
-//   in which they begin to meet a zone of another group. By induction the tool comes to rest outside. What a belt may
-//   do beyond that from one cycle to the next is less than the margin.
+//   (CanRelease). The group holds all zones that those points meet: it takes the free ones, and it is braked in the
+//   cycle in which they begin to meet a zone of another group. By induction the tool comes to rest outside. What a belt
+//   may do beyond that from one cycle to the next is less than the margin.
 // - A tool at rest on a carrier, and a move that boards one, also hold the zones into which the carrier takes them
 //   within TrackingParams::zones_ahead_s, if they are free: no other group starts to enter them then.
 #pragma once

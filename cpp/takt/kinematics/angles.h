@@ -48,7 +48,7 @@ inline bool Upright(const KDL::Rotation& r) noexcept {
 }
 
 // Returns true if the frame turns about Z only, except for rounding.
-inline bool UprightMotion(const MovingFrame& frame) noexcept {
+inline bool IsUprightMotion(const MovingFrame& frame) noexcept {
   const auto small = [](const KDL::Vector& v) {
     const double slack = kSlack * (1 + std::abs(v.z()));
     return std::abs(v.x()) <= slack && std::abs(v.y()) <= slack;

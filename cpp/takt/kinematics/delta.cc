@@ -158,7 +158,7 @@ Reason Inverse(const Delta& delta, const Frame& tool, const Configuration&, cons
 }
 
 Reason SolveMotion(const Delta& delta, const MovingFrame& tool, JointMotion& motion) noexcept {
-  if (!UprightMotion(tool)) return Reason::kOrientation;
+  if (!IsUprightMotion(tool)) return Reason::kOrientation;
   const Arms arms = ArmsAt(delta, TurnsOf(motion.position), tool.p.p);
   const double smallest = kSingularSine * delta.lengths.upper_arm * delta.lengths.lower_arm;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -98,7 +98,7 @@ Reason Inverse(const Linear& linear, const Frame& tool, const Configuration&, co
 }
 
 Reason SolveMotion(const Linear& linear, const MovingFrame& tool, JointMotion& motion) noexcept {
-  if (!UprightMotion(tool)) return Reason::kOrientation;
+  if (!IsUprightMotion(tool)) return Reason::kOrientation;
   for (std::size_t c = 0; c < 3; ++c) {
     if (!linear.moves[c] && !(tool.p.v.data[c] == 0 && tool.p.dv.data[c] == 0)) return Reason::kOutOfReach;
   }

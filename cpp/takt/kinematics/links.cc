@@ -358,8 +358,8 @@ Reason MakeSweep(const Kinematics& k, const Joints& from, const Joints& to, Swee
       k.mechanism);
 }
 
-double LargestMove(const Kinematics& k, const Sweep& sweep, std::size_t link, std::size_t seen_from,
-                   const KDL::Vector& point, double radius) noexcept {
+double DisplacementBound(const Kinematics& k, const Sweep& sweep, std::size_t link, std::size_t seen_from,
+                         const KDL::Vector& point, double radius) noexcept {
   return std::visit([&](const auto& m) { return MoveOf(Parts(m), sweep, link, seen_from, point, radius); },
                     k.mechanism);
 }

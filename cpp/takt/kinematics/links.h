@@ -36,7 +36,8 @@ std::vector<LinkInfo> LinksOf(const Kinematics& kinematics);
 
 using LinkFrameArray = std::array<Frame, kMaxLinks>;
 
-// Computes the frame of each link in the base. Returns the reasons of Forward.
+// Computes the frame of each link in the base, in the order of LinksOf; `out` is valid with kNone only. Returns the
+// reasons of Forward, and kSingular also where a rod of a Delta is parallel to the axis of its arm.
 Reason LinkFrames(const Kinematics& kinematics, const Joints& joints, LinkFrameArray& out) noexcept;
 
 // A motion of all axes from one position to another, each monotonically.
@@ -47,13 +48,14 @@ struct Sweep {
   double platform = 0;            // Delta: largest displacement of the platform [mm]
 };
 
-// Returns the reasons of Forward, for the start.
+// Returns the reasons of LinkFrames, for the start; `out` is valid with kNone only.
 Reason MakeSweep(const Kinematics& kinematics, const Joints& from, const Joints& to, Sweep& out) noexcept;
 
-// Returns a bound [mm] of the displacement, relative to the link `seen_from`, of any point of a ball about `point` (mm,
-// in the frame of `link`, to which it is fixed) from its position at the start of the sweep. Infinite: no bound can be
-// given for such a long motion (Delta), but for a shorter one. At most proportional for a part of the motion.
-double LargestMove(const Kinematics& kinematics, const Sweep& sweep, std::size_t link, std::size_t seen_from,
-                   const KDL::Vector& point, double radius) noexcept;
+// Returns an upper bound [mm] of the displacement, relative to the link `seen_from`, of every point of the ball of
+// `radius` [mm] about `point` ([mm], in the frame of `link`, to which it is fixed) during the sweep. During the first
+// share f in [0, 1] of the sweep the displacement is at most f times the bound. Infinite: no bound is known for so long
+// a motion (Delta); split it.
+double DisplacementBound(const Kinematics& kinematics, const Sweep& sweep, std::size_t link, std::size_t seen_from,
+                         const KDL::Vector& point, double radius) noexcept;
 
 }  // namespace takt::kinematics

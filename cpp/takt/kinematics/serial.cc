@@ -101,7 +101,7 @@ bool Singular(const Chain& chain, const Joints& joints) {
   return qr.rank() < std::min<Eigen::Index>(6, jacobian.cols());
 }
 
-double LargestMove(const Chain& chain, const Joints& from, const Joints& to) {
+double DisplacementBound(const Chain& chain, const Joints& from, const Joints& to) {
   double largest = 0;
   for (std::size_t i = 0; i < chain.count; ++i) {
     if (chain.links[i].kind == JointKind::kRotary) largest = std::max(largest, std::abs(to[i] - from[i]));
@@ -125,7 +125,7 @@ Reason Inverse(const Serial& serial, const Frame& tool, const Configuration&, co
     if (!Approach(chain, tool, joints)) return Reason::kOutOfReach;
   }
   if (Singular(chain, joints)) return Reason::kSingular;
-  const bool comparable = chain.count == 6 || LargestMove(chain, near, joints) < kAlongPath;
+  const bool comparable = chain.count == 6 || DisplacementBound(chain, near, joints) < kAlongPath;
   if (comparable && !Singular(chain, near) && SameSide(chain, near, joints) < 0) return Reason::kSingular;
   return Reason::kNone;
 }

@@ -38,7 +38,7 @@ std::string Quoted(const std::string& name) {
 
 // Returns null if it cannot be read; the reader has then printed the reason to stderr.
 urdf::ModelInterfaceSharedPtr Parsed(const std::string& xml) {
-  if (ShapeOf(xml, kMostLevels) != XmlShape::kGood || !LinkInLoop(xml).empty()) return nullptr;
+  if (ShapeOf(xml, kMostLevels) != XmlCheck::kGood || !LinkInLoop(xml).empty()) return nullptr;
   try {
     return urdf::parseURDF(xml);
   } catch (const std::exception&) {
@@ -67,7 +67,7 @@ std::vector<urdf::JointConstSharedPtr> Way(const urdf::ModelInterface& model, co
 }
 
 // Returns the first link that is the child of two joints; empty if there is none.
-std::string HangsTwice(const urdf::ModelInterface& model) {
+std::string LinkWithTwoParents(const urdf::ModelInterface& model) {
   std::set<std::string> links;
   for (const auto& [name, joint] : model.joints_) {
     if (!links.insert(joint->child_link_name).second) return joint->child_link_name;
@@ -206,14 +206,14 @@ std::optional<UrdfChain> ReadUrdf(const std::string& xml, const std::string& bas
   const urdf::ModelInterfaceSharedPtr model = Parsed(xml);
   if (!model) {
     why = "this is no URDF that can be read";
-    if (ShapeOf(xml, kMostLevels) == XmlShape::kTooDeep) {
+    if (ShapeOf(xml, kMostLevels) == XmlCheck::kTooDeep) {
       why += ": its elements nest deeper than " + std::to_string(kMostLevels) + " levels";
     } else if (const std::string link = LinkInLoop(xml); !link.empty()) {
       why += ": link " + Quoted(link) + " is in a loop of joints, or hangs on one";
     }
     return std::nullopt;
   }
-  if (const std::string link = HangsTwice(*model); !link.empty()) {
+  if (const std::string link = LinkWithTwoParents(*model); !link.empty()) {
     why = "link " + Quoted(link) + " hangs on two joints, which a chain cannot";
     return std::nullopt;
   }

@@ -19,14 +19,14 @@ class Scanner {
  public:
   Scanner(std::string_view text, std::size_t most_levels) : text_(text), most_levels_(most_levels) {}
 
-  XmlShape Run() {
-    if (text_.find('\0') != std::string_view::npos) return XmlShape::kMalformed;
+  XmlCheck Run() {
+    if (text_.find('\0') != std::string_view::npos) return XmlCheck::kMalformed;
     for (;;) {
       at_ = text_.find('<', at_);
       if (at_ == std::string_view::npos) break;
-      if (!Markup()) return open_.size() > most_levels_ ? XmlShape::kTooDeep : XmlShape::kMalformed;
+      if (!Markup()) return open_.size() > most_levels_ ? XmlCheck::kTooDeep : XmlCheck::kMalformed;
     }
-    return open_.empty() && any_ ? XmlShape::kGood : XmlShape::kMalformed;
+    return open_.empty() && any_ ? XmlCheck::kGood : XmlCheck::kMalformed;
   }
 
  private:
@@ -114,7 +114,7 @@ class Scanner {
 
 }  // namespace
 
-XmlShape ShapeOf(std::string_view text, std::size_t most_levels) {
+XmlCheck ShapeOf(std::string_view text, std::size_t most_levels) {
   return Scanner(text, most_levels).Run();
 }
 

@@ -10,10 +10,10 @@
 
 namespace takt::kinematics {
 
-enum class XmlShape : std::uint8_t { kGood, kMalformed, kTooDeep };
+enum class XmlCheck : std::uint8_t { kGood, kMalformed, kTooDeep };
 
 // Checks tags, attributes, comments and CDATA sections; document types may declare nothing. Elements may nest in up to
 // `most_levels` levels.
-XmlShape ShapeOf(std::string_view text, std::size_t most_levels);
+XmlCheck ShapeOf(std::string_view text, std::size_t most_levels);
 
 }  // namespace takt::kinematics

@@ -101,7 +101,7 @@ inline AdmissionResult RefusedThere(const State& s, ErrorId why) noexcept {
   return Refused(why, leaves ? ObjectAt(ObjectKind::kPart, s.part) : ObjectInfo{});
 }
 // Returns true if the part is moving, or not at its commanded position.
-inline bool IsOnItsWay(const Context& c, std::uint32_t part) noexcept {
+inline bool IsPartMoving(const Context& c, std::uint32_t part) noexcept {
   const planar::PartNow& now = c.streets.parts->now[part];
   return now.away || now.position != now.commanded;
 }
@@ -109,8 +109,9 @@ inline bool IsOnItsWay(const Context& c, std::uint32_t part) noexcept {
 // moving.
 std::uint32_t PartAwaited(const Context& c, const Command& command, const State& s) noexcept;
 // Computes route and target of `command` and writes them into `rider`; the dynamics are not set.
-planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept;
-planar::Way WayOf(TurnDirection direction) noexcept;
+planar::Verdict ComputeRoute(const Context& c, const MoveOnTrack& command, const State& s,
+                             planar::Rider& rider) noexcept;
+planar::Way ReachableInterval(TurnDirection direction) noexcept;
 // Moves X and Y in the plane, whatever the command mode.
 AdmissionResult MoveTo(const CommandContext& g, const MoveToPosition& command) noexcept;
 // A move of a mover along its route: `move` is in the coordinate system of the mover, and nothing is reported.

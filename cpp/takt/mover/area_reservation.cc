@@ -98,7 +98,7 @@ void Take(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, 
 }
 
 // Returns a mover that its part will bring into the area of the motion.
-ObjectInfo WhoComes(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, bool on_track) {
+ObjectInfo MoverArrivingAt(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, bool on_track) {
   const auto comes = [](const planar::MoverView& now) { return now.comes; };
   if (std::ranges::none_of(c.grounds.movers, comes)) return {};
   const planar::MoverView& own = c.grounds.movers[c.index];
@@ -109,15 +109,15 @@ ObjectInfo WhoComes(const Context& c, const PlaneMove& plane, const CoordinateMo
     cover.areas[0].places[0] = own.pose.place;
   }
   for (const planar::Area& area : cover.all()) {
-    if (const ObjectInfo who = planar::WhoComes(c.index, own.system, area, c.grounds)) return who;
+    if (const ObjectInfo who = planar::MoverArrivingAt(c.index, own.system, area, c.grounds)) return who;
   }
   return {};
 }
 
 }  // namespace
 
-ObjectInfo InTheWay(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, bool on_track) noexcept {
-  ObjectInfo object = WhoComes(c, plane, turn, on_track);
+ObjectInfo FindObstacle(const Context& c, const PlaneMove& plane, const CoordinateMove& turn, bool on_track) noexcept {
+  ObjectInfo object = MoverArrivingAt(c, plane, turn, on_track);
   if (!object && IsWatched(c, c.index)) {
     const planar::Move move = MoveOf(c, plane, turn, on_track);
     object = planar::AskMove(c.index, move, c.grounds);
@@ -147,12 +147,12 @@ ObjectInfo TakeStop(const Context& now, const State& s, const SetPoint& at) noex
     turn.profile = {at[kC]};
     turn.profile.SnapEnd(at[kC]);
   }
-  const ObjectInfo object = InTheWay(c, plane, turn, false);
+  const ObjectInfo object = FindObstacle(c, plane, turn, false);
   if (!object) Take(c, plane, turn, false);
   return object;
 }
 
-ObjectInfo TakeStopOff(const Context& c, const PlacesOff& places, const SetPoint& at) noexcept {
+ObjectInfo TakeStopOff(const Context& c, const DisplacedHull& places, const SetPoint& at) noexcept {
   if (!IsWatched(c, c.index)) return {};
   planar::Move move{.on_track = true, .kept_by_gaps = true};
   for (const planar::Place& place : places.places) move.corners[move.corner_count++] = place;
@@ -197,7 +197,7 @@ void Stand(const Context& c, const State& s) noexcept {
     const planar::Spot &from = parts.spot(s.part), &to = parts.goal(s.part);
     now.goal = {to.system, now.pose.place + (to.origin - from.origin)};
   }
-  ShowRest(c, s);
+  UpdateCourseAtRest(c, s);
   const std::uint32_t group = g.Watching(g.group_of_mover[c.index]);
   if (group == 0) return;
   // Reservations that are not straight are computed anew.

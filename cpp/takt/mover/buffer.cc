@@ -126,7 +126,7 @@ bool LeadsInto(const Context& c, const MoveOnTrack& next, const State& s) {
   const double left = WayLeft(c.streets.network, rider);
   if (left > rest + in_time) return false;
   planar::Rider then = rider;
-  if (FindWay(c, next, s, then).error != ErrorId::kNone) return false;
+  if (ComputeRoute(c, next, s, then).error != ErrorId::kNone) return false;
   const auto old = rider.route.all();
   return then.route.count >= old.size() && std::ranges::equal(old, then.route.all().first(old.size())) &&
          WayLeft(c.streets.network, then) >= left;
@@ -315,7 +315,7 @@ std::uint32_t WaitsFor(const Context& c, std::uint32_t mover) noexcept {
   return waits ? s->buffer.held_by.number - 1 : planar::kNobody;
 }
 
-void TakeTurns(const Context& c, State& s) noexcept {
+void BeginNext(const Context& c, State& s) noexcept {
   if (s.state != planar::ObjectState::kEnabled) return;
   Wake(c, s);
   PassReleases(c, s);
@@ -323,7 +323,7 @@ void TakeTurns(const Context& c, State& s) noexcept {
   if (IsAtCorner(c, s.plane)) StopAtCorner(c, s);
 }
 
-void LookBack(const Context& c, State& s) noexcept {
+void FinishPassed(const Context& c, State& s) noexcept {
   if (s.tickets[kPassing] == 0) return;
   const planar::Rider& rider = c.rider();
   if (s.buffer.direction * (rider.origin + rider.at.position - s.buffer.passing_at) < -1e-9) return;

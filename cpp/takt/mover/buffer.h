@@ -59,9 +59,9 @@ void GoBeside(Ticket ticket, State& s) noexcept;
 // Aborts all buffered commands.
 void AbortBuffered(const Context& c, State& s) noexcept;
 // Cycle stage move: ends a Wait that is over, and begins the next command if it is its turn.
-void TakeTurns(const Context& c, State& s) noexcept;
+void BeginNext(const Context& c, State& s) noexcept;
 // At the end of a cycle: reports the command in kPassing done once the mover has passed its target.
-void LookBack(const Context& c, State& s) noexcept;
+void FinishPassed(const Context& c, State& s) noexcept;
 // Returns the mover that this one, at rest, waits for, with its own command or the next buffered one; kNobody: none.
 std::uint32_t WaitsFor(const Context& c, std::uint32_t mover) noexcept;
 

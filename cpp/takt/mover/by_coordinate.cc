@@ -113,7 +113,7 @@ planar::Verdict WhyNotSo(const Context& c, const State& s, const PlaneMove& move
     const AdmissionResult answer = RefusedThere(s, why);
     return {why, answer.object};
   }
-  if (const ObjectInfo object = InTheWay(c, move, s.others.back(), false)) return {ErrorId::kCollision, object};
+  if (const ObjectInfo object = FindObstacle(c, move, s.others.back(), false)) return {ErrorId::kCollision, object};
   return {ErrorId::kNone, {}};
 }
 
@@ -122,7 +122,7 @@ Slot SlotOf(Coordinate which) {
 }
 
 // X and Y make this motion from now on, by a command of one of them.
-void Put(const CommandContext& g, Coordinate which, const PlaneMove& move, const Endless& endless) {
+void Put(const CommandContext& g, Coordinate which, const PlaneMove& move, const VelocityMove& endless) {
   State& s = g.s;
   if (s.plane.turns) {  // that turn belonged to the preceding move
     CoordinateMove& turn = s.others.back();
@@ -298,8 +298,8 @@ void EndEach(const Context& c, State& s) noexcept {
 void NoteVelocity(const Context& c, std::uint64_t cycle, State& s) noexcept {
   const PlaneState at = At(s.plane.motion, Elapsed(c, s.plane.begin));
   const std::array now = {at.x, at.y, Now(c, s.others.back())};
-  for (std::size_t i = 0; i < kEndless.size(); ++i) {
-    Endless& e = s.endless[i];
+  for (std::size_t i = 0; i < kVelocityCoordinates.size(); ++i) {
+    VelocityMove& e = s.endless[i];
     const Ticket ticket = s.tickets[kSlotOfEndless[i]];
     e.on = e.on && ticket != 0;
     if (!e.on || e.reached || now[i].acceleration != 0) continue;
@@ -313,7 +313,7 @@ void Conclude(const Context& c, Slot slot, State& s) noexcept {
   if (found == std::end(kSlotOfEndless) || s.tickets[slot] == 0) {
     return End(c, slot, FeedbackState::kDone, ErrorId::kNone, s);
   }
-  Endless& e = s.endless[static_cast<std::size_t>(found - std::begin(kSlotOfEndless))];
+  VelocityMove& e = s.endless[static_cast<std::size_t>(found - std::begin(kSlotOfEndless))];
   End(c, slot, e.on ? FeedbackState::kError : FeedbackState::kDone, e.on ? e.end : ErrorId::kNone, s, e.object);
   if (e.on) AbortBuffered(c, s);
   e = {};

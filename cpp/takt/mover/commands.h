@@ -58,7 +58,7 @@ struct MoveToPosition {
   Buffering buffer_mode = Buffering::kAborting;
   double blending = 0;  // [mm] before the end of the preceding move, at which this one begins; needs kBuffered
 };
-inline bool TurnsAlong(const MoveToPosition& move) noexcept {
+inline bool HasOrientationTarget(const MoveToPosition& move) noexcept {
   return move.use_orientation && move.c.has_value();
 }
 

@@ -92,16 +92,16 @@ void Put(const Context& c, const Course& course) {
 
 // Returns how the mover brakes in the plane from this set point, its state at the beginning of this cycle. A motion
 // that already stops with the maximum dynamics stays as it is.
-Escape EscapeFrom(const Context& c, const State& s, const SetPoint& at) {
+StopMotion EscapeFrom(const Context& c, const State& s, const SetPoint& at) {
   const bool brakes = s.external.mode == SetpointMode::kNone && (s.plane.waits || !s.plane.goes);
   const bool rests = Elapsed(c, s.plane.begin) >= DurationOf(s.plane.motion);
   if (brakes && (s.plane.hard || rests)) return {s.plane.motion, s.plane.begin, c.cycle.count};
-  Escape escape{StandingAt(at[kX].position, at[kY].position), c.cycle.count, c.cycle.count};
+  StopMotion escape{StandingAt(at[kX].position, at[kY].position), c.cycle.count, c.cycle.count};
   PlanStop(c, s, at, c.params.xy.maximum.limits(), escape.motion);
   return escape;
 }
 
-Course CourseOf(const Context& c, const Area& kind, const Escape& escape) {
+Course CourseOf(const Context& c, const Area& kind, const StopMotion& escape) {
   return CourseOf(CoverOf(kind, escape.motion, Elapsed(c, escape.begin)));
 }
 
@@ -115,7 +115,7 @@ Course CourseOnTrack(const Context& c, const Area& kind) {
 
 // Returns the course from the beginning of this cycle on, with the rotation `turn`.
 Course CourseNow(const Context& c, const State& s, const CoordinateMove& turn) {
-  if (!IsOnTrack(s)) return CourseOf(c, KindOf(c, s, turn, s.set_point), EscapeOf(c, s));
+  if (!IsOnTrack(s)) return CourseOf(c, KindOf(c, s, turn, s.set_point), StopMotionOf(c, s));
   Area kind = KindOf(c, s, turn, s.set_point);
   AddOff(c, s, s.set_point, s.external.taken, kind);
   return CourseOnTrack(c, kind);
@@ -123,7 +123,7 @@ Course CourseNow(const Context& c, const State& s, const CoordinateMove& turn) {
 
 }  // namespace
 
-void ShowCourse(const Context& c, const State& s) noexcept {
+void SetCourse(const Context& c, const State& s) noexcept {
   planar::Guard& guard = GuardOf(c);
   planar::Guard::Figure& figure = guard.figure(c.index);
   figure.kind = KindOf(c, s, s.others.back(), s.set_point);
@@ -142,7 +142,7 @@ void ShowCourse(const Context& c, const State& s) noexcept {
   if (course.count > 0) guard.Put(c.index, course);
 }
 
-void ShowRest(const Context& c, const State& s) noexcept {
+void UpdateCourseAtRest(const Context& c, const State& s) noexcept {
   planar::Guard& guard = GuardOf(c);
   const planar::MoverView& now = c.grounds.movers[c.index];
   if (now.comes) {
@@ -164,17 +164,17 @@ void ShowRest(const Context& c, const State& s) noexcept {
   // The star has set the course of a planet that moves.
   const bool led = IsPlanet(s) && !now.rests;
   if (!led && (turns || off || (now.rests && !same) || figure.on_track != now.on_track || known.count == 0))
-    ShowCourse(c, s);
+    SetCourse(c, s);
 }
 
-Escape EscapeOf(const Context& c, const State& s) noexcept {
+StopMotion StopMotionOf(const Context& c, const State& s) noexcept {
   return s.escape.cycle == c.cycle.count ? s.escape : EscapeFrom(c, s, s.set_point);
 }
 
-ObjectInfo TakeCourse(const Context& now, const SetPoint& at, State& s) noexcept {
+ObjectInfo TryCourse(const Context& now, const SetPoint& at, State& s) noexcept {
   Context c = now;
   ++c.cycle.count;
-  const Escape escape = EscapeFrom(c, s, at);
+  const StopMotion escape = EscapeFrom(c, s, at);
   const Course course = CourseOf(c, KindOf(c, s, s.others.back(), at), escape);
   const std::uint32_t found = Find(c, course);
   if (found != kNobody) return OneInTheWay(found);
@@ -183,12 +183,12 @@ ObjectInfo TakeCourse(const Context& now, const SetPoint& at, State& s) noexcept
   return {};
 }
 
-ObjectInfo InTheTurn(const Context& c, const State& s, const CoordinateMove& turn) noexcept {
+ObjectInfo FindTurnObstacle(const Context& c, const State& s, const CoordinateMove& turn) noexcept {
   if (IsOver(c, turn)) return {};
   return OneInTheWay(Find(c, CourseNow(c, s, turn)));
 }
 
-ObjectInfo InTheCourse(const Context& c, const planar::Spot& at, double turned) noexcept {
+ObjectInfo FindCourseObstacle(const Context& c, const planar::Spot& at, double turned) noexcept {
   Course stands;
   planar::Add(AreaAt(c.params, at.origin, turned), stands);
   return OneInTheWay(GuardOf(c).Find(c.index, at.system, stands));
@@ -214,8 +214,8 @@ ObjectInfo TakeCourseOff(const Context& now, const State& s, const SetPoint& at)
 void Hold(const Context& c, std::uint32_t other, State& s) noexcept {
   PlaneMove& plane = s.plane;
   const bool known = s.escape.cycle == c.cycle.count;
-  const Escape rest =
-      known ? s.escape : Escape{StandingAt(s.set_point[kX].position, s.set_point[kY].position), c.cycle.count, 0};
+  const StopMotion rest =
+      known ? s.escape : StopMotion{StandingAt(s.set_point[kX].position, s.set_point[kY].position), c.cycle.count, 0};
   if (plane.goes && plane.each) {
     const auto [x, y] = plane.goals;
     plane.next = {.x = x.active ? x.target : rest.motion.end_x, .y = y.active ? y.target : rest.motion.end_y};
@@ -248,7 +248,7 @@ bool IsHeldEach(const Context& c, const planar::Place& here, const planar::Place
   const auto ahead = [](const Goal& goal, double left) {
     if (!goal.active) return 0.0;
     const trajectory::Limits& l = goal.limits;
-    const double needed = planar::WayToRest(l.velocity, {l.deceleration, l.jerk}) + kAhead;
+    const double needed = planar::StoppingDistance(l.velocity, {l.deceleration, l.jerk}) + kAhead;
     return std::clamp(left, -needed, needed);
   };
   const double x = ahead(s.plane.goals[0], way.x), y = ahead(s.plane.goals[1], way.y);
@@ -270,7 +270,8 @@ bool IsHeld(const Context& c, State& s) noexcept {
   const planar::Place way = planar::Place{plane.next.x, plane.next.y} - here;
   if (plane.each) return IsHeldEach(c, here, way, s);
   const double length = maths::Hypot(way.x, way.y);
-  const double needed = planar::WayToRest(*plane.next.velocity, {*plane.next.deceleration, *plane.next.jerk}) + kAhead;
+  const double needed =
+      planar::StoppingDistance(*plane.next.velocity, {*plane.next.deceleration, *plane.next.jerk}) + kAhead;
   const double share = length > needed ? needed / length : 1;
   Area ahead = KindOf(c, s, s.others.back(), s.set_point);
   ahead.places = {here, here + planar::Place{share * way.x, share * way.y}};

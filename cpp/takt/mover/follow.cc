@@ -70,7 +70,8 @@ bool AddsNoMore(const Context& c, const External& external, const SetPoint& to) 
 }
 
 // Returns the range of positions that a coordinate passes if it has to stop.
-trajectory::Profile::Range WayToRest(const Context& c, const KinematicState& from, const trajectory::Limits& limits) {
+trajectory::Profile::Range StoppingDistance(const Context& c, const KinematicState& from,
+                                            const trajectory::Limits& limits) {
   trajectory::Profile stop;
   if (planar::Rests(from) || !c.planner.Stop(from, limits, stop).ok()) return {from.position, from.position};
   return stop.PositionRange();
@@ -82,11 +83,12 @@ double ReachOf(const Context& c, const PlaneState& off) {
   const planar::Brakes brakes{c.params.xy.maximum.limits().deceleration, c.params.xy.maximum.jerk};
   const double a = Length(off.x.acceleration, off.y.acceleration), t = a / brakes.jerk;
   const double v = Length(off.x.velocity, off.y.velocity);
-  return Length(off.x.position, off.y.position) + t * (v + a * t / 3) + planar::WayToRest(v + 0.5 * a * t, brakes);
+  return Length(off.x.position, off.y.position) + t * (v + a * t / 3) +
+         planar::StoppingDistance(v + 0.5 * a * t, brakes);
 }
 
 // Sets the displacement by which the gaps of other movers on tracks to this one grow; kCollision if there is no room.
-ErrorId GetOff(const Context& c, const PlaneState& off, ObjectInfo& object) {
+ErrorId ReserveDisplacement(const Context& c, const PlaneState& off, ObjectInfo& object) {
   planar::Rider& rider = c.rider();
   const double before = rider.off;
   rider.off = ReachOf(c, off);
@@ -115,7 +117,7 @@ bool CanFollow(const Context& c, const State& s, const SetPoint& from, const Set
     const CoordinateParams params = ParamsOf(c, s, i);
     const KinematicState& k = to[kOthers[i]];
     if (!Keeps(from[kOthers[i]], {}, k, {}, params.maximum.limits(), period)) return false;
-    const trajectory::Profile::Range stop = WayToRest(c, k, params.maximum.limits());
+    const trajectory::Profile::Range stop = StoppingDistance(c, k, params.maximum.limits());
     if (kOthers[i] == kC) {
       const bool bound = moves || IsStar(c) || std::isfinite(params.lower);
       if (bound && !InOneWindow(c.params.c, stop.min, stop.max)) return false;
@@ -195,18 +197,18 @@ ErrorId Follow(const Context& c, SetPoint& at, State& s, ObjectInfo& object) noe
   if (!follows) return ErrorId::kWildSetPoint;
   const PlaneState off = OffTrack(s, external.given, Elapsed(c, s.plane.begin) + c.cycle.period_s);
   if (IsOnTrack(s)) {
-    const PlacesOff places = PlacesOffTrack(c, off);
+    const DisplacedHull places = DisplacedHullOf(c, off);
     if (const ErrorId why = DiagnoseCover(c, s, CoverOf(c, s, places)); why != ErrorId::kNone) return why;
     object = TakeStopOff(c, places, to);
     if (!object) object = TakeCourseOff(c, s, to);
   } else {
     if (const ErrorId why = DiagnoseCover(c, s, CoverOfStop(c, to)); why != ErrorId::kNone) return why;
     if (external.mode == SetpointMode::kRelative) object = TakeStop(c, s, to);
-    if (!object) object = TakeCourse(c, to, s);
+    if (!object) object = TryCourse(c, to, s);
   }
   ErrorId why = object ? ErrorId::kCollision : ErrorId::kNone;
   if (!object && c.rider().on)
-    why = GetOff(c, IsOnTrack(s) ? off : PlaneState{external.given[kX], external.given[kY]}, object);
+    why = ReserveDisplacement(c, IsOnTrack(s) ? off : PlaneState{external.given[kX], external.given[kY]}, object);
   if (why != ErrorId::kNone) return why;
   external.taken = external.given;
   at = to;

@@ -185,7 +185,7 @@ double LeadOf(const trajectory::Limits& l) {
 // Returns true if the mover rests behind a mover with the same heading, and would have to brake for it. The guard lets
 // it move only as far as it could stop behind the present position of that mover: so it starts later by the time of a
 // stop from full speed.
-bool WouldRunUp(const Context& c, const State& s, const SurfaceRoute& r, std::uint64_t from) {
+bool WouldBrakeForLeader(const Context& c, const State& s, const SurfaceRoute& r, std::uint64_t from) {
   const Visit& to = r.visits[from + 1];
   const std::optional<std::uint32_t> before = Before(c, to);
   if (!before || RouteOf(c, *before).passed > to.after_visit) return false;
@@ -246,7 +246,7 @@ void GoStraightOn(const Context& c, bool rests, State& s, SurfaceRoute& r) {
   }
   std::uint64_t to = from;
   while (to < r.granted && HeadingAt(r, to) == HeadingAt(r, from)) ++to;
-  if (to <= r.passed || (rests && WouldRunUp(c, s, r, from))) return;
+  if (to <= r.passed || (rests && WouldBrakeForLeader(c, s, r, from))) return;
   if (!rests && AimsAt(r, r.visits[to])) {  // its motion ends there already
     r.sent = to;
     return;
@@ -329,7 +329,7 @@ std::uint64_t StopsAt(const Context& c, const State& s, const SurfaceRoute& r) n
   return std::min(visit, r.granted);
 }
 
-void FollowRoutes(const Everyone& all) noexcept {
+void FollowRoutes(const RoutedMovers& all) noexcept {
   if (all.routes.changes == 0) return;
   all.Each([](const Context& c, State& s, SurfaceRoute& r) { Look(c, s, r); });
   all.Each([](const Context& c, const State&, SurfaceRoute& r) {

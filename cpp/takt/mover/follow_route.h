@@ -25,7 +25,7 @@
 namespace takt::mover {
 
 // All movers with their routes.
-struct Everyone {
+struct RoutedMovers {
   void* owner = nullptr;
   Context (*context)(void* owner, std::size_t mover) noexcept = nullptr;
   std::span<State> states{};
@@ -41,7 +41,7 @@ struct Everyone {
 };
 
 // Cycle stage move, before the movers step.
-void FollowRoutes(const Everyone& all) noexcept;
+void FollowRoutes(const RoutedMovers& all) noexcept;
 
 inline SurfaceRoute& RouteOf(const Context& c, std::size_t mover) noexcept {
   return c.fleet.routes->of[mover];

@@ -196,7 +196,7 @@ Terms TermsOf(const Context& c, const Command& command, State& s) noexcept {
   if (move && ToMoverSystem(c, s, move->reference, to.x, to.y) != ErrorId::kNone) return terms;
   const bool moves = !IsPlaneResting(c, s), turns = Turns(c, s);
   const bool is_to_move = one || to.x != from.x || to.y != from.y;
-  const bool is_to_turn = turn || (move && TurnsAlong(*move) && *move->c != s.set_point[kC].position);
+  const bool is_to_turn = turn || (move && HasOrientationTarget(*move) && *move->c != s.set_point[kC].position);
   const bool both = (moves || is_to_move) && (turns || is_to_turn);
   Body& body = c.fleet.bodies[c.index];
   if (moves || turns) {
@@ -223,7 +223,7 @@ void Compose(const SetPoint& star, const FormationState& f, SetPoint& at) noexce
   at[kC] = {c.position + f.c, c.velocity, c.acceleration};
 }
 
-void MindPlanets(const Context& c, State& s) noexcept {
+void CheckPlanets(const Context& c, State& s) noexcept {
   if (!IsStar(c)) return;
   const bool lost = LostPlanet(c) != kNoStar, before = s.formation.brakes;
   s.formation.brakes = lost;
@@ -232,7 +232,7 @@ void MindPlanets(const Context& c, State& s) noexcept {
   BringToRest(c, nullptr, s);
 }
 
-void MindStar(const Context& c, State& s) noexcept {
+void CheckStar(const Context& c, State& s) noexcept {
   if (!IsPlanet(s)) return;
   if (!s.formation.joined) {
     s.formation.joined = true;

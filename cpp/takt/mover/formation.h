@@ -77,9 +77,9 @@ void ShareOut(const Context& c, double turning, State& s) noexcept;
 void Compose(const SetPoint& star, const FormationState& formation, SetPoint& at) noexcept;
 
 // For a star, before it moves: brings it to rest if a planet cannot continue.
-void MindPlanets(const Context& c, State& s) noexcept;
+void CheckPlanets(const Context& c, State& s) noexcept;
 // For a planet, after its star has moved: reports that it has joined; drops out at rest if one of the two cannot
 // continue.
-void MindStar(const Context& c, State& s) noexcept;
+void CheckStar(const Context& c, State& s) noexcept;
 
 }  // namespace takt::mover

@@ -54,8 +54,8 @@ planar::Verdict Find(const planar::Network& network, const Rider& r, const SyncP
     return {ErrorId::kTargetBehindLimit, track, road.length};
   }
   if (!BeginOf(network, r, place.track, begin)) return {ErrorId::kTrail, track};
-  const double position = road.closed ? planar::OnLoop(WayOf(place.direction), place.position, place.modulo_tolerance,
-                                                       r.at.position, road.length)
+  const double position = road.closed ? planar::OnLoop(ReachableInterval(place.direction), place.position,
+                                                       place.modulo_tolerance, r.at.position, road.length)
                                       : place.position;
   total = begin + position;
   return {};
@@ -223,7 +223,7 @@ AdmissionResult CarryOut(const CommandContext& g, const GearInPosOnTrackWithMast
     BeginOf(network, next, its_place.track, begin);
     next.gear.takes_masters_way = true;
     next.gear.apart = begin - its_begin;
-    if (!planar::TakeMastersWay(network, master, next)) {
+    if (!planar::TakeMastersRoute(network, master, next)) {
       return Refused(ErrorId::kNoRoute, ObjectAt(ObjectKind::kMover, index));
     }
   }
@@ -248,7 +248,7 @@ void Lead(const Context& c, State& s) noexcept {
   const MasterMover& master = streets.movers[rider.gear.master];
   if (!master.enabled || !master.on_track) return Lose(c, ErrorId::kMasterOffTrack, s);
   if (rider.gear.takes_masters_way &&
-      !planar::TakeMastersWay(streets.network, streets.riders[rider.gear.master], rider)) {
+      !planar::TakeMastersRoute(streets.network, streets.riders[rider.gear.master], rider)) {
     Lose(c, ErrorId::kMasterLost, s);
   }
 }

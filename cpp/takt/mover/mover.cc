@@ -31,7 +31,7 @@ Context NextTo(const Context& c) {
 
 // Returns true if X and Y of a mover on a track were moving when this cycle began, or move in it.
 bool MovesOnTrack(const Context& c, const State& s) {
-  return GoesAlongTrack(c, s) || !planar::Rests(s.set_point[kX]) || !planar::Rests(s.set_point[kY]);
+  return IsMovingAlongTrack(c, s) || !planar::Rests(s.set_point[kX]) || !planar::Rests(s.set_point[kY]);
 }
 
 // Begins the motion that waits for a stop: to the target, at rest on the old line; back onto the track, at rest along
@@ -96,9 +96,9 @@ bool Moves(const State& s, const SetPoint& at) {
 }
 
 // In the plane, brakes the mover instead of letting it enter the course of another mover.
-void MindOthers(const Context& c, SetPoint& at, State& s) {
+void AvoidOthers(const Context& c, SetPoint& at, State& s) {
   if (IsOnTrack(s) || !Moves(s, at)) return;
-  const ObjectInfo other = TakeCourse(c, at, s);
+  const ObjectInfo other = TryCourse(c, at, s);
   if (!other) return;
   Hold(c, other.number - 1, s);
   at = Planned(c, s);
@@ -120,7 +120,7 @@ void MoveOn(const Context& c, State& s) {
       at = Planned(c, s);
     }
   }
-  if (s.external.mode == SetpointMode::kNone) MindOthers(c, at, s);
+  if (s.external.mode == SetpointMode::kNone) AvoidOthers(c, at, s);
   s.set_point = at;
   if (s.external.mode == SetpointMode::kNone && IsOver(NextTo(c), s.plane)) c.rider().off = 0;
 }
@@ -142,13 +142,13 @@ CommandMode Settled(const Context& c, const State& s) {
 }
 
 // Ends a move onto or from a track.
-void EndOfWay(const Context& c, State& s) {
+void TargetPosition(const Context& c, State& s) {
   if (s.mode == CommandMode::kJoiningTrack) {
     s.mode = CommandMode::kOnTrack;
     s.plane = {};
   }
   if (s.mode == CommandMode::kLeavingTrack) {
-    LeaveStreets(c, s);
+    LeaveTrackNetwork(c, s);
     s.mode = CommandMode::kFreeMovement;
   }
 }
@@ -172,14 +172,14 @@ void Finish(const Context& now, State& s) {
     if (there && (!s.plane.turns || turned)) {
       done(kPlane);
       s.plane.turns = false;
-      EndOfWay(c, s);
+      TargetPosition(c, s);
     }
     for (std::size_t i = 0; i < kOthers.size(); ++i) {
       if (IsOver(c, s.others[i])) Conclude(now, static_cast<Slot>(kMoveZ + i), s);
     }
     if (IsOver(c, s, kX)) Conclude(now, kMoveX, s);
     if (IsOver(c, s, kY)) Conclude(now, kMoveY, s);
-    if (!GoesAlongTrack(c, s)) done(kHaltOnTrack);
+    if (!IsMovingAlongTrack(c, s)) done(kHaltOnTrack);
     const bool rests = IsResting(c, s);
     if (rests) {
       done(kHalt);
@@ -386,12 +386,12 @@ void Step(const Context& c, const Inputs& inputs, State& s) noexcept {
   if (IsOnTrack(s)) s.track = c.rider().route.first();
   NoteGear(c, s);
   Watch(c, inputs, s);
-  MindPlanets(c, s);
-  TakeTurns(c, s);
+  CheckPlanets(c, s);
+  BeginNext(c, s);
   MoveOn(c, s);
-  MindStar(c, s);
+  CheckStar(c, s);
   Locate(c, s);
-  LookBack(c, s);
+  FinishPassed(c, s);
   Finish(c, s);
   Change(c, s);
   Stand(NextTo(c), s);

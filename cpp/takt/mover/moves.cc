@@ -118,7 +118,7 @@ AdmissionResult MoveTo(const CommandContext& g, const MoveToPosition& command) n
   CoordinateMove turn = s.others.back();
   const KinematicState turned = Now(g.c, turn);
   const CoordinateParams free = Windowed(g.c.params.c, turned.position, false);
-  const bool turns_along = TurnsAlong(command);
+  const bool turns_along = HasOrientationTarget(command);
   if (turns_along) {
     const auto plan = [&](const Limits& as) {
       return PlanCoordinate(g.c.planner, turned, *command.c, as, free, turn.profile);
@@ -146,14 +146,14 @@ AdmissionResult MoveTo(const CommandContext& g, const MoveToPosition& command) n
   if (const ErrorId why = DiagnoseCover(g.c, s, CoverOf(g.c, *move, turn)); why != ErrorId::kNone) {
     return RefusedThere(s, why);
   }
-  if (const ObjectInfo object = InTheWay(g.c, *move, turn, false)) return Refused(ErrorId::kCollision, object);
-  if (const ObjectInfo object = InTheTurn(g.c, s, turn)) return Refused(ErrorId::kCollision, object);
+  if (const ObjectInfo object = FindObstacle(g.c, *move, turn, false)) return Refused(ErrorId::kCollision, object);
+  if (const ObjectInfo object = FindTurnObstacle(g.c, s, turn)) return Refused(ErrorId::kCollision, object);
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   if (turns_along) End(g.c, kMoveC, FeedbackState::kAborted, ErrorId::kNone, s);
   EndEach(g.c, s);
   Take(g, kPlane);
   s.others.back() = turn;
-  if (turns_along) ShowCourse(g.c, s);
+  if (turns_along) SetCourse(g.c, s);
   s.plane = *move;
   s.plane.turns = turns_along;
   s.plane.limits = limits;
@@ -203,20 +203,21 @@ AdmissionResult WhyNotTurning(const CommandContext& g, const CoordinateMove& mov
   } else if (const ErrorId why = DiagnoseRoute(g.c, s, g.c.rider(), move); why != ErrorId::kNone) {
     return Refused(why);
   }
-  if (const ObjectInfo object = InTheWay(g.c, s.plane, move, IsOnTrack(s))) return Refused(ErrorId::kCollision, object);
-  if (const ObjectInfo object = InTheTurn(g.c, s, move)) return Refused(ErrorId::kCollision, object);
+  if (const ObjectInfo object = FindObstacle(g.c, s.plane, move, IsOnTrack(s)))
+    return Refused(ErrorId::kCollision, object);
+  if (const ObjectInfo object = FindTurnObstacle(g.c, s, move)) return Refused(ErrorId::kCollision, object);
   return {};
 }
 
 // C makes this motion from now on.
-AdmissionResult PutTurn(const CommandContext& g, const CoordinateMove& move, const Endless& endless) {
+AdmissionResult PutTurn(const CommandContext& g, const CoordinateMove& move, const VelocityMove& endless) {
   State& s = g.s;
   if (!IsInside(g.c, move)) {
     if (s.mode == CommandMode::kFreeMovement) s.mode = CommandMode::kCRotationFreeMovement;
     if (s.mode == CommandMode::kOnTrack) s.mode = CommandMode::kCRotationOnTrack;
   }
   s.others.back() = move;
-  ShowCourse(g.c, s);
+  SetCourse(g.c, s);
   Reserve(g.c, s, IsOnTrack(s));
   End(g.c, kHalt, FeedbackState::kAborted, ErrorId::kNone, s);
   Take(g, kMoveC);
@@ -227,7 +228,7 @@ AdmissionResult PutTurn(const CommandContext& g, const CoordinateMove& move, con
 // Turns to `target`, a function of the state of C and of the limits.
 template <typename Command, typename Target>
 AdmissionResult TurnTo(const CommandContext& g, const Command& command, Ask ask, const Target& target,
-                       const Endless& endless = {}) {
+                       const VelocityMove& endless = {}) {
   State& s = g.s;
   if (const ErrorId why = WhyNotTurn(s, ask); why != ErrorId::kNone) return Refused(why);
   CoordinateMove move = s.others.back();
@@ -291,9 +292,9 @@ AdmissionResult CarryOut(const CommandContext& g, const MoveVelocityC& command) 
                  .deceleration = command.deceleration,
                  .jerk = command.jerk};
   const double sense = std::copysign(1.0, command.velocity);
-  const Endless endless{.on = true,
-                        .velocity = sense * std::min(*as.velocity, g.c.params.c.maximum.velocity),
-                        .end = ErrorId::kTargetBehindLimit};
+  const VelocityMove endless{.on = true,
+                             .velocity = sense * std::min(*as.velocity, g.c.params.c.maximum.velocity),
+                             .end = ErrorId::kTargetBehindLimit};
   return TurnTo(
       g, as, Ask::kMoveC, [&](const KinematicState&, const Limits&) { return sense * kFar; }, endless);
 }

@@ -135,7 +135,7 @@ Cover CoverOfStop(const Context& c, const SetPoint& at) noexcept {
   return cover;
 }
 
-PlacesOff PlacesOffTrack(const Context& c, const PlaneState& off) noexcept {
+DisplacedHull DisplacedHullOf(const Context& c, const PlaneState& off) noexcept {
   const planar::Rider& r = c.rider();
   const planar::Network& network = c.streets.network;
   const auto place = [&](std::uint32_t track, double s) {
@@ -155,7 +155,7 @@ PlacesOff PlacesOffTrack(const Context& c, const PlaneState& off) noexcept {
   return {{here, there, here + by, there + by}, BesideLine(stop)};
 }
 
-Cover CoverOf(const Context& c, const State& s, const PlacesOff& places) noexcept {
+Cover CoverOf(const Context& c, const State& s, const DisplacedHull& places) noexcept {
   Cover cover;
   planar::Area& area = cover.areas[cover.count++];
   const Angles angles = AnglesOf(c, s.others.back());
@@ -225,7 +225,7 @@ ErrorId DiagnoseRoute(const Context& c, const State& s, const planar::Rider& rid
   const planar::Parts& parts = PartsOf(c);
   if (parts.none()) return ErrorId::kNone;
   const planar::Network& network = c.streets.network;
-  const planar::Interval way = planar::WayOf(network, rider);
+  const planar::Interval way = planar::ReachableInterval(network, rider);
   const Area kind = KindOnTrack(c, s, turn);
   ErrorId why = ErrorId::kNone;
   planar::EachStretch(network, rider.route, way.from, way.to, [&](std::uint32_t track, double from, double to) {
@@ -238,7 +238,7 @@ bool LeadsOver(const Context& c, const State& s, std::uint32_t part) noexcept {
   if (!IsOnTrack(s)) return false;
   const planar::Parts& parts = PartsOf(c);
   const planar::Network& network = c.streets.network;
-  const planar::Interval way = planar::WayOf(network, c.rider());
+  const planar::Interval way = planar::ReachableInterval(network, c.rider());
   const Area kind = KindOnTrack(c, s, s.others.back());
   bool leads = false;
   planar::EachStretch(network, c.rider().route, way.from, way.to, [&](std::uint32_t track, double from, double to) {

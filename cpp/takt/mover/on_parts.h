@@ -30,12 +30,12 @@ Cover CoverOf(const Context& c, const State& s) noexcept;
 Cover CoverOfStop(const Context& c, const SetPoint& at) noexcept;
 // Of a mover displaced from its track by `off` [mm] at the end of this cycle: the hull of its centre until it rests,
 // with the return onto the track.
-struct PlacesOff {
+struct DisplacedHull {
   std::array<planar::Place, 4> places;
   double margin = 0;  // [mm] around these positions
 };
-PlacesOff PlacesOffTrack(const Context& c, const PlaneState& off) noexcept;
-Cover CoverOf(const Context& c, const State& s, const PlacesOff& places) noexcept;
+DisplacedHull DisplacedHullOf(const Context& c, const PlaneState& off) noexcept;
+Cover CoverOf(const Context& c, const State& s, const DisplacedHull& places) noexcept;
 // Along a planned motion of X and Y with a rotation of C.
 Cover CoverOf(const Context& c, const PlaneMove& move, const CoordinateMove& turn) noexcept;
 
@@ -46,7 +46,7 @@ Cover CoverOf(const planar::Area& kind, const PlaneMotion& motion, double t) noe
 // touches a part that is neither enabled nor about to be; else kNone.
 ErrorId DiagnoseCover(const Context& c, const State& s, const Cover& cover) noexcept;
 
-// The same for the route of a mover on tracks (planar::WayOf), with its present angle and those of `turn`.
+// The same for the route of a mover on tracks (planar::ReachableInterval), with its present angle and those of `turn`.
 ErrorId DiagnoseRoute(const Context& c, const State& s, const planar::Rider& rider,
                       const CoordinateMove& turn) noexcept;
 // Returns true if the route of a mover on a track leads over the part; false off tracks.

@@ -39,7 +39,7 @@ planar::Verdict WithoutGeometry(std::uint32_t track) {
 // Returns why a track is not enabled: its part may be moving.
 planar::Verdict WhyNotEnabled(const Context& c, std::uint32_t track) {
   const std::uint32_t part = c.streets.tracks[track].part;
-  if (part != planar::kNoPart && IsOnItsWay(c, part)) {
+  if (part != planar::kNoPart && IsPartMoving(c, part)) {
     return {ErrorId::kPartDisabled, ObjectAt(ObjectKind::kPart, part)};
   }
   return {ErrorId::kTrackDisabled, TrackOf(track)};
@@ -52,7 +52,7 @@ std::uint32_t PartBetween(const Context& c, std::uint32_t from, std::uint32_t to
   const std::array both = {c.streets.tracks[to].part, c.streets.tracks[from].part};
   const auto goes = [&](std::uint32_t part) { return part != planar::kNoPart && parts.all[part].positions.size() > 1; };
   for (const std::uint32_t part : both) {
-    if (goes(part) && IsOnItsWay(c, part)) return part;
+    if (goes(part) && IsPartMoving(c, part)) return part;
   }
   const auto found = std::ranges::find_if(both, goes);
   return found == both.end() ? planar::kNoPart : *found;
@@ -90,11 +90,12 @@ std::uint32_t PartOnTheWay(const Context& c, std::uint32_t from, std::uint32_t t
 }
 
 planar::Verdict NoWayTo(const Context& c, const planar::Destination& to, const planar::Rider& rider) {
-  const planar::NoWay why = planar::WhyNoWay(c.streets.network, c.streets.search, to, rider);
-  if (why == planar::NoWay::kNotLinked) {
+  const planar::UnreachableReason why = planar::DiagnoseUnreachable(c.streets.network, c.streets.search, to, rider);
+  if (why == planar::UnreachableReason::kNotLinked) {
     const std::uint32_t part = PartOnTheWay(c, rider.route.first(), to.track);
     if (part != planar::kNoPart) {
-      return {ErrorId::kNoRoute, ObjectAt(ObjectKind::kPart, part), static_cast<double>(planar::NoWay::kPartAway)};
+      return {ErrorId::kNoRoute, ObjectAt(ObjectKind::kPart, part),
+              static_cast<double>(planar::UnreachableReason::kPartAway)};
     }
   }
   return {ErrorId::kNoRoute, TrackOf(to.track), static_cast<double>(why)};
@@ -114,7 +115,7 @@ AdmissionResult MoveAs(const auto& command, const CommandContext& g, double x, d
 
 }  // namespace
 
-planar::Way WayOf(TurnDirection direction) noexcept {
+planar::Way ReachableInterval(TurnDirection direction) noexcept {
   switch (direction) {
     case TurnDirection::kPositive:
       return planar::Way::kPositive;
@@ -217,7 +218,7 @@ double LeastGap(const Context& c, const State& s, const planar::Rider& rider, do
     look(track, c.streets.network[track].length);
   }
   double in_bends = std::max(least, wanted);
-  const planar::Interval way = planar::WayOf(c.streets.network, rider);
+  const planar::Interval way = planar::ReachableInterval(c.streets.network, rider);
   planar::EachStretch(
       c.streets.network, rider.route, way.from, way.to, [&](std::uint32_t track, double from, double to) {
         in_bends = planar::ClearGapAlong(*c.streets.network[track].track, largest, turned, from, to, in_bends);
@@ -239,7 +240,8 @@ void TakeRoute(const Context& c, const planar::Route& route) noexcept {
   planar::TakeTracks(route.all(), c.grounds);
 }
 
-planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const State& s, planar::Rider& rider) noexcept {
+planar::Verdict ComputeRoute(const Context& c, const MoveOnTrack& command, const State& s,
+                             planar::Rider& rider) noexcept {
   TrackNetworkState& streets = c.streets;
   const std::uint32_t track = command.track.empty() ? s.track : streets.Find(command.track.view());
   if (track == planar::kNoTrack) return {ErrorId::kParameter, {}};
@@ -251,7 +253,7 @@ planar::Verdict FindWay(const Context& c, const MoveOnTrack& command, const Stat
   const bool turns_count = road.closed && command.direction == TurnDirection::kNonModulo;
   const bool outside = !(command.position >= 0 && command.position <= road.length);
   if (outside && !turns_count) return {ErrorId::kTargetBehindLimit, TrackOf(track), road.length};
-  const planar::Destination to{track, command.position, WayOf(command.direction), command.additional_turns,
+  const planar::Destination to{track, command.position, ReachableInterval(command.direction), command.additional_turns,
                                command.modulo_tolerance};
   if (!planar::Send(streets.network, streets.search, to, rider)) return NoWayTo(c, to, rider);
   const planar::Verdict route = AskRoute(c, rider.route);
@@ -262,10 +264,10 @@ std::uint32_t PartAwaited(const Context& c, const Command& command, const State&
   const auto* move = std::get_if<MoveOnTrack>(&command);
   if (!move || !IsOnTrack(s) || c.streets.parts->none()) return planar::kNoPart;
   planar::Rider then = c.rider();
-  const planar::Verdict way = FindWay(c, *move, s, then);
+  const planar::Verdict way = ComputeRoute(c, *move, s, then);
   if (way.object.kind != ObjectKind::kPart) return planar::kNoPart;
   const std::uint32_t part = way.object.number - 1;
-  return IsOnItsWay(c, part) ? part : planar::kNoPart;
+  return IsPartMoving(c, part) ? part : planar::kNoPart;
 }
 
 AdmissionResult CarryOut(const CommandContext& g, const MoveOnTrack& command) noexcept {
@@ -273,7 +275,7 @@ AdmissionResult CarryOut(const CommandContext& g, const MoveOnTrack& command) no
   if (const ErrorId why = Diagnose(s, Ask::kMoveOnTrack); why != ErrorId::kNone) return Refused(why);
   planar::Rider next = g.c.rider();
   next.pace = PaceOf(g.c.params, LimitsOf(command, g.c.params.xy, s.limited_by), command.dynamics_reduction);
-  if (const planar::Verdict way = FindWay(g.c, command, s, next); way.error != ErrorId::kNone) {
+  if (const planar::Verdict way = ComputeRoute(g.c, command, s, next); way.error != ErrorId::kNone) {
     return Refused(way);
   }
   const double least = LeastGap(g.c, s, next, command.gap.value_or(g.c.params.gap));

@@ -252,9 +252,10 @@ bool PlanCorner(Planner& planner, double x, double y, double most, const Limits&
     // The speed at a distance before the corner from which the mover can stop at the corner, stop its motion across
     // before the second line, and stop its motion against the direction of that line.
     const auto allowed = [&](double way) {
-      double speed = std::min(highest, planar::SpeedForWay(way, brakes(1, limits)));
-      if (sine > kNothing) speed = std::min(speed, planar::SpeedForWay(way * sine, brakes(share, even)) / sine);
-      if (cosine < -kNothing) speed = std::min(speed, planar::SpeedForWay(-way * cosine, brakes(rest, even)) / -cosine);
+      double speed = std::min(highest, planar::SpeedForDistance(way, brakes(1, limits)));
+      if (sine > kNothing) speed = std::min(speed, planar::SpeedForDistance(way * sine, brakes(share, even)) / sine);
+      if (cosine < -kNothing)
+        speed = std::min(speed, planar::SpeedForDistance(-way * cosine, brakes(rest, even)) / -cosine);
       return speed;
     };
     const double now = std::max(0.0, head.end().velocity);

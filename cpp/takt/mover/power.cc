@@ -68,9 +68,9 @@ AdmissionResult CarryOut(const CommandContext& g, const SetPosition& command) no
   if (why != ErrorId::kNone) return Refused(why);
   const planar::Verdict room = planar::SetDown(g.c.index, {at.origin, command.c}, at.system, g.c.grounds);
   if (room.error != ErrorId::kNone) return Refused(room.error, room.object);
-  if (const ObjectInfo object = InTheCourse(g.c, at, command.c)) return Refused(ErrorId::kCollision, object);
+  if (const ObjectInfo object = FindCourseObstacle(g.c, at, command.c)) return Refused(ErrorId::kCollision, object);
   if (IsOnTrack(g.s)) g.s.mode = CommandMode::kFreeMovement;
-  LeaveStreets(g.c, g.s);
+  LeaveTrackNetwork(g.c, g.s);
   g.s.set_point[kC].position = command.c;
   CoordinateMove& turn = g.s.others.back();
   turn.profile = {g.s.set_point[kC], g.s.set_point[kC]};

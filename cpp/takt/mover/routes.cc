@@ -123,7 +123,7 @@ bool StaysBehind(const Context& c, const SurfaceRoute& r) {
 }
 
 // Determines which movers begin their drafts.
-planar::Verdict FindThoseThatBegin(const Everyone& all, std::span<const std::uint32_t> listed) {
+planar::Verdict SelectDrafts(const RoutedMovers& all, std::span<const std::uint32_t> listed) {
   for (SurfaceRoute& r : all.routes.of) r.takes = listed.empty() && r.draft_ticket != 0;
   for (const std::uint32_t number : listed) {
     if (number == 0 || number > all.routes.of.size()) return {ErrorId::kParameter};
@@ -135,7 +135,7 @@ planar::Verdict FindThoseThatBegin(const Everyone& all, std::span<const std::uin
   return none ? planar::Verdict{ErrorId::kRoute, {}, static_cast<double>(RouteProblem::kNoneTold)} : planar::Verdict{};
 }
 
-planar::Verdict WhyNotStart(const Everyone& all, const RouteDynamics& dynamics) {
+planar::Verdict WhyNotStart(const RoutedMovers& all, const RouteDynamics& dynamics) {
   for (std::size_t i = 0; i < all.routes.of.size(); ++i) {
     const SurfaceRoute& r = all.routes.of[i];
     const State& s = all.states[i];
@@ -243,10 +243,10 @@ AdmissionResult CarryOut(const CommandContext& g, const ContinueRoute&) noexcept
   return {};
 }
 
-planar::Verdict Start(const Everyone& all, const StartRoutes& command) noexcept {
+planar::Verdict Start(const RoutedMovers& all, const StartRoutes& command) noexcept {
   if (!InRange(command)) return {ErrorId::kParameter};
   const RouteDynamics dynamics{command.velocity, command.acceleration, command.deceleration, command.jerk};
-  planar::Verdict why = FindThoseThatBegin(all, command.movers.all());
+  planar::Verdict why = SelectDrafts(all, command.movers.all());
   if (why.error == ErrorId::kNone) why = WhyNotStart(all, dynamics);
   if (why.error != ErrorId::kNone) return why;
   // A mover that was taken off its route cannot resume it behind visits that no longer take place.
@@ -265,7 +265,7 @@ namespace {
 constexpr std::uint64_t kGoesOn = std::numeric_limits<std::uint64_t>::max();
 
 // Finds where movers that are held, and those behind them, come to rest (`held_at`).
-void FindRests(const Everyone& all) {
+void FindRests(const RoutedMovers& all) {
   auto& of = all.routes.of;
   const auto ahead = [&](const Context& c, const Visit& visit) -> SurfaceRoute* {
     const std::optional<std::uint32_t> before = Before(c, visit);
@@ -294,7 +294,7 @@ void FindRests(const Everyone& all) {
 
 }  // namespace
 
-planar::Verdict Hold(const Everyone& all, const HoldRoutes& command) noexcept {
+planar::Verdict Hold(const RoutedMovers& all, const HoldRoutes& command) noexcept {
   const auto numbers = command.movers.all();
   for (const std::uint32_t number : numbers) {
     if (number == 0 || number > all.routes.of.size()) return {ErrorId::kParameter};

@@ -10,8 +10,8 @@ namespace takt::mover {
 
 // Cycle stage command. Start begins the routes that movers have received, all of them or none, and returns why not;
 // Hold brings movers to rest at places of their routes, or continues these.
-planar::Verdict Start(const Everyone& all, const StartRoutes& command) noexcept;
-planar::Verdict Hold(const Everyone& all, const HoldRoutes& command) noexcept;
+planar::Verdict Start(const RoutedMovers& all, const StartRoutes& command) noexcept;
+planar::Verdict Hold(const RoutedMovers& all, const HoldRoutes& command) noexcept;
 
 std::uint64_t HashOf(const SurfaceRoutes& routes, std::uint64_t hash) noexcept;
 

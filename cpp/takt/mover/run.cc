@@ -47,17 +47,17 @@ void Enter(const Context& c, planar::ObjectState state, State& s) noexcept {
   s.since = c.cycle.count;
 }
 
-bool GoesAlongTrack(const Context& c, const State& s) noexcept {
+bool IsMovingAlongTrack(const Context& c, const State& s) noexcept {
   const planar::Rider& rider = c.rider();
   return IsOnTrack(s) && ((rider.aim != planar::Aim::kRest && !rider.there) || !planar::Rests(rider.at));
 }
 
 bool IsPlaneResting(const Context& c, const State& s) noexcept {
-  return !GoesAlongTrack(c, s) && IsOver(c, s.plane) && planar::Rests(s.set_point[kX]) &&
+  return !IsMovingAlongTrack(c, s) && IsOver(c, s.plane) && planar::Rests(s.set_point[kX]) &&
          planar::Rests(s.set_point[kY]);
 }
 
-void LeaveStreets(const Context& c, State& s) noexcept {
+void LeaveTrackNetwork(const Context& c, State& s) noexcept {
   c.rider() = {};
   s.track = planar::kNoTrack;
 }
@@ -190,7 +190,7 @@ bool LeadsAway(const Context& c, const trajectory::Limits& softly, const Coordin
 
 void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) noexcept {
   if (s.mode == CommandMode::kJoiningTrack || s.mode == CommandMode::kLeavingTrack) {
-    LeaveStreets(c, s);
+    LeaveTrackNetwork(c, s);
     s.mode = CommandMode::kFreeMovement;
   }
   Rest rest = PlanRest(c, plane, s);
@@ -199,7 +199,7 @@ void BringToRest(const Context& c, const trajectory::Limits* plane, State& s) no
     return;
   }
   // With the maximum dynamics the mover stays within what it has reserved.
-  const bool hard = !plane || InTheWay(c, rest.plane, rest.others.back(), IsOnTrack(s)) ||
+  const bool hard = !plane || FindObstacle(c, rest.plane, rest.others.back(), IsOnTrack(s)) ||
                     LeadsAway(c, *plane, rest.others.back(), s);
   if (plane && hard) rest = PlanRest(c, nullptr, s);
   // The stop that the guard knows.

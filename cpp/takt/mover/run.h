@@ -42,11 +42,11 @@ inline bool IsOnTrack(const State& s) noexcept {
   return s.mode == CommandMode::kOnTrack || s.mode == CommandMode::kCRotationOnTrack;
 }
 // Returns true if the mover moves along its track, or is about to.
-bool GoesAlongTrack(const Context& c, const State& s) noexcept;
+bool IsMovingAlongTrack(const Context& c, const State& s) noexcept;
 // Returns true if X and Y are at rest when this cycle begins, and no motion of them is pending.
 bool IsPlaneResting(const Context& c, const State& s) noexcept;
 // Takes the mover off its track.
-void LeaveStreets(const Context& c, State& s) noexcept;
+void LeaveTrackNetwork(const Context& c, State& s) noexcept;
 
 // Returns true if all coordinates are at rest when this cycle begins, and no motion is pending.
 bool IsResting(const Context& c, const State& s) noexcept;

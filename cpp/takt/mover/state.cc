@@ -67,12 +67,12 @@ void describe(Description<PlaneMove>& d) {
   d.internal<&P::held_since>("Cycle since when.");
 }
 
-void describe(Description<Escape>& d) {
+void describe(Description<StopMotion>& d) {
   d.named("MoverEscape");
   d.about("How X and Y come to rest if the mover may not go on.");
-  d.internal<&Escape::motion>("The way.");
-  d.internal<&Escape::begin>("Cycle in which it began.");
-  d.internal<&Escape::cycle>("Cycle from which on it is good.");
+  d.internal<&StopMotion::motion>("The way.");
+  d.internal<&StopMotion::begin>("Cycle in which it began.");
+  d.internal<&StopMotion::cycle>("Cycle from which on it is good.");
 }
 
 void describe(Description<CoordinateMove>& d) {
@@ -81,8 +81,8 @@ void describe(Description<CoordinateMove>& d) {
   d.internal<&CoordinateMove::begin>("Cycle in which it began.");
 }
 
-void describe(Description<Endless>& d) {
-  using E = Endless;
+void describe(Description<VelocityMove>& d) {
+  using E = VelocityMove;
   d.named("MoverEndless");
   d.about("A move by velocity.");
   d.internal<&E::on>("There is one.");

@@ -58,7 +58,7 @@ struct PlaneMove {
 };
 
 // The stop of X and Y if the mover may not move on: the course that the guard knows.
-struct Escape {
+struct StopMotion {
   PlaneMotion motion;
   std::uint64_t begin = 0;  // cycle
   // The cycle at whose beginning it applies; maximum: none yet.
@@ -72,14 +72,14 @@ struct CoordinateMove {
 };
 
 // A move of X, Y or C by velocity, until the room is used up.
-struct Endless {
+struct VelocityMove {
   bool on = false;
   bool reached = false;          // the velocity has been reached and reported
   double velocity = 0;           // [mm/s, deg/s]
   ErrorId end = ErrorId::kNone;  // why it ends at the end of its room
   ObjectInfo object{};           // the obstacle there, if any
 };
-inline constexpr std::array kEndless = {kX, kY, kC};
+inline constexpr std::array kVelocityCoordinates = {kX, kY, kC};
 
 // External set points.
 struct External {
@@ -142,15 +142,15 @@ struct State {
   std::array<Ticket, kSlots> tickets{};
   std::array<std::uint64_t, kSlots> begun{};  // cycle in which each took its slot
   Buffer buffer;
-  Escape escape;
+  StopMotion escape;
   PlaneMove plane;                         // on a track: of the displacement from the position there
   std::uint32_t track = planar::kNoTrack;  // track that it joins, is on, or leaves
   std::uint32_t system = 0;                // index of its coordinate system
   std::uint32_t part = planar::kNoPart;    // part that its centre is on
   GearState gear;
   FormationState formation;
-  std::array<CoordinateMove, kOthers.size()> others;  // in the order of kOthers
-  std::array<Endless, kEndless.size()> endless;       // in the order of kEndless
+  std::array<CoordinateMove, kOthers.size()> others;              // in the order of kOthers
+  std::array<VelocityMove, kVelocityCoordinates.size()> endless;  // in the order of kVelocityCoordinates
   External external;
   SetPoint set_point{};     // at the end of the last cycle
   planar::Place carried{};  // [mm] total displacement by moves of its part, without a motion of its own
@@ -161,9 +161,9 @@ State MakeState(const MoverParams& params);
 
 void describe(Description<Goal>&);
 void describe(Description<PlaneMove>&);
-void describe(Description<Escape>&);
+void describe(Description<StopMotion>&);
 void describe(Description<CoordinateMove>&);
-void describe(Description<Endless>&);
+void describe(Description<VelocityMove>&);
 void describe(Description<External>&);
 void describe(Description<GearState>&);
 void describe(Description<FormationState>&);

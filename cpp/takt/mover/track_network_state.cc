@@ -29,7 +29,7 @@ void LinkAll(std::span<const TrackView> tracks, planar::Network& network) {
       if (both && tracks[i].end_node == tracks[k].start_node) planar::Link(i, k, network);
     }
   }
-  planar::NameNodes(network);
+  planar::NumberNodes(network);
 }
 
 // Cuts the route of a mover at rest, and the tracks that it has passed, at links that no longer exist.

@@ -28,7 +28,7 @@ void Done(const Context& c, Ticket& ticket) {
 struct Applier {
   const Context& c;
   Ticket ticket;
-  const Hindrance& hindrance;
+  const MoveBlocker& hindrance;
   State& s;
 
   void Report(FeedbackState state, ErrorId error = ErrorId::kNone, const ObjectInfo& object = {}) const {
@@ -119,7 +119,7 @@ Inputs Simulate(const Context& c, const State& s) noexcept {
   return {goes ? 0 : s.commanded + 1, false};
 }
 
-void Apply(const Context& c, Ticket ticket, const Command& command, const Hindrance& hindrance, State& s) noexcept {
+void Apply(const Context& c, Ticket ticket, const Command& command, const MoveBlocker& hindrance, State& s) noexcept {
   const Applier applier{c, ticket, hindrance, s};
   std::visit([&](const auto& body) { takt::InRange(body) ? applier(body) : applier.Refuse(ErrorId::kParameter); },
              command);

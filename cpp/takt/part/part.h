@@ -34,13 +34,13 @@ struct Inputs {
 Inputs Simulate(const Context& c, const State& s) noexcept;
 
 // The reason why a part may not leave for another position.
-struct Hindrance {
+struct MoveBlocker {
   ErrorId error = ErrorId::kNone;
   ObjectInfo object{};  // the mover, track or part in the way
 };
 
 // Stage command: carries it out or rejects it; reports either way. `hindrance`: of ActivatePosition.
-void Apply(const Context& c, Ticket ticket, const Command& command, const Hindrance& hindrance, State& s) noexcept;
+void Apply(const Context& c, Ticket ticket, const Command& command, const MoveBlocker& hindrance, State& s) noexcept;
 
 // State of the movers around a part.
 struct Around {

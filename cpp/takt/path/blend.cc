@@ -379,7 +379,7 @@ Problem Blend(const Segment& first, double s_first, const Segment& second, doubl
   return MakeBlend(first, s_first, second, s_second, &bends, {}, out);
 }
 
-std::optional<Triple> BendBetween(const Segment& before, const Segment& chord, const Segment& after) noexcept {
+std::optional<Triple> ChordCurvature(const Segment& before, const Segment& chord, const Segment& after) noexcept {
   const auto is_line = [](const Segment& s) { return s.measure == Measure::kWay && s.shape == Shape::kLine; };
   if (!is_line(before) || !is_line(chord) || !is_line(after)) return {};
   const Vector tangent = ToVector(chord.place[1]);

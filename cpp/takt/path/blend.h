@@ -61,7 +61,7 @@ Problem Blend(const Segment& first, double s_first, const Segment& second, doubl
 // lengths, the mean of both blends' mean curvatures; larger where the chord is shorter than its neighbours, smaller
 // where it is longer. 0 where the curve begins to bend to the other side. Nothing if the lines are no chords of a
 // curve: a corner turns by more than a right angle, or a segment is no line.
-std::optional<Triple> BendBetween(const Segment& before, const Segment& chord, const Segment& after) noexcept;
+std::optional<Triple> ChordCurvature(const Segment& before, const Segment& chord, const Segment& after) noexcept;
 
 // Length available for a blend, measured from the corner.
 struct Room {

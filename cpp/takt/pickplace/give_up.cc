@@ -87,7 +87,7 @@ void NoteHeight(const group::State& g, State& s) noexcept {
 
 // If braked now, the tool would rest in step with the carrier over which it is low.
 bool IsLow(const Context& c, const group::State& g, const State& s) noexcept {
-  if (!g.begun || g.ends || g.interrupted || g.lets_go || !group::IsOnRide(c.group, g)) return false;
+  if (!g.begun || g.ends || g.interrupted || g.lets_go || !group::IsOnCarrier(c.group, g)) return false;
   if (ParkingLifts(g, s)) return true;
   if (s.at_known && s.at_belt != 0 && g.queue.count == 0) return s.may_be_low;  // on its workpiece
   if (!IsUnderWay(s)) return false;
@@ -139,13 +139,13 @@ double TimeToGo(const Context& c, const group::State& g, const Order& order, con
   const group::LookAhead& ahead = c.group.ahead;
   const double way = g.begun && ahead.count > 0 ? ahead[ahead.end() - 1].end() - g.pace.now.position : 0;
   const double stopped_s = TimeFor(std::max(0.0, way), order.ramps);
-  return std::max(LongerBy(g, s) * order.expected_s - TimeGone(c, order), LongerBy(g, s) * stopped_s);
+  return std::max(TimeFactor(g, s) * order.expected_s - ElapsedTime(c, order), TimeFactor(g, s) * stopped_s);
 }
 
 void GiveUp(const Context& c, group::State& g, State& s) noexcept {
   Order& order = s.orders[0];
   if (const double left_s = group::TimeLeft(c.group, g); !std::isnan(left_s)) {
-    Learn(TimeGone(c, order) + left_s, order, s);
+    Learn(ElapsedTime(c, order) + left_s, order, s);
   }
   const PathRamps ramps = order.ramps;
   GiveBackWorkpiece(c, order);
@@ -154,7 +154,7 @@ void GiveUp(const Context& c, group::State& g, State& s) noexcept {
 
 bool IsLifted(const Context& c, group::State& g, State& s) noexcept {
   if (g.queue.count > 0) return false;
-  const bool sits = !g.ends && group::IsOnRide(c.group, g);
+  const bool sits = !g.ends && group::IsOnCarrier(c.group, g);
   if (s.rises && sits) {
     s.rises = false;
     if (RiseTo(c, g, s.over) > kUp && GiveLift(c, g, s) == ErrorId::kNone) return false;

@@ -60,7 +60,7 @@ bool IsOnItsWay(const group::State& g, const Order& order) {
 }
 
 // Runs ahead of the group to the end of an order.
-void GoOn(const Context& c, double end, int cycles, Scout& scout) {
+void GoOn(const Context& c, double end, int cycles, EndPredictor& scout) {
   for (int i = 0; i < cycles && !scout.known; ++i) {
     Advance(c.group.ahead.window, c.group.cycle.period_s, scout.pace);
     ++scout.cycle;
@@ -69,19 +69,19 @@ void GoOn(const Context& c, double end, int cycles, Scout& scout) {
   scout.end_cycle = scout.cycle;
 }
 
-double TimeOf(const Context& c, const Order& order, const Scout& scout) {
+double TimeOf(const Context& c, const Order& order, const EndPredictor& scout) {
   return static_cast<double>(scout.end_cycle - order.begin_cycle) * c.group.cycle.period_s;
 }
 
 void StepScout(const Context& c, const group::State& g, const Order& order, double end, State& s) {
-  Scout& scout = s.scout;
+  EndPredictor& scout = s.scout;
   if (scout.known) return;
   if (!scout.running) {
     scout = {.running = true, .order_last = order.last, .cycle = c.group.cycle.count - 1, .pace = g.pace};
   }
   // A law that leads to the end determines its time; a law that is to be replaced does not.
   if (const trajectory::PathTiming& timing = c.group.ahead.timing; timing.active()) {
-    scout.known = timing.Settles(end);
+    scout.known = timing.IsFinalTo(end);
     scout.end_cycle = scout.cycle = c.group.cycle.count - 1 + timing.rest_cycles();
   } else {
     GoOn(c, end, kScouted, scout);
@@ -94,7 +94,7 @@ void StepScout(const Context& c, const group::State& g, const Order& order, doub
 // Runs from the end of the first order to that of the second one, so that its time is known when it begins. Repeated
 // then: axes that have to keep up may make it longer.
 void StepNextScout(const Context& c, State& s) {
-  Scout& scout = s.next_scout;
+  EndPredictor& scout = s.next_scout;
   if (!s.scout.known || scout.known || s.order_count < 2 || c.group.ahead.timing.active()) return;
   const Order& order = s.orders[1];
   if (order.phase != Phase::kGoing || c.group.ahead.rehearsal.end_cycle() == 0) return;

@@ -5,7 +5,7 @@
 // do not count), and for an order over a belt while IsOnWorkpiece() holds: its moves have ended as done, and the tool
 // rests on the workpiece in step. Both are checked in the cycle itself, so a group that is interrupted, halted,
 // disabled or moved by other commands meanwhile never completes an order. An order that had arrived on its workpiece
-// and ends otherwise counts as missed, and deletes it: whether the gripper has it is not known (LetGoOfWorkpiece).
+// and ends otherwise counts as missed, and deletes it: whether the gripper has it is not known (ReleaseWorkpiece).
 #include <algorithm>
 #include <cmath>
 
@@ -70,11 +70,11 @@ void MissWorkpiece(const Context& c, Order& order, std::uint32_t& cause, State& 
 }
 
 // Releases the workpiece of an order that ends, or begins again, before it is done.
-void LetGoOfWorkpiece(const Context& c, Order& order, State& s) {
+void ReleaseWorkpiece(const Context& c, Order& order, State& s) {
   if (order.phase == Phase::kStaying) {
     MissWorkpiece(c, order, s.counters.interrupted, s);
   } else {
-    NoteLeft(order, false, s);
+    NoteAbandoned(order, false, s);
   }
   GiveBackWorkpiece(c, order);
 }
@@ -91,7 +91,7 @@ bool IsLost(const group::State& g, const State& s) {
 }
 
 void Drop(const Context& c, std::uint32_t index, FeedbackState feedback, ErrorId error, State& s) {
-  LetGoOfWorkpiece(c, s.orders[index], s);
+  ReleaseWorkpiece(c, s.orders[index], s);
   Report(c, s.orders[index].ticket, feedback, error);
   for (std::uint32_t i = index; i + 1 < s.order_count; ++i) s.orders[i] = s.orders[i + 1];
   s.orders[--s.order_count] = {};
@@ -134,8 +134,8 @@ struct QueuedLegs {
 };
 
 // Gives the legs from `from` on.
-QueuedLegs GiveLegs(const Context& c, const Profile& profile, std::uint32_t from, const PathRamps& ramps,
-                    bool keep_orientation, group::State& g, State& s) {
+QueuedLegs CommandLegs(const Context& c, const Profile& profile, std::uint32_t from, const PathRamps& ramps,
+                       bool keep_orientation, group::State& g, State& s) {
   QueuedLegs given{profile.error, g.done + g.queue.count, 0};
   const group::Directions closed = ClosedOn(c, g, profile, from, StartOf(c, g, s), keep_orientation);
   if (closed.any()) {
@@ -179,7 +179,7 @@ void Park(const Context& c, std::uint32_t belt, group::State& g, State& s) {
                                  .parks = true});
   const Shape shape = ShapeFromHere(c, g, ShapeOf(s.settings), s);
   const Profile profile = MakeProfile(start, target, shape, SystemsOf(c, g, start, target));
-  const QueuedLegs given = GiveLegs(c, profile, 0, RampsOf(s.settings), s.settings.keep_orientation, g, s);
+  const QueuedLegs given = CommandLegs(c, profile, 0, RampsOf(s.settings), s.settings.keep_orientation, g, s);
   if (given.error != ErrorId::kNone) return Fail(c, given.error, g, s);
   const bool from_belt = s.at_belt != 0 || s.low;
   SetPlace(target, 0, 0, s);
@@ -224,9 +224,9 @@ void Begin(const Context& c, group::State& g, Order& order, State& s) {
   order.next_leg = 0;
   order.pulsed = false;
   if (&order == &s.orders[0]) s.profile_time = 0;  // not known yet
-  const QueuedLegs given = GiveLegs(c, order.profile, 0, order.ramps, order.shape.keep_orientation, g, s);
+  const QueuedLegs given = CommandLegs(c, order.profile, 0, order.ramps, order.shape.keep_orientation, g, s);
   if (given.error != ErrorId::kNone) {
-    NoteLeft(order, true, s);
+    NoteAbandoned(order, true, s);
     return Fail(c, given.error, g, s);
   }
   order.first = given.first;
@@ -250,7 +250,8 @@ void BeginAgain(const Context& c, group::State& g, Order& order, State& s) {
     leg.height = std::max(0.0, crest - std::max(height(PresentPlace(c, g)), height(leg.to)));
     order.start = PresentPlace(c, g);
   }
-  const QueuedLegs given = GiveLegs(c, order.profile, order.next_leg, order.ramps, order.shape.keep_orientation, g, s);
+  const QueuedLegs given =
+      CommandLegs(c, order.profile, order.next_leg, order.ramps, order.shape.keep_orientation, g, s);
   if (given.error != ErrorId::kNone) return Fail(c, given.error, g, s);
   order.first = given.first;
   order.last = given.last;
@@ -297,7 +298,7 @@ bool Arrive(const Context& c, const group::State& g, State& s) noexcept {
     Complete(c, s);
     return true;
   }
-  Learn(TimeGone(c, order), order, s);
+  Learn(ElapsedTime(c, order), order, s);
   order.phase = Phase::kStaying;
   order.stay_cycle = c.group.cycle.count;
   return true;
@@ -525,7 +526,7 @@ void LosePath(const Context& c, bool kept, State& s) noexcept {
       continue;
     }
     if (i == 0 && kept && order.phase == Phase::kHeld) continue;
-    LetGoOfWorkpiece(c, order, s);
+    ReleaseWorkpiece(c, order, s);
     order.phase = Phase::kNew;
   }
   ForgetPlace(s);

@@ -5,7 +5,7 @@
 
 namespace takt::pickplace {
 
-std::string WhyNotBelt(std::uint32_t belt, std::size_t belts, std::string_view none) {
+std::string DiagnoseBelt(std::uint32_t belt, std::size_t belts, std::string_view none) {
   const bool may_be_none = belt != 0 && !none.empty();
   if (belt <= belts && (belt != 0 || !none.empty())) return {};
   const std::string zero = may_be_none ? "0, " + std::string(none) : std::string();
@@ -15,7 +15,7 @@ std::string WhyNotBelt(std::uint32_t belt, std::size_t belts, std::string_view n
   return "expected a belt of the module's list, " + numbers + (zero.empty() ? "" : ", or " + zero) + found;
 }
 
-std::string WhyNotMode(TrackingMode mode, std::size_t belts) {
+std::string DiagnoseMode(TrackingMode mode, std::size_t belts) {
   const bool both = mode == TrackingMode::kBelt1ToBelt2 || mode == TrackingMode::kBelt2ToBelt1;
   const bool one = mode == TrackingMode::kStaticToBelt1 || mode == TrackingMode::kBelt1ToStatic;
   const std::size_t needed = both ? 2 : one ? 1 : 0;
@@ -24,7 +24,7 @@ std::string WhyNotMode(TrackingMode mode, std::size_t belts) {
          " where there " + (belts == 1 ? "is 1" : "is none");
 }
 
-std::string WhyNotRange(const BeltSettings& settings, const conveyor::BeltParams& belt) {
+std::string DiagnoseRange(const BeltSettings& settings, const conveyor::BeltParams& belt) {
   if (RangeMeets(settings, belt)) return {};
   const auto limit = [](const std::optional<double>& value, const char* none) {
     return value ? FormatReal(*value) : std::string(none);
@@ -34,7 +34,7 @@ std::string WhyNotRange(const BeltSettings& settings, const conveyor::BeltParams
          FormatReal(settings.lower_limit) + " to " + FormatReal(settings.upper_limit);
 }
 
-std::string WhyNotLeave(const BeltSettings& settings, const conveyor::BeltParams& belt) {
+std::string DiagnoseLeave(const BeltSettings& settings, const conveyor::BeltParams& belt) {
   if (LeaveMeets(settings, belt)) return {};
   return "expected 0, or an upper_limit below that of belt '" + belt.name + "', " + FormatReal(*belt.upper_limit) +
          ", found leave " + std::to_string(settings.leave) + " with upper_limit " + FormatReal(settings.upper_limit);

@@ -36,13 +36,13 @@ inline constexpr std::string_view kStaticTarget = "the static target";  // meani
 
 // Returns why the number of a belt is invalid for a module with this many belts; empty if it is valid. `none`: meaning
 // of 0; empty: 0 is invalid.
-std::string WhyNotBelt(std::uint32_t belt, std::size_t belts, std::string_view none);
+std::string DiagnoseBelt(std::uint32_t belt, std::size_t belts, std::string_view none);
 // Returns why a tracking mode is invalid for a module with this many belts; empty if it is valid.
-std::string WhyNotMode(TrackingMode mode, std::size_t belts);
+std::string DiagnoseMode(TrackingMode mode, std::size_t belts);
 // Returns why the module's work range on a belt is invalid; empty if it is valid.
-std::string WhyNotRange(const BeltSettings& settings, const conveyor::BeltParams& belt);
+std::string DiagnoseRange(const BeltSettings& settings, const conveyor::BeltParams& belt);
 // Returns why leave and upper_limit do not fit the upper_limit of the belt; empty if they do.
-std::string WhyNotLeave(const BeltSettings& settings, const conveyor::BeltParams& belt);
+std::string DiagnoseLeave(const BeltSettings& settings, const conveyor::BeltParams& belt);
 
 void describe(Description<PickPlaceBelt>&);
 void describe(Description<AxisHoming>&);

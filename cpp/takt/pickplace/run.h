@@ -73,13 +73,13 @@ void GiveBackWorkpiece(const Context& c, Order& order) noexcept;
 // `time_s` [s], whatever speed the belt may take.
 bool StaysWithin(const Context& c, const group::State& g, const Order& order, double time_s) noexcept;
 // Returns the factor by which a profile may take longer now than estimated.
-double LongerBy(const group::State& g, const State& s) noexcept;
+double TimeFactor(const group::State& g, const State& s) noexcept;
 // Deletes the order's workpiece, which was fetched, missed under the tool or placed, and objects at the same position
 // (PP-66).
 void RemoveWorkpiece(const Context& c, Order& order) noexcept;
 // Notes that the order gives up its workpiece, which is missed if it leaves the range. `refused`: there is no path to
 // it; else the path was stopped. The first cause noted is kept.
-void NoteLeft(const Order& order, bool refused, State& s) noexcept;
+void NoteAbandoned(const Order& order, bool refused, State& s) noexcept;
 // Counts each workpiece that has left the range as missed, once: those that were left behind, and, while the module
 // moves, those that the belts have lost and the module would have taken.
 void CountLost(const Context& c, State& s) noexcept;
@@ -106,7 +106,7 @@ Shape ShapeFromHere(const Context& c, const group::State& g, const Shape& shape,
 // Marks the pose at which the moves given end as unknown.
 void ForgetPlace(State& s) noexcept;
 // Returns the time [s] since the order's profile began.
-inline double TimeGone(const Context& c, const Order& order) noexcept {
+inline double ElapsedTime(const Context& c, const Order& order) noexcept {
   return static_cast<double>(c.group.cycle.count - order.begin_cycle) * c.group.cycle.period_s;
 }
 // Learns from the duration of an order's profile for the estimates of the next ones.

@@ -92,15 +92,15 @@ void describe(Description<HomingState>& d) {
   d.internal<&HomingState::place>("In the order: these look.");
 }
 
-void describe(Description<Scout>& d) {
+void describe(Description<EndPredictor>& d) {
   d.named("PickPlaceScout");
   d.about("Goes ahead of the group.");
-  d.internal<&Scout::known>("When the profile ends.");
-  d.internal<&Scout::end_cycle>("Then.");
-  d.internal<&Scout::running>("It goes.");
-  d.internal<&Scout::order_last>("Number of the move that it looks for.");
-  d.internal<&Scout::cycle>("Where it has got to.");
-  d.internal<&Scout::pace>("Along the path.");
+  d.internal<&EndPredictor::known>("When the profile ends.");
+  d.internal<&EndPredictor::end_cycle>("Then.");
+  d.internal<&EndPredictor::running>("It goes.");
+  d.internal<&EndPredictor::order_last>("Number of the move that it looks for.");
+  d.internal<&EndPredictor::cycle>("Where it has got to.");
+  d.internal<&EndPredictor::pace>("Along the path.");
 }
 
 void describe(Description<State>& d) {

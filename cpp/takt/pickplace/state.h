@@ -106,7 +106,7 @@ struct HomingState {
 };
 
 // Runs ahead of the group on its path to find out when a profile will end.
-struct Scout {
+struct EndPredictor {
   bool known = false;           // the end of the profile is known
   std::uint64_t end_cycle = 0;  // cycle of that end
   bool running = false;
@@ -163,8 +163,8 @@ struct State {
   HomingState homing;
   double override_given = 1;
   bool pulse = false;
-  Scout scout;
-  Scout next_scout;                 // of the second order, from where that of the first one ended
+  EndPredictor scout;
+  EndPredictor next_scout;          // of the second order, from where that of the first one ended
   double profile_time = 0;          // [s]
   double preparation_time = 0;      // [s]
   std::uint64_t prepare_cycle = 0;  // cycle in which the preparation began
@@ -193,7 +193,7 @@ void describe(Description<Loop>&);
 void describe(Description<JogKeys>&);
 void describe(Description<Hold>&);
 void describe(Description<HomingState>&);
-void describe(Description<Scout>&);
+void describe(Description<EndPredictor>&);
 void describe(Description<State>&);
 
 }  // namespace takt::pickplace

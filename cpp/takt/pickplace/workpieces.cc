@@ -200,7 +200,7 @@ Meeting Meet(const Context& c, const group::State& g, const Order& order, const 
   const Place to{.system = group::CoordinateSystem::kPcs, .pcs = 1, .pose = GripOn(own), .aux1 = own.aux1_target};
   Meeting meeting;
   for (int i = 0; i < kRounds && meeting.error == ErrorId::kNone; ++i) {
-    meeting.object = ObjectAfter(c, BeltOf(c, order), object, speed * LongerBy(g, s) * meeting.time_s);
+    meeting.object = ObjectAfter(c, BeltOf(c, order), object, speed * TimeFactor(g, s) * meeting.time_s);
     const Systems systems{c.group.mounting.base, start, meeting.object};
     const Profile profile = MakeProfile(from, to, shape, systems);
     meeting.error = profile.error;
@@ -216,7 +216,7 @@ bool IsReachableAt(double speed, const Context& c, const group::State& g, const 
   const BeltSettings& own = order.own;
   const Meeting meeting = Meet(c, g, order, object, speed, s);
   if (meeting.error != ErrorId::kNone) return false;
-  const double travel = speed * (LongerBy(g, s) * meeting.time_s + own.sync_time + TimeUp(c, g, order, own));
+  const double travel = speed * (TimeFactor(g, s) * meeting.time_s + own.sync_time + TimeUp(c, g, order, own));
   const double end = conveyor::PlaceOf(*belt.params, *belt.state, object) + travel;
   return IsSafe(c, g, order, end, speed) && CanBeAt(c, g, order, meeting.object) &&
          CanBeAt(c, g, order, ObjectAfter(c, belt, object, travel));
@@ -231,7 +231,7 @@ bool IsReachable(const Context& c, const group::State& g, const Order& order, co
 
 }  // namespace
 
-double LongerBy(const group::State& g, const State& s) noexcept {
+double TimeFactor(const group::State& g, const State& s) noexcept {
   return s.slowness / OverrideOf(g);
 }
 
@@ -357,7 +357,7 @@ bool StaysWithin(const Context& c, const group::State& g, const Order& order, do
                              [&](double speed) { return IsSafe(c, g, order, place + speed * until_s, speed); });
 }
 
-void NoteLeft(const Order& order, bool refused, State& s) noexcept {
+void NoteAbandoned(const Order& order, bool refused, State& s) noexcept {
   if (order.workpiece == 0) return;
   if (FindLeft(order.belt, order.workpiece, s) < s.left_count) return;  // the first cause counts
   if (s.left_count == kLeft) EraseLeft(0, s);

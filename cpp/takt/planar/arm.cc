@@ -128,7 +128,7 @@ Move MoveOf(const Arm& arm, const Pose& from, const Move& carrier) noexcept {
   std::size_t count = 2;
   if (carrier.over) places[count++] = *carrier.over;
   for (std::size_t i = 0; i < carrier.corner_count; ++i) places[count++] = carrier.corners[i];
-  const bool stays = count == 2 && SamePlace(from.place, carrier.target.place);
+  const bool stays = count == 2 && SamePoint(from.place, carrier.target.place);
   const bool round = stays && !carrier.over_c && turning.most - turning.least < kRound;
   const Flat off = ToFlat(arm.off), along = DirectionBetween(from.place, carrier.target.place);
   const Corners corners =

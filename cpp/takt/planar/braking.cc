@@ -99,13 +99,13 @@ double LeastDistance(const Braking& behind, const Braking& ahead, double apart) 
   return least;
 }
 
-double WayToRest(double speed, const Brakes& b) noexcept {
+double StoppingDistance(double speed, const Brakes& b) noexcept {
   const double full = b.deceleration * b.deceleration / b.jerk;
   if (speed >= full) return 0.5 * speed * (speed / b.deceleration + b.deceleration / b.jerk);
   return speed > 0 ? speed * std::sqrt(speed / b.jerk) : 0;
 }
 
-double SpeedForWay(double way, const Brakes& b) noexcept {
+double SpeedForDistance(double way, const Brakes& b) noexcept {
   if (!(way > 0)) return 0;
   const double d = b.deceleration, full = d * d / b.jerk;
   if (way < full * d / b.jerk) return maths::Cbrt(way * way * b.jerk);

@@ -35,9 +35,9 @@ double LeastDistance(const Braking& behind, const Braking& ahead, double apart) 
 
 // Returns the distance [mm] from `speed`, without acceleration, to rest: v/2 (v/d + d/j), or v sqrt(v/j) if d is not
 // reached.
-double WayToRest(double speed, const Brakes& brakes) noexcept;
+double StoppingDistance(double speed, const Brakes& brakes) noexcept;
 // The inverse: returns the speed [mm/s] from which the mover comes to rest in the distance `way` [mm].
-double SpeedForWay(double way, const Brakes& brakes) noexcept;
+double SpeedForDistance(double way, const Brakes& brakes) noexcept;
 // Returns the highest speed [mm/s], without acceleration, from which a mover slows down to `end` within `way` [mm].
 double SpeedBefore(double way, double end, const Brakes& brakes) noexcept;
 

@@ -115,10 +115,10 @@ void AddStretch(const Track& track, const Place& origin, double from, double to,
   EachArea(track, origin, from, to, kind, kMostStrides, [&](const Area& area) { Add(area, out); });
 }
 
-Interval WayOf(const Network& network, const Rider& r) noexcept {
+Interval ReachableInterval(const Network& network, const Rider& r) noexcept {
   const double at = r.at.position;
   if (r.aim == Aim::kTarget && !r.there) {
-    const double end = EndOfWay(network, r);
+    const double end = TargetPosition(network, r);
     if (Rests(r.at)) return {std::min(at, end), std::max(at, end)};
     // It may pass its target before it has reversed.
     const Braking braking = Brake(r.at, r.pace.brakes());

@@ -109,7 +109,7 @@ void EachStretch(const Network& network, const Route& route, double from, double
 struct Interval {
   double from = 0, to = 0;  // [mm] from the start of its first track
 };
-Interval WayOf(const Network& network, const Rider& rider) noexcept;
+Interval ReachableInterval(const Network& network, const Rider& rider) noexcept;
 
 // Returns the course along its route of a mover whose centre stays between two positions [mm].
 Course CourseOn(const Network& network, const Rider& rider, double from, double to, const Area& kind) noexcept;

@@ -28,7 +28,7 @@ class Cut {
   }
 
   // Marks the covered cells; returns stators that overlap, if any do.
-  Surfacing Cover() {
+  SurfaceResult Cover() {
     for (std::uint32_t s = 0; s < stators_.size(); ++s) {
       const Place& p = stators_[s];
       for (std::size_t y = LineOf(ys_, p.y); y < LineOf(ys_, p.y + kStatorSide); ++y) {
@@ -168,7 +168,7 @@ std::string_view Text(StatorProblem problem) noexcept {
   return "";
 }
 
-Surfacing MakeEnvironment(std::span<const Place> stators, Environment& out) {
+SurfaceResult MakeEnvironment(std::span<const Place> stators, Environment& out) {
   if (stators.empty()) return {StatorProblem::kEmpty};
   if (stators.size() > kMostStators) return {StatorProblem::kTooMany, kMostStators};
   for (std::size_t i = 0; i < stators.size(); ++i) {
@@ -176,7 +176,7 @@ Surfacing MakeEnvironment(std::span<const Place> stators, Environment& out) {
     if (!near) return {StatorProblem::kNotFinite, i};
   }
   Cut cut(stators);
-  if (const Surfacing overlap = cut.Cover(); overlap.problem != StatorProblem::kNone) return overlap;
+  if (const SurfaceResult overlap = cut.Cover(); overlap.problem != StatorProblem::kNone) return overlap;
   out.outlines = cut.Trace();
   out.stators.assign(stators.begin(), stators.end());
   return {};

@@ -42,14 +42,14 @@ struct Environment {
 };
 
 // The problem, the index of the stator that causes it, and that of the stator that it overlaps.
-struct Surfacing {
+struct SurfaceResult {
   StatorProblem problem = StatorProblem::kNone;
   std::size_t stator = 0;
   std::size_t other = 0;
 };
 // Makes the surface of stators given by their lower left corners; stators nearer to each other than kSame touch. Leaves
 // `out` unchanged if there is a problem. Allocates; not for the cycle.
-Surfacing MakeEnvironment(std::span<const Place> stators, Environment& out);
+SurfaceResult MakeEnvironment(std::span<const Place> stators, Environment& out);
 
 // Returns true if all of an area lies on the surface; it may be flush with the border. Fit for the cycle.
 bool Carries(const Environment& environment, const Area& area) noexcept;

@@ -24,7 +24,7 @@ Brakes Common(const Brakes& a, const Brakes& b) {
 }
 
 // Returns the derivative [s] of the stopping distance with respect to the speed.
-double SlopeOfWayToRest(double speed, const Brakes& b) {
+double SlopeOfStoppingDistance(double speed, const Brakes& b) {
   const double ramp = b.deceleration / b.jerk;
   return speed >= b.deceleration * ramp ? speed / b.deceleration + 0.5 * ramp : 1.5 * std::sqrt(speed / b.jerk);
 }
@@ -35,8 +35,8 @@ double SlopeOfWayToRest(double speed, const Brakes& b) {
 // oscillation.
 double Follow(const Limit& limit, double speed, double period_s) {
   const Brakes& brakes = limit.brakes;
-  const double allowed = SpeedForWay(limit.room - kShort, brakes);
-  const double slope = SlopeOfWayToRest(allowed, brakes);
+  const double allowed = SpeedForDistance(limit.room - kShort, brakes);
+  const double slope = SlopeOfStoppingDistance(allowed, brakes);
   const double quick = kQuick * period_s;
   const double calm = std::clamp(slope, quick, kCalm);
   const double acceleration = (limit.rate - speed) / std::max(slope, quick) + (allowed - speed) / calm;
@@ -73,8 +73,8 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
     const Rider& before = w.rider(one.by);
     const double its_speed = direction * before.at.velocity;
     if (its_speed <= 0 || direction * before.at.acceleration <= 0) return;
-    one.room += direction * (before.at.position - w.now(one.by).rest_before) + WayToRest(its_speed, one.brakes);
-    one.rate = its_speed + SlopeOfWayToRest(its_speed, one.brakes) * direction * before.at.acceleration;
+    one.room += direction * (before.at.position - w.now(one.by).rest_before) + StoppingDistance(its_speed, one.brakes);
+    one.rate = its_speed + SlopeOfStoppingDistance(its_speed, one.brakes) * direction * before.at.acceleration;
     take(one);
   };
   const auto behind = [&](std::uint32_t other, double apart, double gap) {
@@ -90,13 +90,15 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
       return one;
     }
     // From speed and acceleration; with the jerk the point would fluctuate, and all followers with it.
-    one.rate = its_speed + SlopeOfWayToRest(its_speed, before.brakes) * its_acceleration;
+    one.rate = its_speed + SlopeOfStoppingDistance(its_speed, before.brakes) * its_acceleration;
     // Follow uses the speed alone. The distance that the follower saves because it already brakes is added, at most as
     // much as the leader saves by braking; otherwise the follower would brake harder than the leader.
-    const double spared = WayToRest(its_speed, before.brakes) - direction * (its.rest_before - before.at.position);
+    const double spared =
+        StoppingDistance(its_speed, before.brakes) - direction * (its.rest_before - before.at.position);
     const double own = direction * r.at.acceleration;
     if (spared > 0 && own < 0 && its_acceleration < 0) {
-      one.room += std::clamp(WayToRest(speed, one.brakes) - Brake({0, speed, own}, one.brakes).rest, 0.0, spared);
+      one.room +=
+          std::clamp(StoppingDistance(speed, one.brakes) - Brake({0, speed, own}, one.brakes).rest, 0.0, spared);
     }
     return one;
   };
@@ -111,7 +113,7 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
       if (w.rider(k).route.first() != r.route.first()) take(behind(k, -offset, std::max(r.gap, w.rider(k).gap)));
     });
   }
-  const double reach = 2 * WayToRest(r.pace.limits.velocity, r.pace.brakes()) + r.gap;
+  const double reach = 2 * StoppingDistance(r.pace.limits.velocity, r.pace.brakes()) + r.gap;
   w.AlongNodes(r, r.at.position + reach, [&](const Passage& p) {
     const double way = direction * (p.offset - r.at.position);
     if (way > reach + std::max(p.range_before, p.range_behind)) return;
@@ -152,7 +154,8 @@ void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, d
   });
 }
 
-bool GoesAlong(const RightOfWay& w, std::uint32_t i, const KinematicState& wish, const Limit& limit) noexcept {
+bool IsNoFasterThanLeader(const RightOfWay& w, std::uint32_t i, const KinematicState& wish,
+                          const Limit& limit) noexcept {
   const Rider& r = w.rider(i);
   if (limit.by == kNobody || limit.by != w.now(i).leader) return false;
   const Rider& before = w.rider(limit.by);
@@ -163,15 +166,15 @@ bool GoesAlong(const RightOfWay& w, std::uint32_t i, const KinematicState& wish,
          r.direction * (wish.acceleration - other.acceleration) <= 1e-6;
 }
 
-double ComeUp(const Rider& r, double room, const KinematicState& there, const Brakes& brakes,
-              double period_s) noexcept {
+double ApproachAcceleration(const Rider& r, double room, const KinematicState& there, const Brakes& brakes,
+                            double period_s) noexcept {
   const double speed = r.direction * r.at.velocity, its_speed = r.direction * there.velocity;
-  const double slope = std::max(SlopeOfWayToRest(std::max({0.0, speed, its_speed}), brakes), kQuick * period_s);
+  const double slope = std::max(SlopeOfStoppingDistance(std::max({0.0, speed, its_speed}), brakes), kQuick * period_s);
   const double closing = kClosing / slope, faster = speed - its_speed;
   return r.direction * there.acceleration - closing * faster + (closing * room - faster) / std::min(slope, kCalm);
 }
 
-double CloseUp(const RightOfWay& w, std::uint32_t i, const Limit& limit) noexcept {
+double CloseGapAcceleration(const RightOfWay& w, std::uint32_t i, const Limit& limit) noexcept {
   const Rider& r = w.rider(i);
   if (limit.by == kNobody || limit.by != w.now(i).leader) return -kInfinite;
   const Rider& before = w.rider(limit.by);
@@ -179,7 +182,8 @@ double CloseUp(const RightOfWay& w, std::uint32_t i, const Limit& limit) noexcep
   if (own.deceleration < before.brakes.deceleration || own.jerk < before.brakes.jerk) return -kInfinite;
   const double room = r.direction * (before.at.position + w.now(i).leader_offset - r.at.position) - r.gap;
   if (room < 0 || r.direction * before.at.velocity < 0) return -kInfinite;
-  return ComeUp(r, room, {0, before.at.velocity, w.now(limit.by).next.acceleration}, r.brakes, w.period_s());
+  return ApproachAcceleration(r, room, {0, before.at.velocity, w.now(limit.by).next.acceleration}, r.brakes,
+                              w.period_s());
 }
 
 }  // namespace takt::planar

@@ -25,14 +25,16 @@ struct Limit {
 void LimitBy(const RightOfWay& w, std::uint32_t i, double speed, Limit& limit, double& least) noexcept;
 // Returns true if `wish` is no faster than the step of the mover ahead, which brakes no harder than this one: then the
 // gap needs no more than the invariant.
-bool GoesAlong(const RightOfWay& w, std::uint32_t i, const KinematicState& wish, const Limit& limit) noexcept;
+bool IsNoFasterThanLeader(const RightOfWay& w, std::uint32_t i, const KinematicState& wish,
+                          const Limit& limit) noexcept;
 // Returns the acceleration [mm/s²] with which a mover approaches from behind a point that moves independently of it:
 // `room` [mm] is the distance to the point, `there` the point's speed and acceleration. The mover would not pass the
 // point if both stopped.
-double ComeUp(const Rider& r, double room, const KinematicState& there, const Brakes& brakes, double period_s) noexcept;
+double ApproachAcceleration(const Rider& r, double room, const KinematicState& there, const Brakes& brakes,
+                            double period_s) noexcept;
 // Returns the acceleration [mm/s²] that closes the gap to the mover ahead without a reserve against oscillation, so
 // that in the end both move as one; minus infinity if the mover ahead is not the limit, brakes harder, moves back, or
 // is nearer than the gap.
-double CloseUp(const RightOfWay& w, std::uint32_t i, const Limit& limit) noexcept;
+double CloseGapAcceleration(const RightOfWay& w, std::uint32_t i, const Limit& limit) noexcept;
 
 }  // namespace takt::planar

@@ -78,8 +78,8 @@ double TimeOn(const Stretch& stretch, const Way& way, double place) {
 
 }  // namespace
 
-KinematicState GoAlong(trajectory::Planner& planner, const Rider& r, const KinematicState& demand, double period_s,
-                       bool& exact) noexcept {
+KinematicState FollowDemandAlone(trajectory::Planner& planner, const Rider& r, const KinematicState& demand,
+                                 double period_s, bool& exact) noexcept {
   const trajectory::Limits own = LimitsNow(r);
   trajectory::DemandFollowerState chase;
   KinematicState next =
@@ -96,7 +96,7 @@ KinematicState GoAlong(trajectory::Planner& planner, const Rider& r, const Kinem
   return next;
 }
 
-int RunsOut(const Network& network, const Rider& r, const KinematicState& at) noexcept {
+int LeavesRoute(const Network& network, const Rider& r, const KinematicState& at) noexcept {
   if (network[r.route.first()].closed) return 0;
   const Braking braking = Brake(at, r.pace.brakes());
   if (at.velocity < 0 && std::min(at.position, braking.lowest) < -kTolerance) return -1;
@@ -190,17 +190,17 @@ bool KeepsToVectors(const Network& network, const Rider& r, const KinematicState
 
 bool CurvesAhead(const Network& network, const Rider& r) noexcept {
   const double speed = r.direction * r.at.velocity;
-  const double until = 2 * WayToRest(speed, r.pace.brakes()) + kNear;
+  const double until = 2 * StoppingDistance(speed, r.pace.brakes()) + kNear;
   const Caps caps = CapsAhead(network, StartOf(r, r.at, r.direction), until, r.pace);
   return std::any_of(caps.of.begin(), caps.of.begin() + static_cast<std::ptrdiff_t>(caps.count),
                      [&](const Cap& cap) { return cap.speed < r.pace.limits.velocity; });
 }
 
-bool RunsFree(const Network& network, const Rider& r, const KinematicState& step) noexcept {
+bool IsUnconstrained(const Network& network, const Rider& r, const KinematicState& step) noexcept {
   const double speed = std::max(r.direction * step.velocity, r.direction * Peak(step, r.pace.limits.jerk));
   if (speed > r.pace.limits.velocity) return false;
-  const double until = 2 * WayToRest(speed, r.pace.brakes()) + kNear;
-  if (r.direction * (EndOfWay(network, r) - step.position) < until) return false;
+  const double until = 2 * StoppingDistance(speed, r.pace.brakes()) + kNear;
+  if (r.direction * (TargetPosition(network, r) - step.position) < until) return false;
   const Caps caps = CapsAhead(network, StartOf(r, step, r.direction), until, r.pace);
   return std::all_of(caps.of.begin(), caps.of.begin() + static_cast<std::ptrdiff_t>(caps.count),
                      [&](const Cap& cap) { return cap.speed >= speed; });
@@ -216,7 +216,7 @@ bool MayTake(const Network& network, const Rider& r, const Route& route) noexcep
   return true;
 }
 
-bool TakeMastersWay(const Network& network, const Rider& master, Rider& r) noexcept {
+bool TakeMastersRoute(const Network& network, const Rider& master, Rider& r) noexcept {
   if (network[r.route.first()].closed) return true;
   // Starts of the tracks of both routes, as this mover counts positions.
   std::uint32_t from_own = 0, from_masters = 0;

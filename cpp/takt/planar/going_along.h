@@ -11,12 +11,12 @@ namespace takt::planar {
 
 // Returns its state at the end of the cycle as if it were alone on a straight route; the demand itself if its limits
 // allow it, then `exact` becomes true. Positions on the first track of its route.
-KinematicState GoAlong(trajectory::Planner& planner, const Rider& rider, const KinematicState& demand, double period_s,
-                       bool& exact) noexcept;
+KinematicState FollowDemandAlone(trajectory::Planner& planner, const Rider& rider, const KinematicState& demand,
+                                 double period_s, bool& exact) noexcept;
 
 // Returns 1 if the mover could not come to rest before the end of its route from here with its commanded dynamics, -1
 // if not before its start, else 0.
-int RunsOut(const Network& network, const Rider& rider, const KinematicState& at) noexcept;
+int LeavesRoute(const Network& network, const Rider& rider, const KinematicState& at) noexcept;
 
 // Returns true if the mover keeps its maximum speed, and its maximum lateral acceleration in curves, while it brakes
 // from this step on with `jerk`.
@@ -30,13 +30,13 @@ bool KeepsToVectors(const Network& network, const Rider& rider, const KinematicS
 bool CurvesAhead(const Network& network, const Rider& rider) noexcept;
 // Returns true if from this step on only other movers can slow it down: it is no faster than commanded, and neither a
 // curve nor the end of its route is near enough to matter.
-bool RunsFree(const Network& network, const Rider& rider, const KinematicState& step) noexcept;
+bool IsUnconstrained(const Network& network, const Rider& rider, const KinematicState& step) noexcept;
 
 // Returns true if `route` may replace its route: the tracks that it cannot avoid any more stay the same.
 bool MayTake(const Network& network, const Rider& rider, const Route& route) noexcept;
 
 // Takes over the master's route from where both routes meet. Returns false if the mover is past the branch where the
 // master turns off, or if the master is beyond its route.
-bool TakeMastersWay(const Network& network, const Rider& master, Rider& rider) noexcept;
+bool TakeMastersRoute(const Network& network, const Rider& master, Rider& rider) noexcept;
 
 }  // namespace takt::planar

@@ -41,7 +41,7 @@ ObjectInfo AskStanding(std::uint32_t mover, std::uint32_t group, const GroupRegi
 }
 
 // Returns the mover of a group that its part brings to this track, without a link to it.
-ObjectInfo WhoComesTo(std::uint32_t track, std::uint32_t group, const GroupRegistry& g) noexcept {
+ObjectInfo MoverArrivingOnTrack(std::uint32_t track, std::uint32_t group, const GroupRegistry& g) noexcept {
   if (!g.areas[track]) return {};
   for (std::uint32_t i = 0; i < g.movers.size(); ++i) {
     const MoverView& now = g.movers[i];
@@ -147,7 +147,7 @@ Area AreaThere(const MoverView& now) noexcept {
   return {.places = {now.goal.origin}, .count = 1, .least_c = now.pose.c, .most_c = now.pose.c, .mover = now.mover};
 }
 
-ObjectInfo WhoComes(std::uint32_t but, std::uint32_t system, const Area& area, const GroupRegistry& g) noexcept {
+ObjectInfo MoverArrivingAt(std::uint32_t but, std::uint32_t system, const Area& area, const GroupRegistry& g) noexcept {
   for (std::uint32_t i = 0; i < g.movers.size(); ++i) {
     const MoverView& now = g.movers[i];
     if (i != but && now.comes && now.goal.system == system && Near(area, AreaThere(now), kSame)) {
@@ -160,7 +160,7 @@ ObjectInfo WhoComes(std::uint32_t but, std::uint32_t system, const Area& area, c
 Verdict SetDown(std::uint32_t mover, const Pose& pose, std::uint32_t system, GroupRegistry& g) noexcept {
   const Area area{
       .places = {pose.place}, .count = 1, .least_c = pose.c, .most_c = pose.c, .mover = g.movers[mover].mover};
-  if (const ObjectInfo who = WhoComes(mover, system, area, g)) return Collision(who);
+  if (const ObjectInfo who = MoverArrivingAt(mover, system, area, g)) return Collision(who);
   if (const ObjectInfo who = MoverBelow(mover, system, area, g)) return Collision(who);
   const std::uint32_t group = g.Watching(g.group_of_mover[mover]);
   if (group == 0) return {};
@@ -180,7 +180,7 @@ Verdict AskTracks(std::uint32_t mover, std::span<const std::uint32_t> tracks, co
     if (group == 0) continue;
     const Reservations& r = g.grounds[group - 1].reserved;
     if (r.tracks[track].moving) continue;
-    if (const ObjectInfo who = WhoComesTo(track, group, g)) return Collision(who);
+    if (const ObjectInfo who = MoverArrivingOnTrack(track, group, g)) return Collision(who);
     if (const ObjectInfo object = AskTrack(track, g.Around(group), r)) return Collision(Numbered(object, group, g));
   }
   return {};

@@ -89,7 +89,7 @@ void AdvanceMover(std::uint32_t mover, GroupRegistry& g) noexcept;
 Area AreaThere(const MoverView& now) noexcept;
 // Returns the mover that a part brings to this area, in a group or not; none if there is no such mover. `but`: a mover
 // that is ignored.
-ObjectInfo WhoComes(std::uint32_t but, std::uint32_t system, const Area& area, const GroupRegistry& g) noexcept;
+ObjectInfo MoverArrivingAt(std::uint32_t but, std::uint32_t system, const Area& area, const GroupRegistry& g) noexcept;
 // Sets a mover to another pose in this coordinate system, if there is room: no mover is there or being brought there,
 // in a group or not, and nothing reserved in its group is in the way.
 Verdict SetDown(std::uint32_t mover, const Pose& pose, std::uint32_t system, GroupRegistry& g) noexcept;

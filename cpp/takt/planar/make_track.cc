@@ -271,7 +271,7 @@ class LayoutBuilder {
   }
 
   Problem Fill(const TrackPoint& end, const TrackPoint& begin) {
-    if (SamePlace(end.place, begin.place)) {
+    if (SamePoint(end.place, begin.place)) {
       if (!SameDirection(end, begin)) return Problem::kKink;
       return SameCurvature(end, begin) ? Problem::kNone : Problem::kCurvatureJump;
     }

@@ -102,7 +102,7 @@ bool Link(std::uint32_t from, std::uint32_t to, Network& network) noexcept {
   return behind.Add(to) && before.Add(from);
 }
 
-void NameNodes(Network& network) noexcept {
+void NumberNodes(Network& network) noexcept {
   for (Road& road : network.roads) road.start_node = road.end_node = kNoNode;
   network.node_count = 0;
   for (std::uint32_t i = 0; i < network.roads.size(); ++i) {

@@ -59,7 +59,7 @@ struct Network {
 // Links the end of `from` to the start of `to`. Returns false if there are too many links.
 bool Link(std::uint32_t from, std::uint32_t to, Network& network) noexcept;
 // Numbers the nodes anew, after links have changed.
-void NameNodes(Network& network) noexcept;
+void NumberNodes(Network& network) noexcept;
 
 // Computes the ranges at both ends of a track: beyond them its movers cannot touch those on tracks that meet it there.
 // At most kRangeSlack too long. Takes up to some 100 µs for a pair of tracks.

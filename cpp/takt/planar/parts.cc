@@ -191,7 +191,7 @@ bool IsOnBorder(const Part& part, const Place& place) noexcept {
   return on;
 }
 
-bool HangTogether(std::span<const Place> stators) {
+bool AreConnected(std::span<const Place> stators) {
   const auto beside = [](const Place& a, const Place& b) {
     const double x = Common(a.x, a.x + kStatorSide, b.x, b.x + kStatorSide);
     const double y = Common(a.y, a.y + kStatorSide, b.y, b.y + kStatorSide);

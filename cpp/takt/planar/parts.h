@@ -107,6 +107,6 @@ bool IsOnBorder(const Part& part, const Place& place) noexcept;
 bool IsOn(const Part& part, const Place& place) noexcept;
 
 // Returns true if the stators are connected by shared sides. Not for the cycle.
-bool HangTogether(std::span<const Place> stators);
+bool AreConnected(std::span<const Place> stators);
 
 }  // namespace takt::planar

@@ -16,7 +16,7 @@ constexpr double kSameCurvatureRelative = 1e-7;  // of the larger one
 
 }  // namespace
 
-bool SamePlace(const Place& a, const Place& b) noexcept {
+bool SamePoint(const Place& a, const Place& b) noexcept {
   return maths::Hypot(b.x - a.x, b.y - a.y) < kSame;
 }
 
@@ -30,7 +30,7 @@ bool SameCurvature(const TrackPoint& a, const TrackPoint& b) noexcept {
 }
 
 bool Same(const TrackPoint& a, const TrackPoint& b) noexcept {
-  return SamePlace(a.place, b.place) && SameDirection(a, b) && SameCurvature(a, b);
+  return SamePoint(a.place, b.place) && SameDirection(a, b) && SameCurvature(a, b);
 }
 
 void describe(Description<Place>& d) {

@@ -24,7 +24,7 @@ struct TrackPoint {
 inline constexpr double kSame = 1e-6;  // [mm]
 
 // Return true if a track may continue from one point to the other: in position, direction and curvature.
-bool SamePlace(const Place& a, const Place& b) noexcept;
+bool SamePoint(const Place& a, const Place& b) noexcept;
 bool SameDirection(const TrackPoint& a, const TrackPoint& b) noexcept;
 bool SameCurvature(const TrackPoint& a, const TrackPoint& b) noexcept;
 bool Same(const TrackPoint& a, const TrackPoint& b) noexcept;  // in all three

@@ -23,7 +23,7 @@ Area AreaOf(const Reservation& mover, const Move& move) noexcept {
   area.least_c = area.most_c = mover.pose.c;
   if (move.over) place(*move.over);
   for (std::size_t i = 0; i < move.corner_count; ++i) place(move.corners[i]);
-  if (!move.on_track && !SamePlace(mover.pose.place, move.target.place)) place(move.target.place);
+  if (!move.on_track && !SamePoint(mover.pose.place, move.target.place)) place(move.target.place);
   if (move.over_c) angle(*move.over_c);
   angle(move.target.c);
   return area;

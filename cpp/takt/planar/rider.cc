@@ -18,7 +18,7 @@ trajectory::Limits LimitsNow(const Rider& r) noexcept {
   return limits;
 }
 
-Route TrailOf(const Rider& r) noexcept {
+Route RemainingTracks(const Rider& r) noexcept {
   Route trail;
   if (!r.on) return trail;
   const bool stays = Rests(r.at) && (r.aim == Aim::kRest || r.there);

@@ -92,7 +92,7 @@ inline bool Rests(const KinematicState& x) noexcept {
 
 // Returns the tracks that it is to move along, the current one first; only that one if it is at rest and is to stay.
 // Empty if it is on no track.
-Route TrailOf(const Rider& r) noexcept;
+Route RemainingTracks(const Rider& r) noexcept;
 
 void describe(Enumeration<Aim>&);
 void describe(Enumeration<Waits>&);

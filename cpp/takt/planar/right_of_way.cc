@@ -110,7 +110,7 @@ std::uint32_t RightOfWay::FindLeader(std::uint32_t i, int direction, double& off
   }
   if (direction < 0) return kNobody;
   const double gap = r.gap + r.off + s_.off;
-  const double reach = s_.now[i].braking.highest + gap + 2 * WayToRest(r.pace.limits.velocity, r.pace.brakes());
+  const double reach = s_.now[i].braking.highest + gap + 2 * StoppingDistance(r.pace.limits.velocity, r.pace.brakes());
   for (std::uint32_t k = 1; k < r.route.count; ++k) {
     offset += network_[r.route.tracks[k - 1]].length;
     if (offset > reach) break;

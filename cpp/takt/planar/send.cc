@@ -69,19 +69,20 @@ bool Send(const Network& network, RouteSearch& search, const Destination& to, Ri
   return true;
 }
 
-NoWay WhyNoWay(const Network& network, RouteSearch& search, const Destination& to, const Rider& r) noexcept {
+UnreachableReason DiagnoseUnreachable(const Network& network, RouteSearch& search, const Destination& to,
+                                      const Rider& r) noexcept {
   Destination any = to;
   any.way = Way::kNonModulo;
   Rider then = r;
-  if (to.way != any.way && Send(network, search, any, then)) return NoWay::kDirection;
-  if (network[r.route.first()].closed || network[to.track].closed) return NoWay::kNotLinked;
+  if (to.way != any.way && Send(network, search, any, then)) return UnreachableReason::kDirection;
+  if (network[r.route.first()].closed || network[to.track].closed) return UnreachableReason::kNotLinked;
   Route route;
   const bool found = FindRoute(network, r.route.first(), to.track, search, route);
   const bool reached = search.way[to.track] < std::numeric_limits<double>::infinity();
-  return found || reached ? NoWay::kTooLong : NoWay::kNotLinked;
+  return found || reached ? UnreachableReason::kTooLong : UnreachableReason::kNotLinked;
 }
 
-double EndOfWay(const Network& network, const Rider& r) noexcept {
+double TargetPosition(const Network& network, const Rider& r) noexcept {
   double end = r.target;
   for (std::uint32_t k = 0; k + 1 < r.route.count; ++k) end += network[r.route.tracks[k]].length;
   return end;
@@ -89,7 +90,7 @@ double EndOfWay(const Network& network, const Rider& r) noexcept {
 
 void PlanOn(trajectory::Planner& planner, const Network& network, double place, double speed, double acceleration,
             Rider& r) noexcept {
-  const double end = EndOfWay(network, r);
+  const double end = TargetPosition(network, r);
   if (speed == 0 && acceleration == 0) r.direction = end < place ? -1 : 1;
   const double way = r.direction * (end - place);
   const Start start{&r.route, place, r.direction, speed, acceleration};
@@ -114,8 +115,8 @@ double TimeAlone(trajectory::Planner& planner, const Network& network, Rider r) 
     at = r.plan.end();
     at.position = r.plan_from + r.direction * at.position;
   }
-  const double way = r.direction * (EndOfWay(network, r) - at.position);
-  return time + TimeOfWay(network, {&r.route, at.position, r.direction, at.velocity, 0}, way, r.pace);
+  const double way = r.direction * (TargetPosition(network, r) - at.position);
+  return time + EstimateTravelTime(network, {&r.route, at.position, r.direction, at.velocity, 0}, way, r.pace);
 }
 
 }  // namespace takt::planar

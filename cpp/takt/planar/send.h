@@ -29,7 +29,7 @@ struct Destination {
 };
 
 // Why a destination cannot be reached. The numbers are values of feedbacks.
-enum class NoWay : std::uint8_t {
+enum class UnreachableReason : std::uint8_t {
   kNotLinked = 0,  // no tracks lead there from where the mover can still turn off
   kDirection = 1,  // tracks lead there, but not in this direction
   kTooLong = 2,    // only over more than kRouteTracks tracks
@@ -41,15 +41,17 @@ enum class NoWay : std::uint8_t {
 bool Send(const Network& network, RouteSearch& search, const Destination& to, Rider& rider) noexcept;
 
 // Returns the reason why Send failed.
-NoWay WhyNoWay(const Network& network, RouteSearch& search, const Destination& to, const Rider& rider) noexcept;
+UnreachableReason DiagnoseUnreachable(const Network& network, RouteSearch& search, const Destination& to,
+                                      const Rider& rider) noexcept;
 
 // Returns the position [mm] of its target, counted from the start of its first track.
-double EndOfWay(const Network& network, const Rider& rider) noexcept;
+double TargetPosition(const Network& network, const Rider& rider) noexcept;
 // Plans its motion to its target, or a first part of it, from a position on the first track, with speed and
 // acceleration in its direction. From rest the direction becomes that of the target.
 void PlanOn(trajectory::Planner& planner, const Network& network, double place, double speed, double acceleration,
             Rider& rider) noexcept;
-// Returns the travel time [s] to the target without other movers: of the first two plans, and TimeOfWay for the rest.
+// Returns the travel time [s] to the target without other movers: of the first two plans, and EstimateTravelTime for
+// the rest.
 double TimeAlone(trajectory::Planner& planner, const Network& network, Rider rider) noexcept;
 
 }  // namespace takt::planar

@@ -141,7 +141,7 @@ class Traffic::Step_ {
 
   // Returns the wish of a geared mover; if its route ends it moves to that end instead.
   KinematicState WishAlong(Rider& r, const KinematicState& demand, bool& exact) {
-    KinematicState wish = GoAlong(planner_, r, demand, period(), exact);
+    KinematicState wish = FollowDemandAlone(planner_, r, demand, period(), exact);
     const bool ahead = r.direction * wish.velocity > 0 && r.direction * r.at.velocity >= 0;
     if (!exact && ahead && CurvesAhead(network_, r)) {
       // Bounded by the motion to the end of its route.
@@ -150,12 +150,12 @@ class Traffic::Step_ {
       if (r.direction * (wish.velocity - alone.velocity) > 0) return alone;
     }
     r.planned = false;
-    const int out = RunsOut(network_, r, wish);
+    const int out = LeavesRoute(network_, r, wish);
     if (out == 0) return wish;
     exact = false;
     // While its demand is on its route, it waits for it.
-    if (demand.position >= -kTolerance && RunsOut(network_, r, demand) == 0) {
-      return Brake(r.at, RunsOut(network_, r, r.at) == 0 ? r.pace.brakes() : r.brakes).At(period());
+    if (demand.position >= -kTolerance && LeavesRoute(network_, r, demand) == 0) {
+      return Brake(r.at, LeavesRoute(network_, r, r.at) == 0 ? r.pace.brakes() : r.brakes).At(period());
     }
     r.aim = Aim::kTarget;
     r.gear.end = GearEnd::kWay;
@@ -294,8 +294,8 @@ class Traffic::Step_ {
   // Returns the mover across its path within the distance that it needs to keep its pace; kNobody: the path is clear.
   std::uint32_t Across(std::uint32_t i) {
     const Rider& r = riders_[i];
-    double ahead = WayToRest(r.pace.limits.velocity, r.pace.brakes());
-    if (r.aim == Aim::kTarget) ahead = std::min(ahead, std::abs(EndOfWay(network_, r) - r.at.position));
+    double ahead = StoppingDistance(r.pace.limits.velocity, r.pace.brakes());
+    if (r.aim == Aim::kTarget) ahead = std::min(ahead, std::abs(TargetPosition(network_, r) - r.at.position));
     const double there = r.at.position + r.direction * ahead;
     return guard_->Find(
         i, guard_->figure(i).system, CourseOf(i, std::min(r.at.position, there), std::max(r.at.position, there)),
@@ -362,7 +362,7 @@ class Traffic::Step_ {
 
   // Returns true if the rest of its motion, however short, fits into this distance.
   bool Reaches(const Rider& r, double room) const {
-    return std::abs(EndOfWay(network_, r) - r.at.position) <= room + kTolerance;
+    return std::abs(TargetPosition(network_, r) - r.at.position) <= room + kTolerance;
   }
 
   // Returns the state at the end of the cycle when braking as commanded.
@@ -383,7 +383,8 @@ class Traffic::Step_ {
     const double eased = Eased(r, most);
     most = Calmed(r, eased);
     const KinematicState step = StepWith(r, most);
-    if (most >= Reachable(r, 0).max || r.direction * step.velocity <= 0 || !RunsFree(network_, r, step)) return false;
+    if (most >= Reachable(r, 0).max || r.direction * step.velocity <= 0 || !IsUnconstrained(network_, r, step))
+      return false;
     r.eased = eased;
     if (r.calm_cycles > 0) --r.calm_cycles;
     // if none is admissible, it brakes
@@ -433,10 +434,10 @@ class Traffic::Step_ {
     if (r.calm_cycles > 0) --r.calm_cycles;
     const bool comes = follows && !exact && ComesFromBehind(r, demand);
     if (follows) {
-      most = std::max(most, CloseUp(w_, i, limit));
+      most = std::max(most, CloseGapAcceleration(w_, i, limit));
       // Before a stationary demand it comes to rest by itself.
       if (Rests(demand) && direction * (demand.position - r.at.position) <= limit.room + kTolerance) most = kInfinite;
-      if (comes) most = std::min(most, ComeUp(r, RoomTo(r, demand), demand, r.pace.brakes(), period()));
+      if (comes) most = std::min(most, ApproachAcceleration(r, RoomTo(r, demand), demand, r.pace.brakes(), period()));
     }
     // With constant jerk neither faster than wished at the end of the cycle, nor with more acceleration.
     const double mean = (direction * wish.velocity - speed) / period();
@@ -448,7 +449,7 @@ class Traffic::Step_ {
     const double end =
         follows ? std::max(least_end, std::sqrt(r.pace.limits.jerk * std::max(0.0, fastest))) : least_end;
     const double wished = std::min(end, as_fast);
-    const bool limited = mean > most + 1e-9 && !(was_free && GoesAlong(w_, i, wish, limit));
+    const bool limited = mean > most + 1e-9 && !(was_free && IsNoFasterThanLeader(w_, i, wish, limit));
     if (halts && !limited && TakeWithShare(i, [&](std::size_t share) { return std::optional(Halting(r, share)); })) {
       return WaitFor(r, Waits::kNot, kNobody);
     }

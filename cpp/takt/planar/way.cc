@@ -379,7 +379,7 @@ class SpeedTimes {
 
 }  // namespace
 
-double TimeOfWay(const Network& network, const Start& start, double way, const Pace& pace) noexcept {
+double EstimateTravelTime(const Network& network, const Start& start, double way, const Pace& pace) noexcept {
   const double up = 2 * pace.limits.acceleration, down = 2 * pace.limits.deceleration;
   SpeedTimes ramps(pace.limits, start.speed);
   Route route = *start.route;

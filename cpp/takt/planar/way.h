@@ -109,6 +109,6 @@ Planned PlanWay(trajectory::Planner& planner, const Network& network, const Star
 // acceleration between the caps, plus the delay by the jerk limit at each change between acceleration and deceleration.
 // The error is below 8 per cent for nine of ten random routes with bends. Beyond 1000 caps the mean speed so far is
 // assumed.
-double TimeOfWay(const Network& network, const Start& start, double way, const Pace& pace) noexcept;
+double EstimateTravelTime(const Network& network, const Start& start, double way, const Pace& pace) noexcept;
 
 }  // namespace takt::planar

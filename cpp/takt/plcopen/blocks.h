@@ -1,5 +1,7 @@
-// All function blocks, by the names of PLCopen and of the GT-775x modules. A block for a new command is one line here;
-// without it, use Block<axis::NewCommand>.
+// Includes all function blocks, and names those that are commands alone: MC_ as in PLCopen (parts 1, 4 and 5), GT_ as
+// in the GT-775x modules. A new command needs one line: UpdatedBlock if its inputs may change while Execute is true
+// (ContinuousUpdate), else Block. Commands without a name here are used as Block<Command>: MC_AbortPassiveHoming is
+// Block<axis::AbortPassiveHoming>.
 #pragma once
 
 #include "takt/plcopen/administration.h"

@@ -8,7 +8,7 @@
 namespace takt::routing {
 namespace {
 
-constexpr std::int64_t kStates = 16;         // states of repair that take as long as one of Improving
+constexpr std::int64_t kStates = 16;         // states of repair that take as long as one of ImproveOptions
 constexpr std::int64_t kCellsPerState = 16;  // cells of tables whose setup takes as long as one state
 constexpr std::int64_t kMostCells = 2'000'000;
 constexpr std::int64_t kLeastPerMover = 250;  // states; repair finds none with less
@@ -37,7 +37,7 @@ void BetterSteps::Run(std::vector<Configuration> first, double first_sum, const 
   if (best_) {
     ImproveBest(offer);
   } else {
-    LookForTails(std::move(first), first_sum, offer);
+    ImproveTails(std::move(first), first_sum, offer);
   }
 }
 
@@ -69,7 +69,7 @@ void BetterSteps::ImproveBest(const Offer& offer) {
   }
 }
 
-void BetterSteps::LookForTails(std::vector<Configuration> now, double least, const Offer& offer) {
+void BetterSteps::ImproveTails(std::vector<Configuration> now, double least, const Offer& offer) {
   Random random(seed_);
   for (std::int64_t left = 2 * budget_ - spent_; now.size() > 1 && (left -= kTailCost * Size(now)) > 0;) {
     const auto at = now.begin() + static_cast<std::ptrdiff_t>(random.Below(now.size() - 1));

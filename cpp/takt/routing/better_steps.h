@@ -15,10 +15,10 @@ namespace takt::routing {
 class BetterSteps {
  public:
   struct How {
-    std::int64_t effort = 0;  // states of Improving that take as long as each of the two stages
+    std::int64_t effort = 0;  // states of ImproveOptions that take as long as each of the two stages
     std::uint64_t seed = 0;
   };
-  // Keeps references. `pools`: as in Improving.
+  // Keeps references. `pools`: as in ImproveOptions.
   BetterSteps(const Grid& grid, const Task& task, const StepTables& tables, const std::vector<std::int32_t>& pools,
               const How& how);
 
@@ -37,7 +37,7 @@ class BetterSteps {
   }
   void FindSome(const Offer& offer);
   void ImproveBest(const Offer& offer);
-  void LookForTails(std::vector<Configuration> now, double least, const Offer& offer);
+  void ImproveTails(std::vector<Configuration> now, double least, const Offer& offer);
 
   const Grid& grid_;
   const Task& task_;

@@ -17,7 +17,7 @@ struct PassageId {
 };
 
 struct Passage {
-  PlaceIndex place = 0;
+  CellIndex place = 0;
   std::size_t step = 0;
   PassageId before{};    // the preceding passage of the place
   double left = -1;      // [s] when the place is freed; negative: not known yet
@@ -32,7 +32,7 @@ class Composer {
     std::vector<std::vector<std::tuple<std::size_t, PassageId>>> at(static_cast<std::size_t>(grid.size()));
     for (std::size_t i = 0; i < passages_.size(); ++i) {
       for (std::size_t step = 0; step < steps.size(); ++step) {
-        const PlaceIndex place = steps[step][i];
+        const CellIndex place = steps[step][i];
         if (step > 0 && steps[step - 1][i] == place) continue;
         at[static_cast<std::size_t>(place)].push_back({step, {static_cast<MoverIndex>(i), passages_[i].size()}});
         passages_[i].push_back({.place = place, .step = step});
@@ -59,7 +59,7 @@ class Composer {
       std::vector<Passage>& its = passages_[i];
       const std::size_t first = at[i];
       if (first + 1 >= its.size()) continue;
-      const PlaceIndex step = its[first + 1].place - its[first].place;
+      const CellIndex step = its[first + 1].place - its[first].place;
       std::size_t last = first;
       while (last + 1 < its.size() && its[last + 1].place - its[last].place == step && Known(mover, its[last + 1])) {
         ++last;

@@ -25,14 +25,14 @@ Grid::Grid(int width, int height, double pitch, double mover_size, const Dynamic
       beside_(blocked_.size()),
       steps_{0, 1, -1, width, -width},
       room_(blocked_.size()) {
-  for (PlaceIndex place = 0; place < size(); ++place) {
+  for (CellIndex place = 0; place < size(); ++place) {
     const int column = place % width_, row = place / width_;
     along_.push_back({0, column, -column, row, -row});
     if (this->blocked(place)) continue;
     Beside& its = beside_[static_cast<std::size_t>(place)];
     for (const Direction direction : kDirections) {
       int& room = room_[static_cast<std::size_t>(place)][static_cast<std::size_t>(direction)];
-      for (PlaceIndex at = place;;) {
+      for (CellIndex at = place;;) {
         const int x = at % width_, y = at / width_;
         const bool last = direction == Direction::kRight  ? x + 1 == width_
                           : direction == Direction::kLeft ? x == 0
@@ -74,12 +74,12 @@ Grid::Grid(int width, int height, double pitch, double mover_size, const Dynamic
   lags_.assign(n * n * (2 * n + 1), std::numeric_limits<double>::quiet_NaN());
 }
 
-std::vector<std::int32_t> Grid::StepsTo(PlaceIndex target) const {
+std::vector<std::int32_t> Grid::StepsTo(CellIndex target) const {
   std::vector<std::int32_t> steps(blocked_.size(), kUnreachable);
-  std::vector<PlaceIndex> queue{target};
+  std::vector<CellIndex> queue{target};
   steps[static_cast<std::size_t>(target)] = 0;
   for (std::size_t i = 0; i < queue.size(); ++i) {
-    for (const PlaceIndex next : beside(queue[i])) {
+    for (const CellIndex next : beside(queue[i])) {
       if (steps[static_cast<std::size_t>(next)] < kUnreachable) continue;
       steps[static_cast<std::size_t>(next)] = steps[static_cast<std::size_t>(queue[i])] + 1;
       queue.push_back(next);
@@ -89,9 +89,9 @@ std::vector<std::int32_t> Grid::StepsTo(PlaceIndex target) const {
 }
 
 // Dijkstra over runs.
-std::vector<double> Grid::TimesTo(PlaceIndex target) const {
+std::vector<double> Grid::TimesTo(CellIndex target) const {
   std::vector<double> times(blocked_.size(), std::numeric_limits<double>::infinity());
-  using Entry = std::pair<double, PlaceIndex>;
+  using Entry = std::pair<double, CellIndex>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   times[static_cast<std::size_t>(target)] = 0;
   open.emplace(0.0, target);
@@ -102,7 +102,7 @@ std::vector<double> Grid::TimesTo(PlaceIndex target) const {
     for (const Direction direction : kDirections) {
       const int room = Room(direction, place);
       for (int count = 1; count <= room; ++count) {
-        const PlaceIndex from = place + count * Step(direction);
+        const CellIndex from = place + count * Step(direction);
         double& known = times[static_cast<std::size_t>(from)];
         if (const double one = time + Duration(count); one < known) {
           known = one;
@@ -114,14 +114,14 @@ std::vector<double> Grid::TimesTo(PlaceIndex target) const {
   return times;
 }
 
-Direction Grid::Towards(PlaceIndex from, PlaceIndex to) const noexcept {
+Direction Grid::Towards(CellIndex from, CellIndex to) const noexcept {
   if (from == to) return Direction::kNone;
   if (from / width_ == to / width_) return to > from ? Direction::kRight : Direction::kLeft;
   if (from % width_ == to % width_) return to > from ? Direction::kUp : Direction::kDown;
   return Direction::kNone;
 }
 
-int Grid::Count(PlaceIndex from, PlaceIndex to) const noexcept {
+int Grid::Count(CellIndex from, CellIndex to) const noexcept {
   const int between = std::abs(to - from);
   return from / width_ == to / width_ ? between : between / width_;
 }

@@ -19,7 +19,7 @@
 
 namespace takt::routing {
 
-using PlaceIndex = std::int32_t;
+using CellIndex = std::int32_t;
 using MoverIndex = std::int32_t;
 inline constexpr std::int32_t kNone = -1;
 inline constexpr double kEarly = 0.002;  // [s] for the cycles between a decision and its command
@@ -41,32 +41,32 @@ class Grid {
   int width() const noexcept { return width_; }
   int height() const noexcept { return height_; }
   double pitch() const noexcept { return pitch_; }
-  PlaceIndex size() const noexcept { return width_ * height_; }
-  bool blocked(PlaceIndex place) const noexcept { return blocked_[static_cast<std::size_t>(place)]; }
+  CellIndex size() const noexcept { return width_ * height_; }
+  bool blocked(CellIndex place) const noexcept { return blocked_[static_cast<std::size_t>(place)]; }
   // Returns the neighbours of a place that are not blocked.
-  std::span<const PlaceIndex> beside(PlaceIndex place) const noexcept {
+  std::span<const CellIndex> beside(CellIndex place) const noexcept {
     const Beside& its = beside_[static_cast<std::size_t>(place)];
     return {its.places.data(), its.count};
   }
   // Returns, by place, the number of steps to `target`; kUnreachable if there is no path.
-  std::vector<std::int32_t> StepsTo(PlaceIndex target) const;
+  std::vector<std::int32_t> StepsTo(CellIndex target) const;
   static constexpr std::int32_t kUnreachable = 1'000'000'000;
   // Returns, by place, the time [s] to `target` for a mover alone; infinite if there is no path.
-  std::vector<double> TimesTo(PlaceIndex target) const;
+  std::vector<double> TimesTo(CellIndex target) const;
 
   // Returns the direction of a run between two places of one row or column; kNone for the same place, or if there is no
   // run.
-  Direction Towards(PlaceIndex from, PlaceIndex to) const noexcept;
+  Direction Towards(CellIndex from, CellIndex to) const noexcept;
   // Returns the difference of place indices for one step.
-  PlaceIndex Step(Direction direction) const noexcept { return steps_[static_cast<std::size_t>(direction)]; }
+  CellIndex Step(Direction direction) const noexcept { return steps_[static_cast<std::size_t>(direction)]; }
   // Returns the number of steps of a run. Requires: both places in one row or column.
-  int Count(PlaceIndex from, PlaceIndex to) const noexcept;
+  int Count(CellIndex from, CellIndex to) const noexcept;
   // Returns the coordinate of a place along the direction: larger for places further ahead.
-  int Along(Direction direction, PlaceIndex place) const noexcept {
+  int Along(Direction direction, CellIndex place) const noexcept {
     return along_[static_cast<std::size_t>(place)][static_cast<std::size_t>(direction)];
   }
   // Returns the number of places ahead of `from` in this direction up to the border or a blocked place.
-  int Room(Direction direction, PlaceIndex from) const noexcept {
+  int Room(Direction direction, CellIndex from) const noexcept {
     return room_[static_cast<std::size_t>(from)][static_cast<std::size_t>(direction)];
   }
 
@@ -85,7 +85,7 @@ class Grid {
  private:
   struct Beside {
     std::size_t count = 0;
-    std::array<PlaceIndex, 4> places{};
+    std::array<CellIndex, 4> places{};
   };
   struct Lane {
     StraightRun run;
@@ -99,7 +99,7 @@ class Grid {
   double pitch_, mover_size_;
   std::vector<bool> blocked_;
   std::vector<Beside> beside_;
-  std::array<PlaceIndex, 5> steps_;        // by direction
+  std::array<CellIndex, 5> steps_;         // by direction
   std::vector<std::array<int, 5>> room_;   // by place and direction
   std::vector<std::array<int, 5>> along_;  // by place and direction
   double sampled_ = 0;                     // [s]

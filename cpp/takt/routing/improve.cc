@@ -14,7 +14,7 @@ constexpr std::int64_t kMostStates = 20'000;  // for one mover of an improvement
 constexpr double kGain = 1e-6;                // [s]
 
 // Returns the shortest time [s] after which a mover can have left a place.
-double LeavesAfter(const Grid& grid, PlaceIndex place) {
+double LeavesAfter(const Grid& grid, CellIndex place) {
   double least = kForever;
   for (const Direction direction : kDirections) {
     const int room = grid.Room(direction, place);
@@ -25,7 +25,7 @@ double LeavesAfter(const Grid& grid, PlaceIndex place) {
 
 class Improver {
  public:
-  Improver(const Grid& grid, const Task& task, Alone& alone, Plan plan, const Improving& how)
+  Improver(const Grid& grid, const Task& task, Alone& alone, Plan plan, const ImproveOptions& how)
       : grid_(grid),
         task_(task),
         alone_(alone),
@@ -106,7 +106,7 @@ class Improver {
           if (movers.size() < most) Add(movers, other);
         }
       } else {
-        AddThoseMet(movers, most);
+        AddEncountered(movers, most);
       }
     }
     random_.Shuffle(movers);
@@ -137,12 +137,12 @@ class Improver {
     const std::vector<double>& alone = alone_.To(At(now_.targets, mover));
     const double delay = Delay(mover);
     double time = 0;
-    for (PlaceIndex place = At(task_.starts, mover); place != At(now_.targets, mover);) {
-      PlaceIndex next = kNone;
+    for (CellIndex place = At(task_.starts, mover); place != At(now_.targets, mover);) {
+      CellIndex next = kNone;
       double least = kForever;
       for (const Direction direction : kDirections) {
         for (int count = 1; count <= grid_.Room(direction, place); ++count) {
-          const PlaceIndex to = place + count * grid_.Step(direction);
+          const CellIndex to = place + count * grid_.Step(direction);
           const double one = grid_.Duration(count) + At(alone, to);
           if (one < least - kTimeRounding) {
             least = one;
@@ -152,7 +152,7 @@ class Improver {
       }
       if (next == kNone) break;
       const int count = grid_.Count(place, next);
-      const PlaceIndex step = grid_.Step(grid_.Towards(place, next));
+      const CellIndex step = grid_.Step(grid_.Towards(place, next));
       for (int k = 0; k <= count; ++k) {
         const double from = time + grid_.Entry(count, k), to = time + grid_.Exit(count, k) + delay;
         for (const Stay& stay : timetable_.stays(place + k * step)) {
@@ -166,7 +166,7 @@ class Improver {
     return found;
   }
   // Adds movers that visit the same places in the present plan.
-  void AddThoseMet(std::vector<MoverIndex>& movers, std::size_t most) {
+  void AddEncountered(std::vector<MoverIndex>& movers, std::size_t most) {
     for (int guard = 0; guard < 100 && movers.size() < most; ++guard) {
       const auto& places = timetable_.places_of(movers[random_.Below(movers.size())]);
       if (places.empty()) return;
@@ -179,7 +179,7 @@ class Improver {
   // Replans these movers one after the other; undone if the sum gets worse by more than the heat allows.
   void PlanAnew(const std::vector<MoverIndex>& movers, double weight) {
     double before = 0, alone = 0;
-    std::vector<PlaceIndex> old_targets;
+    std::vector<CellIndex> old_targets;
     std::vector<Legs> old_legs;
     for (const MoverIndex i : movers) {
       before += At(arrivals_, i);
@@ -205,7 +205,7 @@ class Improver {
     std::size_t done = 0;
     for (; good && done < movers.size(); ++done) {
       const MoverIndex i = movers[done];
-      const PlaceIndex start = At(task_.starts, i);
+      const CellIndex start = At(task_.starts, i);
       alone -= TimeAlone(i);
       timetable_.Remove(i);
       std::optional<Legs> legs;
@@ -244,7 +244,7 @@ class Improver {
   const Grid& grid_;
   const Task& task_;
   Alone& alone_;
-  const Improving how_;
+  const ImproveOptions how_;
   Random random_;
   Sipp sipp_;
   Timetable timetable_;
@@ -263,9 +263,9 @@ double SumOf(const Grid& grid, const Plan& plan) {
   return sum;
 }
 
-std::optional<Plan> PlanInTurn(const Grid& grid, const Task& task, Alone& alone, int tries, std::int64_t effort) {
+std::optional<Plan> PlanPrioritised(const Grid& grid, const Task& task, Alone& alone, int tries, std::int64_t effort) {
   const std::size_t count = task.starts.size();
-  std::vector<PlaceIndex> targets;
+  std::vector<CellIndex> targets;
   for (std::size_t i = 0; i < count; ++i)
     targets.push_back(task.targets[i] == kNone ? task.starts[i] : task.targets[i]);
   std::vector<MoverIndex> order(count);
@@ -299,7 +299,7 @@ std::optional<Plan> PlanInTurn(const Grid& grid, const Task& task, Alone& alone,
   return std::nullopt;
 }
 
-Plan Improve(const Grid& grid, const Task& task, Alone& alone, Plan plan, const Improving& how) {
+Plan Improve(const Grid& grid, const Task& task, Alone& alone, Plan plan, const ImproveOptions& how) {
   return Improver(grid, task, alone, std::move(plan), how).Run();
 }
 

@@ -16,41 +16,41 @@
 namespace takt::routing {
 
 struct Plan {
-  std::vector<Legs> legs;           // by mover
-  std::vector<PlaceIndex> targets;  // by mover: where it ends
+  std::vector<Legs> legs;          // by mover
+  std::vector<CellIndex> targets;  // by mover: where it ends
 };
 
 // Times to targets for a mover alone, computed once.
 class Alone {
  public:
   explicit Alone(const Grid& grid) : grid_(grid) {}
-  const std::vector<double>& To(PlaceIndex target) {
+  const std::vector<double>& To(CellIndex target) {
     const auto [found, is_new] = times_.try_emplace(target);
     if (is_new) found->second = grid_.TimesTo(target);
     return found->second;
   }
-  double operator()(PlaceIndex from, PlaceIndex target) { return To(target)[static_cast<std::size_t>(from)]; }
+  double operator()(CellIndex from, CellIndex target) { return To(target)[static_cast<std::size_t>(from)]; }
 
  private:
   const Grid& grid_;
-  std::map<PlaceIndex, std::vector<double>> times_;
+  std::map<CellIndex, std::vector<double>> times_;
 };
 
 // Prioritised planning: one mover after the other, those with short paths first; a mover without a path is the first of
 // the next try. Returns nothing after `tries` failed ones, or `effort` states of SIPP: the method is not complete.
 // Movers without a target stay.
-std::optional<Plan> PlanInTurn(const Grid& grid, const Task& task, Alone& alone, int tries, std::int64_t effort);
+std::optional<Plan> PlanPrioritised(const Grid& grid, const Task& task, Alone& alone, int tries, std::int64_t effort);
 
 // Returns the sum of the arrivals of a plan [s].
 double SumOf(const Grid& grid, const Plan& plan);
 
-struct Improving {
+struct ImproveOptions {
   std::int64_t effort = 0;  // states of SIPP
   std::uint64_t seed = 0;
   // by mover; targets may be exchanged within a pool; kNone, or empty: none
   std::vector<std::int32_t> pools{};
 };
 // Requires: the plan solves the task. Returns a plan that is not worse.
-Plan Improve(const Grid& grid, const Task& task, Alone& alone, Plan plan, const Improving& how);
+Plan Improve(const Grid& grid, const Task& task, Alone& alone, Plan plan, const ImproveOptions& how);
 
 }  // namespace takt::routing

@@ -47,19 +47,19 @@ Repair::Repair(const Grid& grid, Task task, const StepTables& tables, const std:
       reached_(first_at_.size(), 0),
       its_conflicts_(first_at_.size(), 0),
       from_(first_at_.size(), kNone) {
-  for (const PlaceIndex target : task_.targets) left_.push_back(target == kNone ? &anywhere_ : &tables.at(target));
+  for (const CellIndex target : task_.targets) left_.push_back(target == kNone ? &anywhere_ : &tables.at(target));
   for (MoverIndex i = 0; i < count_; ++i) least_sum_ += Alone(i);
 }
 
 // --- Positions of the movers ----------------------------------------------------------------------------------------
 
 template <typename See>
-void Repair::ForConflicts(int step, PlaceIndex from, PlaceIndex to, const See& see) const {
-  ForThoseAt(step + 1, to, see);
+void Repair::ForConflicts(int step, CellIndex from, CellIndex to, const See& see) const {
+  ForMoversAt(step + 1, to, see);
   if (from == to) return;
-  ForThoseAt(step, to, [&](MoverIndex other) {
+  ForMoversAt(step, to, [&](MoverIndex other) {
     // A chain of movers, each of which enters the place that the next one leaves: does it lead back to `from`?
-    PlaceIndex at = to, next = PlaceOf(other, step + 1);
+    CellIndex at = to, next = PlaceOf(other, step + 1);
     for (MoverIndex k = 0; k < count_ && next != at; ++k) {
       if (next == from) {
         see(other);
@@ -72,16 +72,16 @@ void Repair::ForConflicts(int step, PlaceIndex from, PlaceIndex to, const See& s
   });
 }
 
-int Repair::TakenAfter(int step, PlaceIndex place) const {
+int Repair::TakenAfter(int step, CellIndex place) const {
   int count = 0;
-  for (int k = step + 1; k <= last_; ++k) ForThoseAt(k, place, [&](MoverIndex) { ++count; });
+  for (int k = step + 1; k <= last_; ++k) ForMoversAt(k, place, [&](MoverIndex) { ++count; });
   return count;
 }
 
 void Repair::Put(MoverIndex mover, const Steps& steps) {
   int arrival = 0;
   for (int k = 0; k <= last_; ++k) {
-    const PlaceIndex place = steps[static_cast<std::size_t>(k)];
+    const CellIndex place = steps[static_cast<std::size_t>(k)];
     where_[Line(mover, k)] = place;
     next_at_[Line(mover, k)] = std::exchange(first_at_[Cell(k, place)], mover);
     if (k > 0 && place != steps[static_cast<std::size_t>(k) - 1]) arrival = k;
@@ -125,14 +125,14 @@ void Repair::ForgetConflicts(MoverIndex mover) {
 
 bool Repair::Search(MoverIndex mover, int conflicts, int bound) {
   const std::vector<std::int32_t>& left = Left(mover);
-  const PlaceIndex target = At(task_.targets, mover), start = At(task_.starts, mover);
+  const CellIndex target = At(task_.targets, mover), start = At(task_.starts, mover);
   int earliest = 0;  // first step from which the mover can stay at its target without a conflict
   taken_after_.assign(static_cast<std::size_t>(last_) + 1, 0);
   if (target != kNone) {
     int count = 0;
     for (int k = last_; k >= 0; --k) {
       taken_after_[static_cast<std::size_t>(k)] = count;
-      ForThoseAt(k, target, [&](MoverIndex) { ++count; });
+      ForMoversAt(k, target, [&](MoverIndex) { ++count; });
       if (count > 0 && earliest == 0) earliest = k + 1;
     }
   }
@@ -142,7 +142,7 @@ bool Repair::Search(MoverIndex mover, int conflicts, int bound) {
   for (std::size_t row = 0; row < open_.size() && row <= static_cast<std::size_t>(conflicts); ++row) {
     for (auto& cells : open_[row]) cells.clear();
   }
-  const auto push = [&](int step, PlaceIndex place, int with, std::int32_t from) {
+  const auto push = [&](int step, CellIndex place, int with, std::int32_t from) {
     const std::size_t cell = Cell(step, place);
     const int estimate = std::max(step + At(left, place), least);
     if (with > conflicts || estimate >= bound || (reached_[cell] == search_ && its_conflicts_[cell] <= with)) return;
@@ -171,7 +171,7 @@ bool Repair::Search(MoverIndex mover, int conflicts, int bound) {
       if (its_conflicts_[static_cast<std::size_t>(cell)] < row) continue;
       ++looked_at_;
       const int step = cell / grid_.size();
-      const PlaceIndex place = cell % grid_.size();
+      const CellIndex place = cell % grid_.size();
       if (target == kNone || place == target) {
         const int later = target == kNone ? TakenAfter(step, place) : taken_after_[static_cast<std::size_t>(step)];
         if (row + later < best_conflicts || (row + later == best_conflicts && step < best_step)) {
@@ -182,13 +182,13 @@ bool Repair::Search(MoverIndex mover, int conflicts, int bound) {
         }
       }
       if (step == last_) continue;
-      std::array<PlaceIndex, 5> to{place};
+      std::array<CellIndex, 5> to{place};
       std::size_t count = 1;
-      for (const PlaceIndex beside : grid_.beside(place)) to[count++] = beside;
+      for (const CellIndex beside : grid_.beside(place)) to[count++] = beside;
       for (std::size_t k = count; k > 1; --k) std::swap(to[k - 1], to[random_.Below(k)]);
       // The last in is the first out: nearer places come last.
       std::stable_sort(to.begin(), to.begin() + static_cast<std::ptrdiff_t>(count),
-                       [&](PlaceIndex a, PlaceIndex b) { return At(left, a) > At(left, b); });
+                       [&](CellIndex a, CellIndex b) { return At(left, a) > At(left, b); });
       for (std::size_t k = 0; k < count; ++k) {
         int with = row;
         ForConflicts(step, place, to[k], [&](MoverIndex) { ++with; });
@@ -211,16 +211,16 @@ void Repair::Add(Movers& movers, MoverIndex one) {
 }
 
 // Adds movers near some of these within a few steps.
-void Repair::AddThoseNear(Movers& movers, std::size_t most) {
+void Repair::AddNeighbours(Movers& movers, std::size_t most) {
   constexpr int kSteps = 4;
   for (int draw = 0; draw < kMostDraws && movers.size() < most; ++draw) {
     const MoverIndex one = movers[random_.Below(movers.size())];
     const auto step = static_cast<int>(random_.Below(static_cast<std::size_t>(At(arrivals_, one)) + 1));
-    PlaceIndex place = PlaceOf(one, step);
+    CellIndex place = PlaceOf(one, step);
     const auto beside = grid_.beside(place);
     if (const std::size_t k = random_.Below(beside.size() + 1); k < beside.size()) place = beside[k];
     const int then = step + static_cast<int>(random_.Below(2 * kSteps + 1)) - kSteps;
-    ForThoseAt(std::clamp(then, 0, last_), place, [&](MoverIndex other) {
+    ForMoversAt(std::clamp(then, 0, last_), place, [&](MoverIndex other) {
       if (movers.size() < most) Add(movers, other);
     });
   }
@@ -241,7 +241,7 @@ Repair::Movers Repair::SomeInConflict() {
       }
       break;
     case 1:
-      AddThoseNear(movers, most);
+      AddNeighbours(movers, most);
       break;
     default:
       while (movers.size() < most) Add(movers, static_cast<MoverIndex>(random_.Below(in_conflict_.size())));
@@ -266,24 +266,24 @@ Repair::Movers Repair::SomeDelayed() {
     const std::vector<std::int32_t>& left = Left(late);
     for (int draw = 0; kind == 0 && draw < kMostDraws && movers.size() < most; ++draw) {
       int step = static_cast<int>(random_.Below(static_cast<std::size_t>(std::max(1, At(arrivals_, late)))));
-      for (PlaceIndex place = PlaceOf(late, step); step < last_ && movers.size() < most; ++step) {
-        std::array<PlaceIndex, 5> quicker{};
+      for (CellIndex place = PlaceOf(late, step); step < last_ && movers.size() < most; ++step) {
+        std::array<CellIndex, 5> quicker{};
         std::size_t count = 0;
-        const auto consider = [&](PlaceIndex to) {
+        const auto consider = [&](CellIndex to) {
           if (step + 1 + At(left, to) < At(arrivals_, late)) quicker[count++] = to;
         };
         consider(place);
-        for (const PlaceIndex beside : grid_.beside(place)) consider(beside);
+        for (const CellIndex beside : grid_.beside(place)) consider(beside);
         if (count == 0) break;
         place = quicker[random_.Below(count)];
         for (const int then : {step, step + 1}) {
-          ForThoseAt(then, place, [&](MoverIndex other) {
+          ForMoversAt(then, place, [&](MoverIndex other) {
             if (movers.size() < most) Add(movers, other);
           });
         }
       }
     }
-    if (kind == 1) AddThoseNear(movers, most);
+    if (kind == 1) AddNeighbours(movers, most);
   }
   random_.Shuffle(movers);
   if (random_.Below(2) == 0) {
@@ -295,7 +295,7 @@ Repair::Movers Repair::SomeDelayed() {
 // --- Replanning some movers -----------------------------------------------------------------------------------------
 
 // Replans these movers; undone if that makes more conflicts.
-void Repair::MendSome(Movers movers) {
+void Repair::RepairSubset(Movers movers) {
   const std::int64_t before = conflicts_;
   std::vector<Steps> old;
   for (const MoverIndex i : movers) {
@@ -319,7 +319,7 @@ void Repair::MendSome(Movers movers) {
 }
 
 // Replans these movers; undone if their arrivals get later by more than the heat allows.
-void Repair::ImproveSome(Movers movers, double heat) {
+void Repair::ImproveSubset(Movers movers, double heat) {
   std::int64_t before = sum_, alone = 0;
   std::vector<Steps> old;
   for (const MoverIndex i : movers) old.push_back(Remove(i));
@@ -373,7 +373,7 @@ bool Repair::Find(std::int64_t effort) {
     if (conflicts_ == 0) return true;
     while (conflicts_ > 0) {
       if (looked_at_ >= end_) return false;
-      MendSome(SomeInConflict());
+      RepairSubset(SomeInConflict());
       ++looked_at_;
     }
   }
@@ -382,7 +382,7 @@ bool Repair::Find(std::int64_t effort) {
 void Repair::Improve(std::int64_t effort, double heat) {
   end_ = looked_at_ + effort;
   while (looked_at_ < end_ && sum_ > least_sum_) {
-    ImproveSome(SomeDelayed(), heat);
+    ImproveSubset(SomeDelayed(), heat);
     ++looked_at_;
   }
 }

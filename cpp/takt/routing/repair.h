@@ -19,7 +19,7 @@ namespace takt::routing {
 
 class Repair {
  public:
-  // Keeps references to all but the task. Not to be copied or moved. `pools`: as in Improving.
+  // Keeps references to all but the task. Not to be copied or moved. `pools`: as in ImproveOptions.
   Repair(const Grid& grid, Task task, const StepTables& tables, const std::vector<std::int32_t>& pools,
          std::uint64_t seed);
   Repair(const Repair&) = delete;
@@ -42,30 +42,30 @@ class Repair {
 
  private:
   using Movers = std::vector<MoverIndex>;
-  using Steps = std::vector<PlaceIndex>;  // place of one mover, by step
+  using Steps = std::vector<CellIndex>;  // place of one mover, by step
 
   static int LastStep(const Task& task, const StepTables& tables);
-  std::size_t Cell(int step, PlaceIndex place) const noexcept {
+  std::size_t Cell(int step, CellIndex place) const noexcept {
     return static_cast<std::size_t>(step) * places_ + static_cast<std::size_t>(place);
   }
   std::size_t Line(MoverIndex mover, int step) const noexcept {
     return static_cast<std::size_t>(mover) * (static_cast<std::size_t>(last_) + 1) + static_cast<std::size_t>(step);
   }
-  PlaceIndex PlaceOf(MoverIndex mover, int step) const noexcept { return where_[Line(mover, step)]; }
+  CellIndex PlaceOf(MoverIndex mover, int step) const noexcept { return where_[Line(mover, step)]; }
   // Calls `see` with each mover at the place in that step.
   template <typename See>
-  void ForThoseAt(int step, PlaceIndex place, const See& see) const {
+  void ForMoversAt(int step, CellIndex place, const See& see) const {
     for (MoverIndex i = first_at_[Cell(step, place)]; i != kNone; i = next_at_[Line(i, step)]) see(i);
   }
   // Calls `see` with each mover in conflict with a mover that is at `from` in that step, and at `to` in the next.
   template <typename See>
-  void ForConflicts(int step, PlaceIndex from, PlaceIndex to, const See& see) const;
+  void ForConflicts(int step, CellIndex from, CellIndex to, const See& see) const;
 
   const std::vector<std::int32_t>& Left(MoverIndex mover) const { return *At(left_, mover); }
   int Alone(MoverIndex mover) const { return At(Left(mover), At(task_.starts, mover)); }
   int Delay(MoverIndex mover) const { return At(arrivals_, mover) - Alone(mover); }
   // Returns the number of visits of the place by other movers after that step.
-  int TakenAfter(int step, PlaceIndex place) const;
+  int TakenAfter(int step, CellIndex place) const;
 
   void Put(MoverIndex mover, const Steps& steps);
   Steps Remove(MoverIndex mover);
@@ -78,11 +78,11 @@ class Repair {
   bool Search(MoverIndex mover, int conflicts, int bound);
 
   static void Add(Movers& movers, MoverIndex one);
-  void AddThoseNear(Movers& movers, std::size_t most);
+  void AddNeighbours(Movers& movers, std::size_t most);
   Movers SomeInConflict();
   Movers SomeDelayed();
-  void MendSome(Movers movers);
-  void ImproveSome(Movers movers, double heat);
+  void RepairSubset(Movers movers);
+  void ImproveSubset(Movers movers, double heat);
 
   const Grid& grid_;
   Task task_;
@@ -93,7 +93,7 @@ class Repair {
   int last_;  // last step: all movers have to be at their targets by then
   std::vector<std::int32_t> anywhere_;
   std::vector<const std::vector<std::int32_t>*> left_;  // by mover: steps to its target
-  std::vector<PlaceIndex> where_;                       // by mover and step
+  std::vector<CellIndex> where_;                        // by mover and step
   std::vector<MoverIndex> first_at_;                    // by step and place: head of the list of movers there ...
   std::vector<MoverIndex> next_at_;                     // by mover and step: the next one in that list
   std::vector<int> arrivals_;                           // by mover: step

@@ -11,17 +11,17 @@ constexpr double kNext = 1e-6;  // [s] after the end of an interval
 
 }  // namespace
 
-double Sipp::Departure(const Timetable& timetable, PlaceIndex place, Direction lane, int count, double from,
+double Sipp::Departure(const Timetable& timetable, CellIndex place, Direction lane, int count, double from,
                        double latest) const {
   constexpr int kMostRounds = 1000;
   const int along = grid_.Along(lane, place);
-  const PlaceIndex step = grid_.Step(lane);
+  const CellIndex step = grid_.Step(lane);
   const double duration = grid_.Duration(count);
   double at = from;
   for (int round = 0; round < kMostRounds; ++round) {
     const double before = at;
     for (int k = 0; k <= count; ++k) {
-      const PlaceIndex here = place + k * step;
+      const CellIndex here = place + k * step;
       const std::vector<Stay>& stays = timetable.stays(here);
       const double entry = k == 0 ? 0 : grid_.Entry(count, k), exit = k == count ? duration : grid_.Exit(count, k);
       for (std::size_t i = timetable.FirstEndingAfter(here, at + entry);
@@ -53,7 +53,7 @@ double Sipp::Departure(const Timetable& timetable, PlaceIndex place, Direction l
   return kForever;
 }
 
-bool Sipp::Better(PlaceIndex place, double free_until, double time) {
+bool Sipp::Better(CellIndex place, double free_until, double time) {
   std::vector<Earliest>& known = earliest_[static_cast<std::size_t>(place)];
   for (Earliest& one : known) {
     if (one.free_until != free_until) continue;
@@ -68,10 +68,10 @@ bool Sipp::Better(PlaceIndex place, double free_until, double time) {
 
 std::optional<Legs> Sipp::Find(const Timetable& timetable, const Query& query) {
   states_.clear();
-  for (const PlaceIndex place : touched_) earliest_[static_cast<std::size_t>(place)].clear();
+  for (const CellIndex place : touched_) earliest_[static_cast<std::size_t>(place)].clear();
   touched_.clear();
   const std::vector<double>& alone = *query.alone;
-  const auto left = [&](PlaceIndex place) { return alone[static_cast<std::size_t>(place)]; };
+  const auto left = [&](CellIndex place) { return alone[static_cast<std::size_t>(place)]; };
   if (left(query.start) == kForever) return std::nullopt;
   // The mover cannot stay at its target before all others have passed it for the last time.
   const double last_end = timetable.LastEnd(query.target);
@@ -109,7 +109,7 @@ std::optional<Legs> Sipp::Find(const Timetable& timetable, const Query& query) {
     for (const Direction lane : kDirections) {
       const int room = grid_.Room(lane, state.place);
       for (int count = 1; count <= room; ++count) {
-        const PlaceIndex to = state.place + count * grid_.Step(lane);
+        const CellIndex to = state.place + count * grid_.Step(lane);
         const double duration = grid_.Duration(count);
         double from = state.time;
         if (from + duration + left(to) >= query.bound) continue;

@@ -16,7 +16,7 @@ class Sipp {
   explicit Sipp(const Grid& grid) : grid_(grid), earliest_(static_cast<std::size_t>(grid.size())) {}
 
   struct Query {
-    PlaceIndex start = 0, target = 0;
+    CellIndex start = 0, target = 0;
     const std::vector<double>* alone = nullptr;  // Grid::TimesTo(target)
     double bound = kForever;                     // [s] exclusive upper bound of the arrival
     double weight = 1;           // of the estimate; above 1: faster search, suboptimal up to this factor
@@ -30,7 +30,7 @@ class Sipp {
  private:
   struct State {
     double time = 0, free_until = 0;
-    PlaceIndex place = 0;
+    CellIndex place = 0;
     std::int32_t parent = kNone;
     Leg leg{};
   };
@@ -38,14 +38,14 @@ class Sipp {
     double free_until, time;
   };
   // Returns the earliest departure in [from, latest] [s] of a run without a conflict; infinite: none.
-  double Departure(const Timetable& timetable, PlaceIndex place, Direction lane, int count, double from,
+  double Departure(const Timetable& timetable, CellIndex place, Direction lane, int count, double from,
                    double latest) const;
-  bool Better(PlaceIndex place, double free_until, double time);
+  bool Better(CellIndex place, double free_until, double time);
 
   const Grid& grid_;
   std::vector<State> states_;
   std::vector<std::vector<Earliest>> earliest_;  // by place
-  std::vector<PlaceIndex> touched_;
+  std::vector<CellIndex> touched_;
   std::int64_t expanded_ = 0;
 };
 

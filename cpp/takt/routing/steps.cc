@@ -29,17 +29,17 @@ class Stepper {
         who_now_(static_cast<std::size_t>(grid.size()), kNone),
         who_next_(static_cast<std::size_t>(grid.size()), kNone),
         asked_(task.starts.size(), false) {
-    for (const PlaceIndex target : task.targets) {
+    for (const CellIndex target : task.targets) {
       left_.push_back(target == kNone ? &anywhere_ : &tables.at(target));
     }
   }
 
   Random& random() noexcept { return random_; }
-  std::int32_t Left(MoverIndex mover, PlaceIndex place) const { return At(*At(left_, mover), place); }
+  std::int32_t Left(MoverIndex mover, CellIndex place) const { return At(*At(left_, mover), place); }
 
   struct Constraint {
     MoverIndex mover;
-    PlaceIndex place;
+    CellIndex place;
   };
 
   // Returns true if there is a step from `now` that satisfies the constraints; it is in `next` then.
@@ -63,26 +63,26 @@ class Stepper {
     }
     // Fails if a mover that has to stay is in the way of a constraint.
     for (MoverIndex i = 0; good && i < count; ++i) good = At(who_next_, At(next_, i)) == i;
-    for (const PlaceIndex place : now) At(who_next_, place) = kNone;
-    for (const PlaceIndex place : next_) {
+    for (const CellIndex place : now) At(who_next_, place) = kNone;
+    for (const CellIndex place : next_) {
       if (place != kNone) At(who_next_, place) = kNone;
     }
     for (const Constraint& one : constraints) At(who_next_, one.place) = kNone;
-    if (good) KeepWhatCanBeDone();
-    for (const PlaceIndex place : now) At(who_now_, place) = kNone;
+    if (good) KeepExecutableMoves();
+    for (const CellIndex place : now) At(who_now_, place) = kNone;
     next = next_;
     return good;
   }
 
  private:
-  PlaceIndex Now(MoverIndex mover) const { return At(*now_, mover); }
-  void Take(MoverIndex mover, PlaceIndex place) {
+  CellIndex Now(MoverIndex mover) const { return At(*now_, mover); }
+  void Take(MoverIndex mover, CellIndex place) {
     At(next_, mover) = place;
     At(who_next_, place) = mover;
   }
 
   // Returns true if the mover, by entering the place, would wait for itself through other movers.
-  bool ClosesRing(MoverIndex mover, PlaceIndex place) const {
+  bool ClosesRing(MoverIndex mover, CellIndex place) const {
     for (;;) {
       const MoverIndex other = At(who_now_, place);
       if (other == kNone) return false;
@@ -95,23 +95,23 @@ class Stepper {
 
   bool Choose(MoverIndex mover) {
     struct Candidate {
-      PlaceIndex place = kNone;
+      CellIndex place = kNone;
       double cost = 0;
     };
     std::array<Candidate, 5> candidates;
     std::size_t count = 0;
-    const PlaceIndex here = Now(mover);
+    const CellIndex here = Now(mover);
     const bool has_target = At(task_.targets, mover) != kNone;
-    const PlaceIndex last = before_ ? At(*before_, mover) : here;
-    const PlaceIndex straight_on = last == here ? kNone : 2 * here - last;
-    const auto add = [&](PlaceIndex place) {
+    const CellIndex last = before_ ? At(*before_, mover) : here;
+    const CellIndex straight_on = last == here ? kNone : 2 * here - last;
+    const auto add = [&](CellIndex place) {
       double cost = Left(mover, place) + kAtRandom * random_.Unit();
       if (place != here) {
         if (At(who_now_, place) != kNone) cost += kOccupied;
         if (!has_target) cost += kNoReason;
       }
       if (place == straight_on && has_target) cost -= kStraightOn;
-      for (const PlaceIndex beside : grid_.beside(place)) {
+      for (const CellIndex beside : grid_.beside(place)) {
         const MoverIndex other = At(who_now_, beside);
         if (other != kNone && other != mover && beside != here && Left(other, place) < Left(other, beside)) {
           cost += kHindrance;
@@ -119,7 +119,7 @@ class Stepper {
       }
       candidates[count++] = {place, cost};
     };
-    for (const PlaceIndex place : grid_.beside(here)) add(place);
+    for (const CellIndex place : grid_.beside(here)) add(place);
     add(here);
     const auto end = candidates.begin() + static_cast<std::ptrdiff_t>(count);
     std::stable_sort(candidates.begin(), end, [](const auto& a, const auto& b) { return a.cost < b.cost; });
@@ -127,7 +127,7 @@ class Stepper {
     if (partner != kNone) std::reverse(candidates.begin(), end);
     At(asked_, mover) = true;
     for (std::size_t k = 0; k < count; ++k) {
-      const PlaceIndex place = candidates[k].place;
+      const CellIndex place = candidates[k].place;
       if (At(who_next_, place) != kNone) continue;
       if (place != here && ClosesRing(mover, place)) continue;
       Take(mover, place);
@@ -151,9 +151,9 @@ class Stepper {
   // --- PIBT's swap rule: two movers that have to pass each other in a narrow place back out of it together ---
 
   // Returns the number of places that lead on from `at`, coming from `from`; `next`: the last of them.
-  int Onwards(PlaceIndex from, PlaceIndex at, PlaceIndex& next) const {
+  int Onwards(CellIndex from, CellIndex at, CellIndex& next) const {
     int count = 0;
-    for (const PlaceIndex place : grid_.beside(at)) {
+    for (const CellIndex place : grid_.beside(at)) {
       const MoverIndex other = At(who_now_, place);
       const bool dead_end = grid_.beside(place).size() == 1 && other != kNone && At(task_.targets, other) == place;
       if (place == from || dead_end) continue;
@@ -162,10 +162,10 @@ class Stepper {
     }
     return count;
   }
-  bool SwapNeeded(MoverIndex pusher, MoverIndex puller, PlaceIndex pusher_at, PlaceIndex puller_at) const {
+  bool SwapNeeded(MoverIndex pusher, MoverIndex puller, CellIndex pusher_at, CellIndex puller_at) const {
     for (std::int32_t guard = grid_.size(); guard > 0; --guard) {
       if (Left(pusher, puller_at) >= Left(pusher, pusher_at)) break;
-      PlaceIndex next = kNone;
+      CellIndex next = kNone;
       const int count = Onwards(pusher_at, puller_at, next);
       if (count >= 2) return false;
       if (count == 0) break;
@@ -175,10 +175,10 @@ class Stepper {
     return Left(puller, pusher_at) < Left(puller, puller_at) &&
            (Left(pusher, pusher_at) == 0 || Left(pusher, puller_at) < Left(pusher, pusher_at));
   }
-  bool SwapPossible(PlaceIndex pusher_at, PlaceIndex puller_at) const {
-    const PlaceIndex first = pusher_at;
+  bool SwapPossible(CellIndex pusher_at, CellIndex puller_at) const {
+    const CellIndex first = pusher_at;
     for (std::int32_t guard = grid_.size(); guard > 0 && puller_at != first; --guard) {
-      PlaceIndex next = kNone;
+      CellIndex next = kNone;
       const int count = Onwards(pusher_at, puller_at, next);
       if (count >= 2) return true;
       if (count == 0) return false;
@@ -187,15 +187,15 @@ class Stepper {
     }
     return false;
   }
-  MoverIndex SwapPartner(MoverIndex mover, PlaceIndex first) const {
-    const PlaceIndex here = Now(mover);
+  MoverIndex SwapPartner(MoverIndex mover, CellIndex first) const {
+    const CellIndex here = Now(mover);
     if (first == here) return kNone;
     const MoverIndex ahead = At(who_now_, first);
     if (ahead != kNone && ahead != mover && At(next_, ahead) == kNone && SwapNeeded(mover, ahead, here, first) &&
         SwapPossible(first, here)) {
       return ahead;
     }
-    for (const PlaceIndex beside : grid_.beside(here)) {
+    for (const CellIndex beside : grid_.beside(here)) {
       const MoverIndex other = At(who_now_, beside);
       if (other == kNone || beside == first) continue;
       if (SwapNeeded(other, mover, here, first) && SwapPossible(first, here)) return other;
@@ -204,11 +204,11 @@ class Stepper {
   }
 
   // Keeps only moves into empty places, and straight on behind a mover that moves in the same direction.
-  void KeepWhatCanBeDone() {
+  void KeepExecutableMoves() {
     for (bool again = true; again;) {
       again = false;
       for (MoverIndex i = 0; i < static_cast<MoverIndex>(next_.size()); ++i) {
-        PlaceIndex& next = At(next_, i);
+        CellIndex& next = At(next_, i);
         if (next == Now(i)) continue;
         const MoverIndex other = At(who_now_, next);
         if (other == kNone || At(next_, other) - Now(other) == next - Now(i)) continue;
@@ -233,7 +233,7 @@ class Stepper {
 struct Hash {
   std::size_t operator()(const Configuration& configuration) const noexcept {
     std::size_t hash = configuration.size();
-    for (const PlaceIndex place : configuration) {
+    for (const CellIndex place : configuration) {
       hash ^= static_cast<std::size_t>(place) + 0x9e3779b9U + (hash << 6U) + (hash >> 2U);
     }
     return hash;
@@ -260,7 +260,7 @@ bool Arrived(const Configuration& places, const Task& task) noexcept {
 
 StepTables MakeStepTables(const Grid& grid, const Task& task) {
   StepTables tables;
-  for (const PlaceIndex target : task.targets) {
+  for (const CellIndex target : task.targets) {
     if (target != kNone && !tables.contains(target)) tables.emplace(target, grid.StepsTo(target));
   }
   return tables;
@@ -314,10 +314,10 @@ StepSearch FindSteps(const Grid& grid, const Task& task, const StepTables& table
     if (constraints.size() < node.order.size()) {
       const MoverIndex mover = node.order[constraints.size()];
       const auto beside = grid.beside(At(node.places, mover));
-      std::vector<PlaceIndex> places(beside.begin(), beside.end());
+      std::vector<CellIndex> places(beside.begin(), beside.end());
       places.push_back(At(node.places, mover));
       stepper.random().Shuffle(places);
-      for (const PlaceIndex place : places) {
+      for (const CellIndex place : places) {
         node.constraints.push_back(constraints);
         node.constraints.back().push_back({mover, place});
       }
@@ -341,10 +341,10 @@ std::optional<std::vector<Configuration>> SwapTargets(const Grid& grid, Task& ta
   for (MoverIndex i = 0; i < count; ++i) At(who, At(now, i)) = i;
   const auto wants = [&](MoverIndex mover) {  // the place to which it would move, preferably an empty one
     const auto& left = tables.at(At(targets, mover));
-    const PlaceIndex here = At(now, mover);
-    PlaceIndex best = here;
+    const CellIndex here = At(now, mover);
+    CellIndex best = here;
     std::size_t least = 4;
-    for (const PlaceIndex place : grid.beside(here)) {
+    for (const CellIndex place : grid.beside(here)) {
       if (At(left, place) >= At(left, here)) continue;
       const std::size_t cost = (At(who, place) != kNone ? 2U : 0U) + random.Below(2);
       if (cost < least) {
@@ -359,7 +359,7 @@ std::optional<std::vector<Configuration>> SwapTargets(const Grid& grid, Task& ta
     if (now == targets) return steps;
     for (MoverIndex i = 0; i < count; ++i) {
       if (At(now, i) == At(targets, i)) continue;
-      const PlaceIndex place = wants(i);
+      const CellIndex place = wants(i);
       const MoverIndex other = At(who, place);
       if (other == kNone) {
         At(who, At(now, i)) = kNone;

@@ -19,7 +19,7 @@
 
 namespace takt::routing {
 
-using Configuration = std::vector<PlaceIndex>;  // by mover
+using Configuration = std::vector<CellIndex>;  // by mover
 
 struct Task {
   Configuration starts;   // pairwise different
@@ -27,21 +27,22 @@ struct Task {
 };
 
 // Number of steps from each place to a target, by target.
-using StepTables = std::map<PlaceIndex, std::vector<std::int32_t>>;
+using StepTables = std::map<CellIndex, std::vector<std::int32_t>>;
 StepTables MakeStepTables(const Grid& grid, const Task& task);
 
 struct StepSearch {
-  std::optional<std::vector<Configuration>> steps{};  // the first are the starts; nothing: not found
-  bool exhausted = false;                             // no solution exists
+  std::optional<std::vector<Configuration>> steps{};  // from the starts to the targets, both included; none: not found
+  bool exhausted = false;                             // true: no solution exists; false without steps: effort used up
 };
 
-// Searches for steps; gives up after `effort` generated ones. The result depends on `seed` and is the same on every
-// host.
+// Searches for steps, with `effort` attempted ones at most. The result depends on `seed` and is the same on every host.
+// Requires: `tables` hold every target of `task` (MakeStepTables).
 StepSearch FindSteps(const Grid& grid, const Task& task, const StepTables& tables, std::uint64_t seed,
                      std::int64_t effort);
 
 // Finds steps to interchangeable targets: movers whose paths meet swap their targets (TSWAP, Okumura and Défago, 2023).
-// `task.targets` are the initial targets, and on return the final ones. Requires: each mover has a target.
+// `task.targets` are the initial targets, and on return the final ones. Returns nothing if the targets are not reached
+// in 5000 steps. Requires: each mover has a target; starts and targets are each pairwise different.
 std::optional<std::vector<Configuration>> SwapTargets(const Grid& grid, Task& task, std::uint64_t seed);
 
 }  // namespace takt::routing

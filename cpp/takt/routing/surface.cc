@@ -17,17 +17,17 @@ namespace {
 
 constexpr std::int64_t kStepEffort = 4'000'000;  // places examined for a first plan, by mover and step
 constexpr std::int64_t kLeastSteps = 5'000;
-constexpr int kSeeds = 8;                     // first plans, of which the best is taken, if movers are few
-constexpr std::int64_t kMoversPerSeed = 400;  // seeds times movers at most, but at least one seed
-constexpr int kTurns = 6;                     // tries of prioritised planning
-constexpr std::int64_t kTurnStates = 4'000;   // states that these may expand
-constexpr double kCrowded = 1.5;              // of the lower bound; above it, movers obstruct one another
-constexpr int kShares = 6;                    // of the effort: see below
+constexpr int kSeeds = 8;                        // first plans, of which the best is taken, if movers are few
+constexpr std::int64_t kSeedsTimesMovers = 400;  // seeds times movers at most, but at least one seed
+constexpr int kTurns = 6;                        // tries of prioritised planning
+constexpr std::int64_t kTurnStates = 4'000;      // states that these may expand
+constexpr double kCrowded = 1.5;                 // of the lower bound; above it, movers obstruct one another
+constexpr int kShares = 6;                       // of the effort: see below
 
 // Assigns the targets of a pool to its movers, by the times alone. Returns a mover that reaches none; kNone: all do.
 MoverIndex AssignTargets(PoolIndex pool, const std::vector<PoolIndex>& pools, Alone& alone, Task& task) {
   std::vector<MoverIndex> members;
-  std::vector<PlaceIndex> targets;
+  std::vector<CellIndex> targets;
   for (std::size_t i = 0; i < pools.size(); ++i) {
     if (pools[i] != pool) continue;
     members.push_back(static_cast<MoverIndex>(i));
@@ -50,7 +50,7 @@ MoverIndex AssignTargets(PoolIndex pool, const std::vector<PoolIndex>& pools, Al
 void MakeVisits(const Grid& grid, const SurfaceProblem& problem, SurfacePlan& plan) {
   using ByTime = std::tuple<double, MoverIndex, std::int32_t>;
   std::vector<std::vector<ByTime>> at(static_cast<std::size_t>(grid.size()));
-  const auto add = [&](MoverIndex mover, PlaceIndex place, double entry, double middle) {
+  const auto add = [&](MoverIndex mover, CellIndex place, double entry, double middle) {
     std::vector<Visit>& visits = plan.visits[static_cast<std::size_t>(mover)];
     // By the passage of its centre: in one lane a follower may be bound to a place before its leader has reached it.
     at[static_cast<std::size_t>(place)].emplace_back(middle, mover, static_cast<std::int32_t>(visits.size()));
@@ -62,7 +62,7 @@ void MakeVisits(const Grid& grid, const SurfaceProblem& problem, SurfacePlan& pl
     add(mover, problem.starts[i], -1, -1);
     for (const Leg& leg : plan.legs[i]) {
       const int count = grid.Count(leg.from, leg.to);
-      const PlaceIndex step = grid.Step(grid.Towards(leg.from, leg.to));
+      const CellIndex step = grid.Step(grid.Towards(leg.from, leg.to));
       std::vector<Visit>& visits = plan.visits[i];
       visits.back().left = leg.departure + grid.Exit(count, 0);
       for (int k = 1; k <= count; ++k) {
@@ -125,7 +125,7 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
   if (!best) {
     tables = MakeStepTables(grid, task);
     const std::int64_t effort = std::max(kLeastSteps, kStepEffort / movers);
-    const auto seeds = static_cast<std::uint64_t>(std::clamp<std::int64_t>(kMoversPerSeed / movers, 1, kSeeds));
+    const auto seeds = static_cast<std::uint64_t>(std::clamp<std::int64_t>(kSeedsTimesMovers / movers, 1, kSeeds));
     for (std::uint64_t k = 0; k < seeds; ++k) {
       StepSearch found = FindSteps(grid, task, tables, problem.seed + k, best ? kLeastSteps : effort);
       if (found.steps) {
@@ -141,7 +141,7 @@ SurfacePlan PlanSurface(const SurfaceProblem& problem) {
       }
     }
   }
-  offer(PlanInTurn(grid, task, alone, kTurns, kTurnStates));
+  offer(PlanPrioritised(grid, task, alone, kTurns, kTurnStates));
   result.first_sum = SumOf(grid, *best);
   // A mover without a target ends where the plan under improvement leaves it.
   const auto improve = [&](Plan plan, std::int64_t effort) {

@@ -27,9 +27,9 @@ struct SurfaceProblem {
   double pitch = 0;           // [mm]
   double mover_size = 0;      // [mm] of the largest mover; no more than the pitch
   Dynamics dynamics{};
-  std::vector<bool> blocked{};        // by place, row by row: closed to movers
-  std::vector<PlaceIndex> starts{};   // by mover; pairwise different, none of them blocked
-  std::vector<PlaceIndex> targets{};  // by mover; kNone: anywhere
+  std::vector<bool> blocked{};       // by place, row by row: closed to movers
+  std::vector<CellIndex> starts{};   // by mover; pairwise different, none of them blocked
+  std::vector<CellIndex> targets{};  // by mover; kNone: anywhere
   // by mover; targets may be exchanged within a pool; kNone, or empty: none
   std::vector<PoolIndex> pools{};
   std::int64_t effort = 0;  // states that improvements may expand
@@ -39,7 +39,7 @@ struct SurfaceProblem {
 // A visit of a place by a mover. It may begin as soon as the preceding visit of that place is over: when that mover has
 // left the place, or moves to the next place straight ahead in the same lane.
 struct Visit {
-  PlaceIndex place = 0;
+  CellIndex place = 0;
   double entry = 0;                   // [s] from here on the mover cannot come to rest before the place
   double left = 0;                    // [s] end of the visit; of the last one: time of arrival
   MoverIndex before = kNone;          // mover of the preceding visit of the place; kNone: none
@@ -56,7 +56,7 @@ enum class Outcome : std::uint8_t {
 struct SurfacePlan {
   Outcome outcome = Outcome::kGivenUp;
   MoverIndex unreachable = kNone;            // a mover whose target is unreachable
-  std::vector<PlaceIndex> targets{};         // by mover: where it ends
+  std::vector<CellIndex> targets{};          // by mover: where it ends
   std::vector<Legs> legs{};                  // by mover
   std::vector<std::vector<Visit>> visits{};  // by mover: from its start on
   double sum = 0;                            // [s] sum of all arrivals

@@ -13,7 +13,7 @@ double Arrival(const Grid& grid, const Legs& legs) {
 Timetable::Timetable(const Grid& grid, std::size_t movers)
     : grid_(grid), stays_(static_cast<std::size_t>(grid.size())), places_(movers) {}
 
-void Timetable::Insert(PlaceIndex place, const Stay& stay) {
+void Timetable::Insert(CellIndex place, const Stay& stay) {
   std::vector<Stay>& stays = stays_[static_cast<std::size_t>(place)];
   const auto behind =
       std::upper_bound(stays.begin(), stays.end(), stay, [](const Stay& a, const Stay& b) { return a.from < b.from; });
@@ -21,11 +21,11 @@ void Timetable::Insert(PlaceIndex place, const Stay& stay) {
   places_[static_cast<std::size_t>(stay.who)].push_back(place);
 }
 
-void Timetable::Rest(PlaceIndex place, double from, double to, MoverIndex who) {
+void Timetable::Rest(CellIndex place, double from, double to, MoverIndex who) {
   Insert(place, {.from = from, .to = to, .who = who});
 }
 
-void Timetable::Add(MoverIndex who, PlaceIndex start, const Legs& legs) {
+void Timetable::Add(MoverIndex who, CellIndex start, const Legs& legs) {
   if (legs.empty()) Rest(start, -1, kForever, who);
   double since = -1;
   for (std::size_t i = 0; i < legs.size(); ++i) {
@@ -47,16 +47,16 @@ void Timetable::Add(MoverIndex who, PlaceIndex start, const Legs& legs) {
 }
 
 void Timetable::Remove(MoverIndex who) {
-  std::vector<PlaceIndex>& places = places_[static_cast<std::size_t>(who)];
+  std::vector<CellIndex>& places = places_[static_cast<std::size_t>(who)];
   std::sort(places.begin(), places.end());
   places.erase(std::unique(places.begin(), places.end()), places.end());
-  for (const PlaceIndex place : places) {
+  for (const CellIndex place : places) {
     std::erase_if(stays_[static_cast<std::size_t>(place)], [who](const Stay& stay) { return stay.who == who; });
   }
   places.clear();
 }
 
-double Timetable::LastEnd(PlaceIndex place) const noexcept {
+double Timetable::LastEnd(CellIndex place) const noexcept {
   return stays(place).empty() ? -1 : stays(place).back().to;
 }
 

@@ -16,7 +16,7 @@ inline constexpr double kTimeRounding = 1e-9;  // [s]
 // A run of a mover.
 struct Leg {
   double departure = 0;  // [s]
-  PlaceIndex from = 0, to = 0;
+  CellIndex from = 0, to = 0;
 };
 using Legs = std::vector<Leg>;  // of one mover, in order; empty: it stays at its start
 
@@ -36,17 +36,17 @@ class Timetable {
  public:
   Timetable(const Grid& grid, std::size_t movers);
 
-  const std::vector<Stay>& stays(PlaceIndex place) const noexcept { return stays_[static_cast<std::size_t>(place)]; }
-  const std::vector<PlaceIndex>& places_of(MoverIndex who) const noexcept {
+  const std::vector<Stay>& stays(CellIndex place) const noexcept { return stays_[static_cast<std::size_t>(place)]; }
+  const std::vector<CellIndex>& places_of(MoverIndex who) const noexcept {
     return places_[static_cast<std::size_t>(who)];
   }
   // Adds the occupancy of a place by a mover at rest. `from` = -1: from the beginning.
-  void Rest(PlaceIndex place, double from, double to, MoverIndex who);
-  void Add(MoverIndex who, PlaceIndex start, const Legs& legs);
+  void Rest(CellIndex place, double from, double to, MoverIndex who);
+  void Add(MoverIndex who, CellIndex start, const Legs& legs);
   void Remove(MoverIndex who);
 
   // Returns the index of the first stay that ends after t.
-  std::size_t FirstEndingAfter(PlaceIndex place, double t) const noexcept {
+  std::size_t FirstEndingAfter(CellIndex place, double t) const noexcept {
     // A mover that comes later to a place also leaves it later.
     const std::vector<Stay>& its = stays(place);
     const auto found =
@@ -54,19 +54,19 @@ class Timetable {
     return static_cast<std::size_t>(found - its.begin());
   }
   // Returns the time [s] until which the place is free from t on; t or less if it is occupied.
-  double FreeUntil(PlaceIndex place, double t) const noexcept {
+  double FreeUntil(CellIndex place, double t) const noexcept {
     const std::size_t i = FirstEndingAfter(place, t);
     return i < stays(place).size() ? stays(place)[i].from : kForever;
   }
   // Returns the end [s] of the last of its stays; -1 without any.
-  double LastEnd(PlaceIndex place) const noexcept;
+  double LastEnd(CellIndex place) const noexcept;
 
  private:
-  void Insert(PlaceIndex place, const Stay& stay);
+  void Insert(CellIndex place, const Stay& stay);
 
   const Grid& grid_;
-  std::vector<std::vector<Stay>> stays_;         // by place, in order of time
-  std::vector<std::vector<PlaceIndex>> places_;  // by mover; may name a place more than once
+  std::vector<std::vector<Stay>> stays_;        // by place, in order of time
+  std::vector<std::vector<CellIndex>> places_;  // by mover; may name a place more than once
 };
 
 }  // namespace takt::routing

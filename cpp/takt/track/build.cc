@@ -164,7 +164,7 @@ class Builder {
       if (!same) return Fail(KeyOf(path + ".ends_at", p.ends_at.size(), k), Problem::kNotItsEnd);
     }
     planar::Track way;
-    const planar::Making making = MakeWay(layout, way);
+    const planar::Making making = MakeTrackWithoutCrossings(layout, way);
     if (making.problem == Problem::kNone) {
       if (!LiesOn(parts_, part, way)) return Fail(path, Problem::kOffPart);
       result_.tracks[i].way = std::move(way);

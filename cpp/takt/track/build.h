@@ -13,7 +13,7 @@ namespace takt::track {
 
 struct Built {
   planar::Layout layout;
-  std::optional<planar::Track> way;  // none: it has no length yet
+  std::optional<planar::Track> way;  // none: no elements yet, or a problem
 };
 
 struct BuildProblem {
@@ -29,7 +29,8 @@ struct BuildResult {
 // Builds all tracks, on these parts in their current state; null: no parts.
 BuildResult Build(const std::vector<TrackParams>& params, const planar::Parts* parts = nullptr);
 
-// Returns the index of the part that a track lies on; kNoPart if there are no parts, or none of this name.
+// Returns the index, from 0, of the part that a track lies on: of this name, or the only one if no name is given.
+// kNoPart: there are no parts, none of this name, or several and no name.
 std::uint32_t PartOf(const TrackParams& params, const planar::Parts& parts);
 
 }  // namespace takt::track

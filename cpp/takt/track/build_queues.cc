@@ -28,7 +28,7 @@ std::optional<BuiltTrack> Make(BuildQueues& desk) {
   if (!desk.questions.TryPop(question)) return std::nullopt;
   auto way = std::make_unique<planar::Track>();
   const planar::Layout layout = ToLayout(question.sketch);
-  const planar::Making making = MakeWay(layout, *way);
+  const planar::Making making = MakeTrackWithoutCrossings(layout, *way);
   BuiltTrack answer{question.track, {question.number, making.problem, 0}};
   if (making.problem != planar::Problem::kNone) {
     if (making.element < layout.elements.size()) answer.made.element = static_cast<std::uint32_t>(making.element + 1);

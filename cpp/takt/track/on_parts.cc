@@ -30,7 +30,7 @@ bool DoMeet(const planar::Parts& parts, std::uint32_t part_a, const planar::Trac
   if (part_a == part_b) return true;
   if (part_a == planar::kNoPart || part_b == planar::kNoPart) return false;
   const planar::Spot &at_a = parts.goal(part_a), &at_b = parts.goal(part_b);
-  return at_a.system == at_b.system && planar::SamePlace(a.place + at_a.origin, b.place + at_b.origin) &&
+  return at_a.system == at_b.system && planar::SamePoint(a.place + at_a.origin, b.place + at_b.origin) &&
          planar::SameDirection(a, b) && planar::SameCurvature(a, b);
 }
 

@@ -157,7 +157,7 @@ void Use(Tracks& t, std::uint32_t track, const Delivery& made) {
   State& s = t.states[track];
   s.has_length = way != nullptr;
   s.length = way ? way->length : 0;
-  NameNetworks(t);
+  NumberNetworks(t);
   ++t.changes;
 }
 
@@ -243,7 +243,7 @@ bool HasPendingEdit(const PendingEdits& w, std::uint32_t track) noexcept {
   return false;
 }
 
-void StepWorks(const Context& c) noexcept {
+void StepPendingEdits(const Context& c) noexcept {
   Tracks& t = c.tracks;
   PendingEdits& w = t.works;
   while (w.count > 0 && !w.asked) {
@@ -281,7 +281,7 @@ bool TakeAnswer(const Context& c, std::uint32_t track, const TrackMade& made) no
   return true;
 }
 
-void NameNetworks(Tracks& t) noexcept {
+void NumberNetworks(Tracks& t) noexcept {
   const auto count = static_cast<std::uint32_t>(t.areas.size());
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!t.areas[i]) continue;
@@ -336,7 +336,7 @@ void MakeNodes(Tracks& t) noexcept {
     ++t.starts_at[t.start_nodes[i]];
     ++t.ends_at[t.end_nodes[i]];
   }
-  NameNetworks(t);
+  NumberNetworks(t);
   ++t.changes;
 }
 

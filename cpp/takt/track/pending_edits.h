@@ -10,7 +10,7 @@ bool Put(const Order& order, PendingEdits& works) noexcept;
 bool HasPendingEdit(const PendingEdits& works, std::uint32_t track) noexcept;
 
 // Ends orders that need no new geometry, and requests that of the next one that does.
-void StepWorks(const Context& c) noexcept;
+void StepPendingEdits(const Context& c) noexcept;
 
 // Takes over the answer to a request. Returns false if it is not the one awaited, or the track has not been delivered.
 bool TakeAnswer(const Context& c, std::uint32_t track, const TrackMade& made) noexcept;
@@ -18,6 +18,6 @@ bool TakeAnswer(const Context& c, std::uint32_t track, const TrackMade& made) no
 // Numbers the nodes at the ends of tracks, and the networks, anew.
 void MakeNodes(Tracks& tracks) noexcept;
 // Gives linked tracks the same network number.
-void NameNetworks(Tracks& tracks) noexcept;
+void NumberNetworks(Tracks& tracks) noexcept;
 
 }  // namespace takt::track

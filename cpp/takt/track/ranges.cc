@@ -30,7 +30,7 @@ std::optional<planar::Track> SeenFrom(const Tracks& t, std::size_t other, std::s
     if (*end) (*end)->place = (*end)->place + by;
   }
   planar::Track shifted;
-  if (MakeWay(layout, shifted).problem != planar::Problem::kNone) return std::nullopt;
+  if (MakeTrackWithoutCrossings(layout, shifted).problem != planar::Problem::kNone) return std::nullopt;
   return shifted;
 }
 

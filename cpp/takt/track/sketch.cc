@@ -29,12 +29,12 @@ planar::Layout ToLayout(const Sketch& sketch) {
   return {{first, first + sketch.count}, sketch.from, sketch.to, sketch.closed};
 }
 
-planar::Making MakeWay(const planar::Layout& layout, planar::Track& out) {
+planar::Making MakeTrackWithoutCrossings(const planar::Layout& layout, planar::Track& out) {
   planar::Track track;
   const planar::Making making = planar::MakeTrack(layout, track);
   if (making.problem != planar::Problem::kNone) return making;
   // It may end at its start, like a full circle before its loop is closed.
-  track.closed = layout.closed || planar::SamePlace(At(track, 0).place, At(track, track.length).place);
+  track.closed = layout.closed || planar::SamePoint(At(track, 0).place, At(track, track.length).place);
   if (planar::SelfCrossing(track)) return {planar::Problem::kCrosses, layout.elements.size()};
   track.closed = layout.closed;
   out = std::move(track);

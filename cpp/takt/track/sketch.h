@@ -25,7 +25,7 @@ Sketch ToSketch(const planar::Layout& layout);  // Requires: at most kElements
 planar::Layout ToLayout(const Sketch& sketch);
 
 // Like planar::MakeTrack; the track must not cross itself, either. Not for the cycle.
-planar::Making MakeWay(const planar::Layout& layout, planar::Track& out);
+planar::Making MakeTrackWithoutCrossings(const planar::Layout& layout, planar::Track& out);
 
 // Conversion to and from the value of a feedback that ends with kTrackGeometry.
 double ToValue(planar::Problem problem, std::uint32_t element) noexcept;

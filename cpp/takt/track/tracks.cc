@@ -297,7 +297,7 @@ void Use(const Usage& usage, std::size_t track, Tracks& tracks) noexcept {
 }
 
 void Step(const Context& c) noexcept {
-  StepWorks(c);
+  StepPendingEdits(c);
   for (std::uint32_t i = 0; i < c.tracks.states.size(); ++i) StepOne(c, i, c.tracks.states[i]);
 }
 

@@ -16,7 +16,7 @@ namespace sampling {
 inline constexpr double kTimeShare = 0.35;
 // Least travel time between two nodes in cycles, as far as the path allows.
 inline constexpr double kCycles = 2;
-// About the largest number of nodes between two slow points that StepBetweenSlowPlaces alone asks for.
+// About the largest number of nodes between two slow points that StepBetweenSlowPoints alone asks for.
 inline constexpr double kMostSteps = 32;
 // Largest deviation of an acceleration between two nodes from the line, as a share of its limit.
 inline constexpr double kBend = 0.02;
@@ -112,7 +112,7 @@ class BuildUp {
 // Returns the largest distance [mm] from a node to the next one on a stretch at both ends of which the motion may be
 // slow. Between two nodes it can neither speed up and brake again nor exceed what the worse one allows, so nodes are
 // the closer the less a motion from rest, or to rest, has sped up.
-inline double StepBetweenSlowPlaces(const PathPoint& point, double begin, double end, const CoordinateLimits& limits,
+inline double StepBetweenSlowPoints(const PathPoint& point, double begin, double end, const CoordinateLimits& limits,
                                     double build_up_s, double period_s) noexcept {
   namespace c = sampling;
   const double time = std::max(c::kTimeShare * build_up_s, c::kCycles * period_s);
@@ -130,14 +130,14 @@ inline double StepBetweenSlowPlaces(const PathPoint& point, double begin, double
 
 // How bends between the sampled points are searched for. Ignored: the second slopes are not the derivatives of the
 // first.
-enum class HiddenBends : std::uint8_t { kIgnored, kInAcceleration, kInJerk };
+enum class BendSearch : std::uint8_t { kIgnored, kInAcceleration, kInJerk };
 
 // Computes the node after `before`, at `end` at most. `slopes_at(s, point)` writes the slopes and the remaining shares
 // of the limits; it returns false where there is no path, and so does this function. The limits along the path are
 // copied from `before`.
 template <typename SlopesAt>
 bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limits, double build_up_s, double period_s,
-               HiddenBends bends, const SlopesAt& slopes_at, PathPoint& next) {
+               BendSearch bends, const SlopesAt& slopes_at, PathPoint& next) {
   namespace c = sampling;
   const auto square_at = [&](const PathPoint& point) { return SquareAt(point, limits, 1); };
   const double time = std::max(c::kTimeShare * build_up_s, c::kCycles * period_s);
@@ -159,7 +159,7 @@ bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limi
     for (std::size_t k = 0; k < limits.count && linear; ++k) {
       const double line = 0.5 * (before.slopes.second[k] + next.slopes.second[k]);
       linear = std::abs(middle.slopes.second[k] - line) * square <= c::kBend * limits.of[k].acceleration;
-      if (!linear || bends == HiddenBends::kIgnored || i >= c::kHalvingsForHidden) continue;
+      if (!linear || bends == BendSearch::kIgnored || i >= c::kHalvingsForHidden) continue;
       // A bend that all three points miss changes the first slopes.
       const double before_it = before.slopes.second[k], in_it = middle.slopes.second[k], behind = next.slopes.second[k];
       const double whole =
@@ -170,7 +170,7 @@ bool NextPoint(const PathPoint& before, double end, const CoordinateLimits& limi
       // Details passed within one cycle are finer than the set points resolve.
       double most = c::kHidden * limits.of[k].acceleration;
       const double passing_s = step / std::sqrt(square);
-      if (bends == HiddenBends::kInJerk && passing_s > period_s)
+      if (bends == BendSearch::kInJerk && passing_s > period_s)
         most = std::min(most, c::kHiddenRate / 16 * limits.of[k].jerk * passing_s);
       linear = std::max(std::abs(whole), std::abs(half)) * square <= most;
     }

@@ -87,13 +87,13 @@ double PathTiming::Law::Duration() const noexcept {
   return planned ? plan.duration() : profile.duration();
 }
 
-double PathTiming::Law::EndPlace() const noexcept {
+double PathTiming::Law::EndArcLength() const noexcept {
   if (tail_s < std::numeric_limits<double>::infinity()) return tail.end().position;
   return planned ? course.end_place() : profile.end().position;
 }
 
 KinematicState PathTiming::Law::At(double t) const noexcept {
-  if (t >= Duration()) return {EndPlace(), 0, 0};
+  if (t >= Duration()) return {EndArcLength(), 0, 0};
   if (t >= tail_s) return tail.At(t - tail_s);
   return planned ? course.At(plan.At(t)) : profile.At(t);
 }
@@ -114,7 +114,7 @@ void PathTiming::DropPlan() noexcept {
 // The path behind an arc length changes: a plan that ends there or before is kept.
 void PathTiming::KeepPlanTo(double place) noexcept {
   known_to_ = std::min(known_to_, place);
-  if (ready_ && next_.EndPlace() > known_to_ + kSamePosition) ready_ = false;
+  if (ready_ && next_.EndArcLength() > known_to_ + kSamePosition) ready_ = false;
 }
 
 void PathTiming::Begin(const PathPace& pace) noexcept {
@@ -148,7 +148,7 @@ std::uint64_t PathTiming::rest_cycles() const noexcept {
   return static_cast<std::uint64_t>(std::ceil(rest_s() / period_s_ - 1e-9));
 }
 
-bool PathTiming::Settles(double place) const noexcept {
+bool PathTiming::IsFinalTo(double place) const noexcept {
   return !braking_ && (current_.planned || final_) && rest_place() >= place - 1e-6;
 }
 
@@ -343,7 +343,7 @@ void PathTiming::Stop(const PathWindow& window, const PathBrake& brake, PathPace
   Go(window, pace);
 }
 
-double PathTiming::BrakesTo(const PathWindow& window, const PathPace& pace) const noexcept {
+double PathTiming::EstimatedStop(const PathWindow& window, const PathPace& pace) const noexcept {
   if (braking_) return rest_place();
   const AlongPath& along = window[pace.node].at.limits;
   const Limits gentle{along.velocity, along.acceleration, kGentle * along.deceleration, kGentle * along.jerk};
@@ -466,14 +466,14 @@ std::optional<std::uint64_t> PathTiming::MakePlan() noexcept {
   return number;
 }
 
-void PathTiming::MakeAgain() noexcept {
+void PathTiming::RepeatPlan() noexcept {
   maker_->order.store(OrderState::kOrdered, std::memory_order_release);
 }
 
 // Returns true if the plan leads further than the law in force, or ends sooner.
 bool PathTiming::EndsSooner() const noexcept {
   const auto end_s = [&](const Law& law) { return static_cast<double>(law.begin) * period_s_ + law.Duration(); };
-  return next_.EndPlace() > current_.EndPlace() + kSamePosition || end_s(next_) < end_s(current_);
+  return next_.EndArcLength() > current_.EndArcLength() + kSamePosition || end_s(next_) < end_s(current_);
 }
 
 void PathTiming::TakePlan(std::uint64_t number) noexcept {
@@ -485,7 +485,7 @@ void PathTiming::TakePlan(std::uint64_t number) noexcept {
   if (dropped_) return;
   const PathPlanStatus status = maker_->status;
   const bool found = status == PathPlanStatus::kPlanned || status == PathPlanStatus::kScaled;
-  if (found && next_.EndPlace() > known_to_ + kSamePosition) return;  // the path has changed there
+  if (found && next_.EndArcLength() > known_to_ + kSamePosition) return;  // the path has changed there
   if (found && !behind_ && final_ && !braking_ && next_.factor == current_.factor && !EndsSooner()) return;
   if (found && from_rest_) {
     const auto rests = current_.begin + static_cast<std::uint64_t>(std::ceil(current_.Duration() / period_s_ - 1e-9));

@@ -2,13 +2,13 @@
 //
 // Invariant: at any time one law is in force that keeps all limits and ends at rest on the path; planning only ever
 // replaces it by another one with this property. From rest a bridge starts at once if the path is straight there: one
-// jerk-limited motion to rest before the first bend. Meanwhile a time-optimal plan (PathPlanner) is computed outside
-// the cycle, from a state that the law in force will reach; it takes over at that instant if it is verified and in
-// time; otherwise it is dropped and ordered again. Longer paths and other speed factors come into force in the same
-// way; the motion behind a stop is planned before the law in force ends there. Braking is one jerk-limited motion,
-// verified over all nodes ahead, replaced by a harder one as soon as one is found; if none is found, because the path
-// bends, the law in force stays. If no plan is found for a lower speed factor the motion also brakes, until there is
-// one. (Ours.)
+// jerk-limited motion to rest before the first bend; where no plan was found from this rest, also over bends, at most
+// as fast as the slowest of its nodes. Meanwhile a time-optimal plan (PathPlanner) is computed outside the cycle, from
+// a state that the law in force will reach; it takes over at that instant if it is verified and in time; otherwise it
+// is dropped and ordered again. Longer paths and other speed factors come into force in the same way; the motion behind
+// a stop is planned before the law in force ends there. Braking is one jerk-limited motion, verified over all nodes
+// ahead, replaced by a harder one as soon as one is found; if none is found, because the path bends, the law in force
+// stays. If no plan is found for a lower speed factor the motion also brakes, until there is one. (Ours.)
 #pragma once
 
 #include <atomic>
@@ -31,8 +31,8 @@ class PathTiming {
   // Requires: the motion is at rest at `pace.now`, at or behind `pace.node`.
   void Begin(const PathPace& pace) noexcept;
 
-  // One cycle: updates now, raw, node, passed and raw_stands of `pace`. `factor`: speed factor along the path, above 0
-  // to 1.
+  // One cycle: updates now, raw, node, passed, entered and raw_stands of `pace`. `factor` in (0, 1]: speed factor along
+  // the path. Requires: active(); for a factor of 0 call Stop.
   void Advance(const PathWindow& window, double factor, PathPace& pace) noexcept;
   // One cycle, braking to rest.
   void Stop(const PathWindow& window, const PathBrake& brake, PathPace& pace) noexcept;
@@ -42,7 +42,7 @@ class PathTiming {
   // ordered.
   std::optional<std::uint64_t> MakePlan() noexcept;
   // In the same thread: the number could not be passed on; MakePlan will return it again.
-  void MakeAgain() noexcept;
+  void RepeatPlan() noexcept;
   // In the cycle: the plan with this number has been computed (in a replay it is computed here).
   void TakePlan(std::uint64_t number) noexcept;
 
@@ -50,13 +50,16 @@ class PathTiming {
   // false, with nothing changed, if it cannot.
   bool StopBefore(const PathWindow& window, double place, const PathPace& pace) noexcept;
 
-  // Returns the largest arc length [mm] at which braking from now on may end.
-  double BrakesTo(const PathWindow& window, const PathPace& pace) const noexcept;
-  double rest_place() const noexcept { return current_.EndPlace(); }  // arc length at which the law in force ends [mm]
-  double rest_s() const noexcept;                                     // time until the law in force ends [s]
+  // Returns an estimate of the arc length [mm] at which braking from now on ends, exact while it brakes; not a bound:
+  // over bends braking may be softer.
+  double EstimatedStop(const PathWindow& window, const PathPace& pace) const noexcept;
+  double rest_place() const noexcept {
+    return current_.EndArcLength();
+  }                                // arc length at which the law in force ends [mm]
+  double rest_s() const noexcept;  // time until the law in force ends [s]
   std::uint64_t rest_cycles() const noexcept;
   // Returns true if the law in force leads to an arc length [mm] and no faster law is to come.
-  bool Settles(double place) const noexcept;
+  bool IsFinalTo(double place) const noexcept;
 
  private:
   struct Law {
@@ -74,7 +77,7 @@ class PathTiming {
     double factor = 1;
 
     double Duration() const noexcept;
-    double EndPlace() const noexcept;
+    double EndArcLength() const noexcept;
     KinematicState At(double t) const noexcept;
   };
   static constexpr std::size_t kIntervals = 256;

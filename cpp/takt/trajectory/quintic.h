@@ -28,7 +28,7 @@ Quintic Connect(double length, const KinematicState& begin, const KinematicState
 
 // Returns the motion over time of a value that depends on a master: `over` is the value with its derivatives by the
 // master's position, `way` the motion of the master.
-inline KinematicState AlongWay(const KinematicState& over, const KinematicState& way) noexcept {
+inline KinematicState ComposeWithMaster(const KinematicState& over, const KinematicState& way) noexcept {
   return {over.position, over.velocity * way.velocity,
           over.acceleration * way.velocity * way.velocity + over.velocity * way.acceleration};
 }

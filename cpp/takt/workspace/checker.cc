@@ -84,8 +84,8 @@ class Walker {
   double MoveOf(const Mover& mover, const Sweep& sweep) const {
     double move = 0;
     for (const KDL::Vector& point : mover.points) {
-      move = std::max(
-          move, kinematics::LargestMove(cell_.kinematics, sweep, mover.link, mover.seen_from, point, mover.radius));
+      move = std::max(move, kinematics::DisplacementBound(cell_.kinematics, sweep, mover.link, mover.seen_from, point,
+                                                          mover.radius));
     }
     return move;
   }

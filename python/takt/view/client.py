@@ -17,7 +17,7 @@ from takt import msgs
 from takt.arguments import to_text
 from takt.view.machine import Machine
 
-RESEND_S = 0.2  # between two tries of a command that is not answered
+RESEND_S = 0.1  # [s] between two tries of a command that is not answered: some 15 before it is given up
 REFRESH_S = 2.0  # after which a command that is not finished is asked about: its last answer may have been lost
 GIVEN_UP_S = 2.0
 ACTIVE, FINAL, ERROR = 1, 2, 4  # states of a feedback; from FINAL on it is the last one

@@ -165,18 +165,18 @@ TEST(CamSwitch, ListsThatAnAxisCannotHaveAreRefused) {  // CAM-72
   AxisParams linear = LinearParams();
   AxisParams rotary = RotaryParams();
   CamSwitches list = ListOf({{1, 10, 20}, {1, 350, 10}});
-  EXPECT_EQ(CannotSwitch(list, rotary), "");
-  EXPECT_EQ(CannotSwitch(list, linear),
+  EXPECT_EQ(DiagnoseCamSwitches(list, rotary), "");
+  EXPECT_EQ(DiagnoseCamSwitches(list, linear),
             "expected last_on_position not below first_on_position, as axis x is linear and the list has no modulus, "
             "found 10 below 350");
   list.modulus = 90;
-  EXPECT_EQ(CannotSwitch(list, linear), "");
-  EXPECT_EQ(CannotSwitch(list, rotary), "");
+  EXPECT_EQ(DiagnoseCamSwitches(list, linear), "");
+  EXPECT_EQ(DiagnoseCamSwitches(list, rotary), "");
   list.modulus = 100;
-  EXPECT_EQ(CannotSwitch(list, rotary),
+  EXPECT_EQ(DiagnoseCamSwitches(list, rotary),
             "expected a modulus that a turn of axis c (360) is a whole number of, found 100");
   list.modulus = 720;
-  EXPECT_NE(CannotSwitch(list, rotary), "");
+  EXPECT_NE(DiagnoseCamSwitches(list, rotary), "");
   // The cycle refuses them too: function blocks in C++ do not ask before.
   Rig rig(rotary);
   rig.cam_switches = {list};

@@ -599,7 +599,7 @@ struct World {
     for (int i = 0; i < kWide * kWide; ++i) places[static_cast<std::size_t>(i)] = i;
     const auto some = [&] {
       std::shuffle(places.begin(), places.end(), chance);
-      return std::vector<routing::PlaceIndex>(places.begin(), places.begin() + movers);
+      return std::vector<routing::CellIndex>(places.begin(), places.begin() + movers);
     };
     problem = {.width = kWide,
                .height = kWide,

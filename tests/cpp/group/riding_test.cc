@@ -296,7 +296,7 @@ TEST(Riding, InterruptRestsAndContinueCatchesUp) {
       const double position = rig.out().path_position;
       rig.Give(Continue{});
       rig.Step();
-      while (Slips(rig.state)) {
+      while (IsUncoupled(rig.state)) {
         EXPECT_EQ(rig.out().path_position, position);
         rig.Step();
       }

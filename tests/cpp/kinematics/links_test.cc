@@ -156,7 +156,7 @@ TEST(Links, MoveNoFurtherThanSaid) {
       const Vector point = middle + random.Direction() * radius;
       Sweep sweep;
       ASSERT_EQ(MakeSweep(c.kinematics, from, to, sweep), Reason::kNone);
-      const double most = LargestMove(c.kinematics, sweep, link, other, middle, radius);
+      const double most = DisplacementBound(c.kinematics, sweep, link, other, middle, radius);
       ASSERT_GE(most, 0);
       if (std::isinf(most)) continue;
       ++bounded;

@@ -188,7 +188,7 @@ TEST(MoverMoves, RandomCommandsKeepAllLimits) {
 }
 
 // PL-11: with its orientation the mover arrives in all three coordinates at the same time, from rest.
-TEST(MoverMoves, TurnsAlong) {
+TEST(MoverMoves, HasOrientationTarget) {
   for (const double velocity : {2000.0, 20.0}) {
     Rig rig;
     rig.Enable();

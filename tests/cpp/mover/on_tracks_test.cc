@@ -40,7 +40,7 @@ class TrackRig {
     for (std::uint32_t i = 0; i < layouts.size(); ++i) {
       for (std::uint32_t k = 0; k < layouts.size(); ++k) {
         const planar::Place end = planar::At(*ways[i], ways[i]->length).place, start = planar::At(*ways[k], 0).place;
-        if (planar::SamePlace(end, start)) now[k].start_node = now[i].end_node;
+        if (planar::SamePoint(end, start)) now[k].start_node = now[i].end_node;
       }
     }
   }
@@ -82,7 +82,7 @@ class TrackRig {
       if (!rider.on) continue;
       const bool on_track = states[i].mode == CommandMode::kOnTrack;
       if (!on_track) ++streets.uses[states[i].track].configuring;
-      const bool goes = on_track && GoesAlongTrack(context(i), states[i]);
+      const bool goes = on_track && IsMovingAlongTrack(context(i), states[i]);
       for (const std::uint32_t track : rider.route.all()) streets.uses[track].moving += goes ? 1 : 0;
     }
     Hear();

@@ -24,7 +24,7 @@ class Rig {
     inputs = Simulate(context(), state);
   }
   Context context() { return {params, cycle, feedback}; }
-  Ticket Give(const Command& command, const Hindrance& hindrance = {}) {
+  Ticket Give(const Command& command, const MoveBlocker& hindrance = {}) {
     Apply(context(), ++ticket, command, hindrance, state);
     Hear();
     return ticket;

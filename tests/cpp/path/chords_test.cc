@@ -27,7 +27,7 @@ Segment Round(const Segment& first, const Segment& second, const Bends& bends) {
 }
 
 Triple Bend(const Segment& before, const Segment& chord, const Segment& after) {
-  const auto bend = BendBetween(before, chord, after);
+  const auto bend = ChordCurvature(before, chord, after);
   EXPECT_TRUE(bend.has_value());
   return bend.value_or(Triple{});
 }
@@ -63,10 +63,10 @@ TEST(Chords, BendOnlyWhereTheCurveDoes) {
   EXPECT_EQ(Bend(before, chord, line(1, 0, 2, 0)), Triple{});
   EXPECT_EQ(Bend(before, chord, line(1, 0, 2, 0.1)), Triple{});
   EXPECT_LT(Bend(before, chord, line(1, 0, 2, -0.1))[1], -0.05);
-  EXPECT_FALSE(BendBetween(before, chord, line(1, 0, 0.9, -1)).has_value());
-  EXPECT_FALSE(BendBetween(line(0.1, -1, 0, 0), chord, line(1, 0, 2, -0.1)).has_value());
+  EXPECT_FALSE(ChordCurvature(before, chord, line(1, 0, 0.9, -1)).has_value());
+  EXPECT_FALSE(ChordCurvature(line(0.1, -1, 0, 0), chord, line(1, 0, 2, -0.1)).has_value());
   const Segment arc = testing::Arc(testing::At(1, 0), {.auxiliary_point = {2, -0.1, 0}}, testing::At(3, -0.5));
-  EXPECT_FALSE(BendBetween(before, chord, arc).has_value());
+  EXPECT_FALSE(ChordCurvature(before, chord, arc).has_value());
 }
 
 // GR-22: whatever the chords: from one blend to the next neither tangent nor curvature jumps, nor the rate of the

@@ -47,7 +47,7 @@ void AppendCorners(const Area& area, double c, std::vector<Place>& out) {
 
 Environment Surface(const std::vector<Place>& stators) {
   Environment environment;
-  const Surfacing made = MakeEnvironment(stators, environment);
+  const SurfaceResult made = MakeEnvironment(stators, environment);
   EXPECT_EQ(made.problem, StatorProblem::kNone) << made.stator << ' ' << made.other;
   return environment;
 }

@@ -138,12 +138,12 @@ TEST(Environments, NameWhatIsWrong) {
   EXPECT_EQ(problem({}).problem, StatorProblem::kEmpty);
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), double{INFINITY}, 2e6}) {
     for (const Place& p : {Place{bad, 0}, Place{0, -bad}}) {
-      const Surfacing made = problem({{480, 480}, p});
+      const SurfaceResult made = problem({{480, 480}, p});
       EXPECT_EQ(made.problem, StatorProblem::kNotFinite);
       EXPECT_EQ(made.stator, 1u);
     }
   }
-  const Surfacing overlap = problem({{0, 0}, {240, 0}, {100, 100}});
+  const SurfaceResult overlap = problem({{0, 0}, {240, 0}, {100, 100}});
   EXPECT_EQ(overlap.problem, StatorProblem::kOverlap);
   EXPECT_EQ(overlap.stator, 2u);
   EXPECT_EQ(overlap.other, 0u);

@@ -266,7 +266,7 @@ TEST(Gear, StopsWhereItsWayEnds) {  // PL-14
     EXPECT_TRUE(streets[0].there);
     EXPECT_NEAR(streets[0].at.position, forward ? 1000 : 0, 1e-9);
     // In step until it has to brake.
-    const double way = WayToRest(300, pace.brakes());
+    const double way = StoppingDistance(300, pace.brakes());
     EXPECT_NEAR(in_step_until, forward ? 1000 - way : way, 1);
     EXPECT_LE(watcher.acceleration, 1 + 1e-8);
     EXPECT_LE(watcher.jerk, 1 + 1e-5);
@@ -401,7 +401,7 @@ TEST(Gear, AConvoyGoesThroughSwitches) {  // PL-14, PL-34
   Watcher watcher(streets);
   double nearest = INFINITY;
   const auto step = [&] {
-    for (std::uint32_t i = 1; i < 6; ++i) ASSERT_TRUE(TakeMastersWay(streets.network(), streets[i - 1], streets[i]));
+    for (std::uint32_t i = 1; i < 6; ++i) ASSERT_TRUE(TakeMastersRoute(streets.network(), streets[i - 1], streets[i]));
     streets.Step();
     watcher.Look();
     nearest = std::min(nearest, streets.Nearest());
@@ -507,7 +507,7 @@ TEST(Gear, NobodyComesTooNear) {  // PL-14, PL-23, PL-24
               }
               if (!one_track) next.route = way;
               next.gear.apart = r.origin + end - its.origin;
-              next.gear.takes_masters_way = TakeMastersWay(streets.network(), its, next);
+              next.gear.takes_masters_way = TakeMastersRoute(streets.network(), its, next);
               // At a distance, or at just the gap.
               const double apart = end + its.at.position - r.at.position;
               const double wanted = random.Coin() ? 170 : random.Between(170, 600);
@@ -519,7 +519,7 @@ TEST(Gear, NobodyComesTooNear) {  // PL-14, PL-23, PL-24
         }
         if (r.aim != Aim::kFollow) continue;
         r.demand = axes[k].Next();
-        if (r.gear.takes_masters_way && !TakeMastersWay(streets.network(), streets[r.gear.master], r)) {
+        if (r.gear.takes_masters_way && !TakeMastersRoute(streets.network(), streets[r.gear.master], r)) {
           r.aim = Aim::kRest;
           r.gear = {};
         }

@@ -51,12 +51,12 @@ TEST(Parts, BordersGoAroundAll) {
   EXPECT_DOUBLE_EQ(border({240.5, 0}), 8 * 240);
 }
 
-TEST(Parts, HangTogether) {
-  EXPECT_TRUE(HangTogether(std::vector<Place>{{0, 0}}));
-  EXPECT_TRUE(HangTogether(std::vector<Place>{{0, 0}, {480, 0}, {240, 0}}));
-  EXPECT_TRUE(HangTogether(std::vector<Place>{{0, 0}, {240, 200}}));
-  EXPECT_FALSE(HangTogether(std::vector<Place>{{0, 0}, {240, 240}}));
-  EXPECT_FALSE(HangTogether(std::vector<Place>{{0, 0}, {241, 0}}));
+TEST(Parts, AreConnected) {
+  EXPECT_TRUE(AreConnected(std::vector<Place>{{0, 0}}));
+  EXPECT_TRUE(AreConnected(std::vector<Place>{{0, 0}, {480, 0}, {240, 0}}));
+  EXPECT_TRUE(AreConnected(std::vector<Place>{{0, 0}, {240, 200}}));
+  EXPECT_FALSE(AreConnected(std::vector<Place>{{0, 0}, {240, 240}}));
+  EXPECT_FALSE(AreConnected(std::vector<Place>{{0, 0}, {241, 0}}));
 }
 
 // The same as for one surface with all stators present: by the functions for that, which are tested elsewhere.

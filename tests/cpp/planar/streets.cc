@@ -8,7 +8,7 @@ namespace takt::planar::testing {
 namespace {
 
 bool Meet(const TrackPoint& a, const TrackPoint& b) {
-  return SamePlace(a.place, b.place) && SameDirection(a, b);
+  return SamePoint(a.place, b.place) && SameDirection(a, b);
 }
 
 // The track comes near itself, which traffic does not check.
@@ -109,12 +109,12 @@ TrackNetworkState::TrackNetworkState(const std::vector<Layout>& layouts, std::ui
     for (std::uint32_t k = 0; k < layouts.size(); ++k) {
       const TrackPoint end = EndOf(*tracks_[i]), start = StartOf(*tracks_[k]);
       const bool open = !tracks_[i]->closed && !tracks_[k]->closed;
-      if (open && SamePlace(end.place, start.place) && SameDirection(end, start)) {
+      if (open && SamePoint(end.place, start.place) && SameDirection(end, start)) {
         EXPECT_TRUE(Link(i, k, network_));
       }
     }
   }
-  NameNodes(network_);
+  NumberNodes(network_);
   for (std::uint32_t i = 0; i < layouts.size(); ++i) SetRanges(i, network_);
   for (std::uint32_t i = 0; i < layouts.size(); ++i) SetLeads(i, network_);
 }

@@ -579,7 +579,7 @@ class CityProperty : public ::testing::TestWithParam<int> {
     }
   }
   // Displaces a mover by this distance, if there is room for that.
-  void GetOff(std::uint32_t mover, double off) {
+  void ReserveDisplacement(std::uint32_t mover, double off) {
     Rider& r = streets[mover];
     const double before = r.off;
     r.off = off;
@@ -623,7 +623,7 @@ TEST_P(CityProperty, NobodyComesTooNear) {  // PL-23, PL-24
         streets.Halt(k);
         down[k] = i + random.Below(3000);
       }
-      if (random.Below(5000) == 0) GetOff(k, random.Between(0, 60));
+      if (random.Below(5000) == 0) ReserveDisplacement(k, random.Between(0, 60));
       if (i < down[k]) continue;
       if (i % 1000 == 0 && IsDeadlocked(streets.riders(), k)) {
         r = {};

@@ -31,8 +31,8 @@ World AnyWorld(Random& random, int trial) {
       for (int x = 1; x + 1 < width; ++x) world.blocked[static_cast<std::size_t>(y * width + x)] = random.Below(3) == 0;
     }
   }
-  std::vector<PlaceIndex> places;
-  for (PlaceIndex i = 0; i < width * height; ++i) {
+  std::vector<CellIndex> places;
+  for (CellIndex i = 0; i < width * height; ++i) {
     if (!world.blocked[static_cast<std::size_t>(i)]) places.push_back(i);
   }
   const std::size_t count = 1 + random.Below(places.size() * 7 / 10);
@@ -55,8 +55,8 @@ std::string Fault(const World& world, const std::vector<Configuration>& steps) {
   const std::size_t count = world.task.starts.size();
   if (steps.empty() || steps.front() != world.task.starts) return "begins elsewhere";
   for (std::size_t k = 0; k < steps.size(); ++k) {
-    if (std::set<PlaceIndex>(steps[k].begin(), steps[k].end()).size() != count) return "two at one place";
-    for (const PlaceIndex place : steps[k]) {
+    if (std::set<CellIndex>(steps[k].begin(), steps[k].end()).size() != count) return "two at one place";
+    for (const CellIndex place : steps[k]) {
       if (world.blocked[static_cast<std::size_t>(place)]) return "at a place that is blocked";
     }
     if (k == 0) continue;
@@ -65,7 +65,7 @@ std::string Fault(const World& world, const std::vector<Configuration>& steps) {
     for (bool again = true; again;) {
       again = false;
       for (std::size_t i = 0; i < count; ++i) {
-        const PlaceIndex to = steps[k][i];
+        const CellIndex to = steps[k][i];
         if (now[i] == to) continue;
         const int columns = std::abs(now[i] % world.width - to % world.width);
         const int rows = std::abs(now[i] / world.width - to / world.width);
@@ -78,7 +78,7 @@ std::string Fault(const World& world, const std::vector<Configuration>& steps) {
     if (now != steps[k]) return "a ring, or two that exchange places";
   }
   for (std::size_t i = 0; i < count; ++i) {
-    const PlaceIndex target = world.task.targets[i];
+    const CellIndex target = world.task.targets[i];
     if (target == kNone) continue;
     const auto there = std::find(steps.back().begin(), steps.back().end(), target);
     if (there == steps.back().end()) return "nobody at a target";
@@ -169,7 +169,7 @@ TEST(Repair, KnowsRingsOfAnyLength) {
   for (int y = 14; y > 0; --y) world.task.starts.push_back(17 * y);
   world.task.targets = world.task.starts;
   std::rotate(world.task.targets.begin(), world.task.targets.begin() + 1, world.task.targets.end());
-  for (const PlaceIndex place : world.task.starts) world.blocked[static_cast<std::size_t>(place)] = false;
+  for (const CellIndex place : world.task.starts) world.blocked[static_cast<std::size_t>(place)] = false;
   const Grid grid(world.width, world.height, 120, 118, kOfSquares, world.blocked);
   const StepTables tables = MakeStepTables(grid, world.task);
   Repair repair(grid, world.task, tables, world.pools, 1);

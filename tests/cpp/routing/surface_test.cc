@@ -28,9 +28,9 @@ SurfaceProblem Empty(int width, int height) {
           .effort = 2'000};
 }
 
-std::vector<PlaceIndex> RandomPlaces(const SurfaceProblem& problem, std::size_t count, Random& random) {
-  std::vector<PlaceIndex> places;
-  for (PlaceIndex i = 0; i < problem.width * problem.height; ++i) {
+std::vector<CellIndex> RandomPlaces(const SurfaceProblem& problem, std::size_t count, Random& random) {
+  std::vector<CellIndex> places;
+  for (CellIndex i = 0; i < problem.width * problem.height; ++i) {
     if (!problem.blocked[static_cast<std::size_t>(i)]) places.push_back(i);
   }
   random.Shuffle(places);
@@ -147,7 +147,7 @@ class Checker {
   // Legs are consecutive, over places that are not blocked, and end at the targets.
   void CheckLegs() const {
     for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
-      PlaceIndex at = problem_.starts[i];
+      CellIndex at = problem_.starts[i];
       double since = 0;
       for (const Leg& leg : plan_.legs[i]) {
         EXPECT_EQ(leg.from, at);
@@ -201,8 +201,8 @@ class Checker {
   }
   // Returns its centre at t, or after braking from t on for the given time.
   Point PlaceAt(std::size_t mover, double t, double braking = 0) const {
-    PlaceIndex at = problem_.starts[mover];
-    const auto point = [&](PlaceIndex place) {
+    CellIndex at = problem_.starts[mover];
+    const auto point = [&](CellIndex place) {
       return Point{kPitch * (place % problem_.width), kPitch * (place / problem_.width)};
     };
     for (const Leg& leg : plan_.legs[mover]) {

@@ -70,7 +70,7 @@ TEST(PendingEdits, BuildWhatTheBuilderBuilds) {
       const Problem found = rig.Do(0, attempt.command);
       if (expected == Problem::kNone && next.track()) {
         planar::Track way = *next.track();
-        way.closed = way.closed || SamePlace(At(way, 0).place, At(way, way.length).place);
+        way.closed = way.closed || SamePoint(At(way, 0).place, At(way, way.length).place);
         if (SelfCrossing(way)) expected = Problem::kCrosses;
       }
       ASSERT_EQ(found, expected) << run << " " << i;

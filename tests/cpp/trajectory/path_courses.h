@@ -166,7 +166,7 @@ class Motion {
   void SampleNext(double end, bool stop_at_end = false) {
     const PathPoint before = last;
     NextPoint(
-        before, end, window.limits(), window.build_up_s(), kPeriod, HiddenBends::kInAcceleration,
+        before, end, window.limits(), window.build_up_s(), kPeriod, BendSearch::kInAcceleration,
         [&](double s, PathPoint& point) { return course.Slopes(s, point.slopes); }, last);
     window.Append(last, stop_at_end && last.s >= end);
     sampled_to = last.s;

@@ -20,7 +20,7 @@ double Sine(double t, double hertz) {
 }
 
 // CV-20: whatever the time constant, a step decays and does not reappear.
-TEST(TrackingFilter, Settles) {
+TEST(TrackingFilter, IsFinalTo) {
   for (const double filter_s : {0.0, 0.001, 0.002, 0.003, 0.004, 0.01, 0.1}) {
     TrackingFilterState state;
     for (int k = 0; k < 6000; ++k) {
