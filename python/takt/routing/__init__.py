@@ -1,5 +1,5 @@
-"""Ways for many movers at once: `plan_routes` finds them on tracks, `plan_surface` on the free surface;
-`Session.move_on_tracks` and `Session.move_on_surface` carry them out, and `Session.route` a stream of orders."""
+"""Routes for many movers at once: `plan_routes` plans them on tracks, `plan_surface` on the free surface;
+`Session.move_on_tracks` and `Session.move_on_surface` execute them, and `Session.route` executes a stream of orders."""
 
 from takt.routing.journey import Journey
 from takt.routing.plan import RoutePlan, plan_routes

@@ -1,9 +1,9 @@
-"""Who is where on streets, as far as it matters for who can pass, and the search for an order of hops that brings all
-to their targets.
+"""Arrangements of movers on streets, reduced to what decides which mover can pass, and the search for an order of hops
+that brings all movers to their targets.
 
-On one street nobody overtakes; so it matters who stands before whom, not where. An arrangement is a row of movers for
-each street, and those who stand within the zones of nodes by themselves. A hop takes one mover from a row to the next,
-or to and from a place within a zone. Between two hops a row may be moved along its street as one likes.
+Movers on one street cannot overtake, so their order matters and their positions do not. An arrangement is a row of
+movers for each street, and the movers that rest singly within the zones of nodes. A hop takes one mover from a row to
+the next, or to or from a position within a zone. Between two hops a row may be shifted along its street freely.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from takt.routing.streets import MARGIN, Street, Streets, Sweep
 
-HOP = 100.0  # mm that a hop costs besides its way
+HOP = 100.0  # [mm] cost of a hop, in addition to its length
 
 
 class Place(NamedTuple):
@@ -27,40 +27,40 @@ class Place(NamedTuple):
 
 
 class Arrangement(NamedTuple):
-    rows: tuple[tuple[int, ...], ...]  # by street: movers, the one that is furthest on first
-    apart: tuple[tuple[int, Place], ...]  # movers that stand within zones, by number
+    rows: tuple[tuple[int, ...], ...]  # by street: movers, the foremost first
+    apart: tuple[tuple[int, Place], ...]  # movers that rest within zones, by number
 
 
 @dataclass(frozen=True)
 class Hop:
     mover: int
-    sweep: Sweep  # what it needs for itself meanwhile
-    backward: bool  # to its end, or from its end to its start
-    to_row: bool  # ends in the row of the last street; else stands at the end of the sweep
+    sweep: Sweep  # the stretch that the mover needs for itself meanwhile
+    backward: bool  # False: to the end of the sweep; True: from its end to its start
+    to_row: bool  # ends in the row of the last street; else at the end of the sweep
 
     @property
     def street(self) -> int:
-        """Where it ends."""
+        """The street on which the hop ends."""
         return self.sweep.streets[-1]
 
     @property
     def place(self) -> float:
-        """Where it ends, mm along the street."""
+        """The position at which the hop ends [mm along its street]."""
         return self.sweep.start if self.backward else self.sweep.end
 
     def comes_back(self, street: Street) -> bool:
-        """Towards the row of this street from before it, which has to make room."""
+        """True if the hop leads backward towards the row of this street, from ahead of it: the row has to make room."""
         return self.backward and self.street == street.index and (self.to_row or self.place > street.last)
 
 
 @dataclass(frozen=True)
 class Task:
-    """Movers by number, from 0."""
+    """Starts and targets of the movers, which are numbered from 0."""
 
     streets: Streets
     starts: tuple[Place, ...]
     targets: Mapping[int, Place]
-    fixed: frozenset[int]  # that stay where they are
+    fixed: frozenset[int]  # movers that may not be moved
 
     @cached_property
     def start(self) -> Arrangement:
@@ -77,23 +77,23 @@ class Task:
 
     @cached_property
     def closed_off(self) -> frozenset[int]:
-        """Streets that nobody passes: one who stays stands there."""
+        """Streets that cannot be passed: a fixed mover rests there."""
         return frozenset(self.starts[i].street for i in self.fixed)
 
     @cached_property
     def ways(self) -> dict[int, tuple[list[float], list[int]]]:
-        """To each street: as Streets.way_to."""
+        """By street: distances and next streets towards it, as Streets.way_to, not past fixed movers."""
         shut = set().union(*(self._blocked_by(self.starts[i]) for i in self.fixed))
         return {street.index: self.streets.way_to(street.index, self.closed_off, shut) for street in self.streets.all}
 
     def aim(self, mover: int) -> Place | None:
-        """Where it is to be in the end, if it matters."""
+        """Returns the final position of a mover: that of its start if it is fixed, else its target, None if any."""
         return self.starts[mover] if mover in self.fixed else self.targets.get(mover)
 
     # --- what is possible ---
 
     def bounds(self, street: Street, a: Arrangement, without: int = -1) -> tuple[float, float]:
-        """Where the row of a street can be, those in its zones being where they are."""
+        """Returns the range [mm] available to the row of a street, given the movers in its zones except `without`."""
         low, high = street.first, street.last
         for i, place in a.apart:
             if place.street == street.index and i != without:
@@ -104,7 +104,7 @@ class Task:
         return low, high
 
     def fits(self, street: Street, row: Sequence[int], a: Arrangement, aims: bool = False) -> bool:
-        """There is room for this row; `aims`: with all in it at their targets."""
+        """True if there is room for this row; `aims`: with all its movers at their targets."""
         low, place = self.bounds(street, a)
         last = math.inf
         for i in row:
@@ -125,7 +125,7 @@ class Task:
         )
 
     def after(self, hop: Hop, a: Arrangement) -> Arrangement | None:
-        """None: the hop is not possible."""
+        """Returns the arrangement after this hop; None if the hop is not possible."""
         if not self.is_free(hop.sweep, hop.mover, a):
             return None
         i, street = hop.mover, self.streets[hop.street]
@@ -159,7 +159,7 @@ class Task:
         return not hop.to_row and (here.s < street.first) != (hop.place < street.first)
 
     def hops(self, a: Arrangement) -> Iterator[Hop]:
-        """All that may be worth a try."""
+        """Yields the hops worth trying; `after` decides which are possible."""
         for street in self.streets.all:
             row = a.rows[street.index]
             if not row or street.closed:
@@ -204,10 +204,10 @@ class Task:
             if aim is not None and aim.street == last.index and (not last.has_room or aim.s < last.first):
                 yield Hop(i, Sweep(way, s, aim.s), False, False)
 
-    # --- how far it is ---
+    # --- cost and remaining distance ---
 
     def cost(self, hop: Hop) -> float:
-        """mm of way that a hop leads on by, and of the row that it leads into."""
+        """Returns the cost [mm] of a hop: HOP, the length of its sweep, and that of the row that it enters."""
         street = self.streets[hop.street]
         return HOP + self.streets.length(hop.sweep) + (street.last - street.first if hop.to_row else 0.0)
 
@@ -223,7 +223,7 @@ class Task:
         )
 
     def _missing(self, a: Arrangement) -> bool:
-        """Someone is in a row and not on the street, or within the stretch, where its target is."""
+        """True if a mover is in a row although its target is on another street, or outside the row of this one."""
         for street in self.streets.all:
             for i in a.rows[street.index]:
                 aim = self.targets.get(i)
@@ -232,12 +232,12 @@ class Task:
         return False
 
     def far(self, a: Arrangement) -> float:
-        """mm that are left to go for all together, guessed; infinite: from here it is not possible."""
+        """Returns an estimate [mm] of the distance left for all movers together; infinite if there is no solution."""
         total = 0.0
-        needed: set[tuple[int, int]] = set()  # from street to street: someone has to pass there, and on
-        last: set[tuple[int, Place]] = set()  # from a street to a target
-        arrive: dict[int, float] = {}  # by street: how far up someone has its target who is not there yet
-        stay: list[tuple[int, Place]] = []  # movers that may stay on their street, and where
+        needed: set[tuple[int, int]] = set()  # passages from street to street that a mover has to make, not its last
+        last: set[tuple[int, Place]] = set()  # last passages, from a street to a target
+        arrive: dict[int, float] = {}  # by street: the foremost target of a mover that has yet to arrive [mm]
+        stay: list[tuple[int, Place]] = []  # movers that may stay on their street, and their positions
 
         def go(here: int, aim: Place | None) -> float:
             if aim is not None:
@@ -252,7 +252,7 @@ class Task:
             crowded = row and not self.fits(street, row, a, aims=True)
             for i in reversed(row):
                 aim = self.aim(i)
-                # With a free one before it, one at the front of the street does not get to its target.
+                # A mover without a target ahead of it keeps a mover from a target at the front of the street.
                 leaves |= bool(crowded) and aim is None and most > street.last - self.streets.gap
                 if not leaves and (aim is None or (aim.street == street.index and aim.s > most)):
                     stay.append((i, aim or Place(street.index, street.last)))
@@ -307,7 +307,7 @@ class Task:
             total += HOP
 
     def _leaves_room(self, i: int, index: int, a: Arrangement) -> bool:
-        """Another one could still come into the row."""
+        """True if another mover could still enter the row behind this one."""
         street = self.streets[index]
         return self.fits(street, (*a.rows[index], i), a)
 
@@ -333,15 +333,16 @@ class Task:
 
 class Search(NamedTuple):
     hops: tuple[Hop, ...] | None  # None: not found
-    tried: int  # arrangements looked at
-    complete: bool  # there are no others
+    tried: int  # arrangements reached
+    complete: bool  # True: no arrangement is left to try
 
 
 def search(task: Task, effort: int, weight: float = math.inf) -> Search:
-    """An order of hops: always on from where least is left to go. Looks at so many arrangements at most.
+    """Searches for an order of hops, and gives up after about `effort` arrangements.
 
-    With a weight, on from where the way gone and that weight times what is left are least together (weighted A*): the
-    smaller it is, the shorter the ways, and the more arrangements are looked at.
+    Without a weight the arrangement with the least estimated distance left is expanded first (greedy best-first
+    search). With a weight it is that with the least sum of cost so far and weight times distance left (weighted A*):
+    the smaller the weight, the shorter the routes, and the more arrangements are expanded.
     """
     start = task.start
     if task.is_done(start):
@@ -354,7 +355,7 @@ def search(task: Task, effort: int, weight: float = math.inf) -> Search:
     while heap:
         _, _, way, a = heapq.heappop(heap)
         if way > gone[a]:
-            continue  # it was reached by a shorter way since
+            continue  # reached at a lower cost meanwhile
         if not greedy and task.is_done(a):
             return Search(_hops_to(a, came), len(came), False)
         for hop in task.hops(a):

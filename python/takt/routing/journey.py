@@ -1,4 +1,4 @@
-"""Movers on their planned ways: commands as far as the order allows, extended while they move."""
+"""Movers on their planned routes: commanded as far as the order of passing allows, and farther while they move."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
     from takt.mover import Mover
     from takt.session import Session
 
-LOOK_S = 0.005  # s of engine time between two looks at the movers
-NEAR = 0.05  # mm that a mover may be off its place
+LOOK_S = 0.005  # [s] engine time between two checks of the movers
+NEAR = 0.05  # [mm] admissible deviation of a mover from its position
 TRIES = 3
 
 
 class _InterruptedError(RoutingError):
-    """A mover does not do any more what it was told."""
+    """A mover no longer follows its command."""
 
 
 class _Traveller:
-    """One mover of the plan. Its levels: so many of its hops may be done."""
+    """One mover of the plan. Its level is the number of its hops that are released."""
 
     def __init__(self, number: int, mover: Mover, plan: RoutePlan) -> None:
         self.mover = mover
@@ -34,15 +34,15 @@ class _Traveller:
         self.number = number
         self.steps = plan.steps[number]
         self.way = [plan.task.starts[number].street]  # streets, one after the other
-        self.reach = [0]  # by level: where on the way that ends
+        self.reach = [0]  # by level: index in `way` of the street on which it ends
         for step in self.steps:
             self.way += step.hop.sweep.streets[1:]
             self.reach.append(len(self.way) - 1)
-        self.at = 0  # where on the way it is
+        self.at = 0  # index in `way` of the present street
         self.s = plan.task.starts[number].s
-        self.over = 0  # hops that are over
-        self.level = 0  # that it may go to
-        self.sent: tuple[int, float] | None = None  # level and place that it was told
+        self.over = 0  # hops completed
+        self.level = 0  # hops released
+        self.sent: tuple[int, float] | None = None  # level and position [mm] of the last command
         self.feedback: Feedback | None = None
         self.waited_s = 0.0
         self.arrived_s = math.nan
@@ -53,7 +53,7 @@ class _Traveller:
         return self.over == len(self.steps) and self.sent == last and (self.feedback is None or self.feedback.done)
 
     def look(self, streets: Streets) -> None:
-        """Where it is now, and which hops are over."""
+        """Updates the position of the mover and the number of hops completed."""
         while True:  # both from one message
             track = self.mover.track
             self.s = self.mover.track_position
@@ -76,13 +76,13 @@ class _Traveller:
 
     @property
     def may_plan_on(self) -> bool:
-        """Where it stops on its way, the next hop has to wait until it was there."""
+        """True if the next hop may be released. Where the mover stops on its way, that is after it was there."""
         last = self.steps[self.level - 1].hop if self.level else None
         stops = last is not None and (not last.to_row or len(self.steps[self.level].hop.sweep.streets) == 1)
         return not stops or self.over == self.level
 
     def destination(self, level: int, row: _Row | None) -> float:
-        """mm along the last street of this level."""
+        """Returns the end position of this level [mm along its last street]."""
         street = self.plan.task.streets[self.way[self.reach[level]]]
         ends = level == len(self.steps)
         if not ends:
@@ -93,13 +93,13 @@ class _Traveller:
         if row is None or (level > 0 and not self.steps[level - 1].hop.to_row) or not street.in_row(s):
             return s
         if not ends and hop.backward and row.next != (self.number, level):
-            s = street.last  # others leave before it
+            s = street.last  # other hops of this row come first
         if row.most:
             return min(s, row.most.get(self.number, s))
         return street.last if ends else s
 
     def go_on(self, streets: Streets, rows: Mapping[int, _Row]) -> None:
-        """Sends it as far as it may go, or as far as the engine finds the planned way by itself."""
+        """Commands the mover to the end of its level, or as far as the engine finds the planned route by itself."""
         least = self.sent[0] if self.sent else 0
         for level in range(self.level, least - 1, -1):
             rest = self.way[self.at : self.reach[level] + 1]
@@ -121,14 +121,14 @@ class _Traveller:
 
 @dataclass(frozen=True)
 class _Row:
-    """A row that is not yet to be as it will be in the end."""
+    """A row that has yet to make room for hops, before its movers take their final positions."""
 
     next: tuple[int, int]  # the hop that changes it next: mover, number
-    most: Mapping[int, float]  # by mover: mm, no further than this
+    most: Mapping[int, float]  # by mover: upper bound of its position [mm]
 
 
 class Journey:
-    """A plan that is carried out. `scan` from time to time, or `wait`."""
+    """Execution of a plan: call `scan` from time to time, or `wait`."""
 
     def __init__(self, session: Session, plan: RoutePlan) -> None:
         self.session = session
@@ -140,21 +140,22 @@ class Journey:
 
     @property
     def arrived_s(self) -> dict[str, float]:
-        """By mover: s from the start on, when it was where it stays; NaN: it is not yet."""
+        """By mover: time of arrival at its final position, from the start on [s]; NaN until then."""
         return {t.mover.name: t.arrived_s - self.started_s for t in self._all}
 
     @property
     def waited_s(self) -> dict[str, float]:
-        """By mover: s for which it stood on its way."""
+        """By mover: time at rest before its arrival [s]."""
         return {t.mover.name: t.waited_s for t in self._all}
 
     @property
     def duration_s(self) -> float:
-        """s until the last one was there."""
+        """Time until the last mover arrived [s]; valid once all have."""
         return max(self.arrived_s.values(), default=0.0)
 
     def scan(self) -> bool:
-        """Lets movers go on whose turn it is. True: all are there."""
+        """Commands the movers whose turn it is. Returns True once all have arrived; False if it is called again within
+        LOOK_S. Raises RoutingError if a mover no longer follows its commands."""
         now = self.session.now
         elapsed = now - self._looked_s
         if elapsed < LOOK_S:
@@ -188,7 +189,7 @@ class Journey:
     def _may(self, one: _Traveller) -> bool:
         hop = one.steps[one.level].hop
         if hop.comes_back(self.plan.task.streets[hop.street]):
-            # The row makes room for it, once it is its turn.
+            # The row makes room for this hop when its turn has come.
             for shift in self.plan.shifts[hop.street]:
                 if shift.hop == (one.number, one.level):
                     break
@@ -204,7 +205,8 @@ class Journey:
             raise _InterruptedError(f"mover {name} does not go its way any more: {one.feedback.sentence}")
 
     def wait(self, timeout: float = DEFAULT_TIMEOUT_S) -> Journey:
-        """Lets engine time pass until all are there."""
+        """Lets engine time pass until all movers have arrived, and returns the journey. Raises TimeoutError, with the
+        movers that are late, after `timeout` [s], and RoutingError if a mover no longer follows its commands."""
         try:
             self.session.wait(self.scan, timeout)
         except TimeoutError:
@@ -219,11 +221,11 @@ class Journey:
         return self
 
     def halt(self) -> None:
-        """Brings all to rest that are not there yet."""
+        """Halts all enabled movers that have not arrived, and waits until the movers of the plan are at rest."""
         going = [t.mover for t in self._all if not t.there and t.mover.state.value == "Enabled"]
         for feedback in [mover.halt() for mover in going]:
             feedback.wait_final()
-        # One that is disabled, or has a fault, may brake for longer than the others.
+        # A mover that is disabled, or has a fault, may brake for longer than the others.
         self.session.wait(lambda: all(abs(t.mover.track_velocity) < STANDS for t in self._all))
 
 
@@ -237,7 +239,7 @@ def move_on_tracks(
     timeout: float,
     **dynamics: Any,
 ) -> dict[str, float]:
-    """As Session.move_on_tracks."""
+    """Implements Session.move_on_tracks."""
     if route not in ("auto", "shortest"):
         raise ValueError(f"route is one of auto, shortest, not {route!r}")
     start, tries = session.now, 1

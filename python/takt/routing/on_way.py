@@ -1,5 +1,5 @@
-"""One mover on its planned route over the free surface, as far as it has come: the engine carries the route out (the
-commands set_route and start_routes), here is what a planner has to know of it.
+"""Progress of one mover on its planned route over the free surface. The engine executes the route (commands set_route
+and start_routes); this module derives what a planner needs to know of it.
 """
 
 from __future__ import annotations
@@ -19,24 +19,24 @@ STANDS = 1e-3  # mm/s
 DYNAMICS = ("velocity", "acceleration", "jerk")
 ANSWER_S = 0.1  # over LCM: from an observed state to the effect of the command that answers it
 VISITS_A_COMMAND = 48
-COMMANDS_A_CYCLE = 16  # that the engine takes
-Before = tuple[str, int]  # a visit of a mover, by its number
+COMMANDS_A_CYCLE = 16  # accepted by the engine
+Before = tuple[str, int]  # a visit: name of the mover, number of the visit
 
 
 class OnWay:
-    """A mover, and the middles of the places that it visits.
+    """A mover, and the centres of the places that it visits.
 
-    Visits have numbers, `first` is that of the first place; all that follows counts places of this list.
+    The engine numbers visits; `first` is the number of the first one. All other indices here refer to this list.
     """
 
     def __init__(self, mover: Mover, points: Sequence[Point], first: int) -> None:
         self.mover = mover
         self.points = list(points)
         self.first = first
-        self.before: list[Before | None] = [None] * len(points)  # by place: the visit that has to be over before
-        self.feedback: Feedback | None = None  # of what leads it there
-        self.bound = len(self.points) - 1  # the last place that it may be granted before it is told more
-        self.halts = False  # the feedback is that of a halt
+        self.before: list[Before | None] = [None] * len(points)  # by place: the visit that has to end before
+        self.feedback: Feedback | None = None  # of the command in progress
+        self.bound = len(self.points) - 1  # the last place that can be granted before the engine has the next route
+        self.halts = False  # True: the feedback is that of a halt
 
     @property
     def last(self) -> int:
@@ -44,16 +44,16 @@ class OnWay:
 
     @property
     def passed(self) -> int:
-        """The last place whose middle it has reached."""
+        """Index of the last place whose centre the mover has reached."""
         passed = min(max(self.mover.route_visit - self.first, 0), self.last)
-        # Off its route it may have gone on while it braked.
+        # After it left its route it may have passed further places while it braked.
         while not self.mover.on_route and passed < self.granted and self._along(passed) >= self._step(passed) - NEAR:
             passed += 1
         return passed
 
     @property
     def granted(self) -> int:
-        """The last place that is its turn."""
+        """Index of the last place granted to the mover."""
         passed = min(max(self.mover.route_visit - self.first, 0), self.bound)
         return max(min(self.mover.route_granted - self.first, self.bound), passed)
 
@@ -63,7 +63,7 @@ class OnWay:
 
     @property
     def rests(self) -> bool:
-        """In a place."""
+        """True if the mover is at rest at the centre of a place of its route."""
         return not self.in_motion and self.off_way() <= NEAR and self._is_in(self.passed)
 
     @property
@@ -72,17 +72,18 @@ class OnWay:
 
     @property
     def is_told(self) -> bool:
-        """A command is in progress."""
+        """True if a command is in progress."""
         return self.feedback is not None and self.feedback.busy
 
     def fault(self) -> str | None:
-        """Why it does not go its way any more."""
+        """Returns the reason why the mover no longer follows its route; None if it does."""
         if self.feedback is None or self.feedback.busy or self.feedback.done:
             return None
         return why_not_on(self.mover, self.feedback)
 
     def off_way(self) -> float:
-        """mm between the mover and its route, from the place that it has passed to the next one."""
+        """Returns the distance [mm] of the mover from the segment of its route between the last place reached and the
+        next one."""
         here, passed = (self.mover.x, self.mover.y), self.passed
         if passed == self.last:
             return math.dist(here, self.points[-1])
@@ -91,7 +92,8 @@ class OnWay:
         return math.dist(here, (x + along * dx, y + along * dy))
 
     def stops_at(self, dynamics: Mapping[str, Any], later: float) -> int:
-        """The first place where it can come to rest if it is told so within `later` s."""
+        """Returns the index of the first place at which the mover can come to rest if the command for it takes effect
+        within `later` [s]. dynamics: velocity, acceleration, jerk of its motion."""
         passed, granted = self.passed, self.granted
         if passed >= granted or (not self.in_motion and self._is_in(passed)):
             return passed
@@ -100,7 +102,7 @@ class OnWay:
             straight += 1
         dx, dy = self._direction(passed)
         velocity = self.mover.velocity_x * dx + self.mover.velocity_y * dy
-        # It may be speeding up: then it is faster before it brakes.
+        # The mover may be accelerating: its speed is then higher when it starts to brake.
         a, jerk = dynamics["acceleration"], dynamics["jerk"]
         fastest = min(max(velocity, 0.0) + a * a / (2 * jerk) + a * later, max(dynamics["velocity"], velocity))
         ramp = fastest / a + a / jerk if fastest > a * a / jerk else 2 * math.sqrt(fastest / jerk)
@@ -117,26 +119,27 @@ class OnWay:
         return math.dist(self.points[place], self.points[place + 1])
 
     def _direction(self, place: int) -> tuple[int, int]:
-        """From this place to the next one."""
+        """Returns the direction from this place to the next one, along X or Y."""
         (x, y), (to_x, to_y) = self.points[place], self.points[place + 1]
         dx, dy = to_x - x, to_y - y
         return (int(math.copysign(1, dx)), 0) if abs(dx) > abs(dy) else (0, int(math.copysign(1, dy)))
 
     def _along(self, place: int) -> float:
-        """mm from this place towards the next one."""
+        """Returns the displacement [mm] of the mover from this place towards the next one."""
         (x, y), (dx, dy) = self.points[place], self._direction(place)
         return (self.mover.x - x) * dx + (self.mover.y - y) * dy
 
 
 def why_not_on(mover: Mover, feedback: Feedback) -> str:
-    """What to say of a mover whose route has ended before its end."""
+    """Returns the sentence that says why the route of a mover ended before its last place."""
     if mover.state.value != "Enabled":
         return f"mover {mover.name} is {mover.state.value} on its way"
     return f"mover {mover.name} does not go its way any more: {feedback.sentence or 'it was halted'}"
 
 
 def parts_of_route(first: int, visits: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Arguments of as many set_route as a route takes; the feedback of the first is that of the route."""
+    """Returns the arguments of the set_route commands of a route, VISITS_A_COMMAND visits in each; the feedback of the
+    first command is that of the route."""
     return [
         {"first": first + k, "continues": k > 0, "visits": list(visits[k : k + VISITS_A_COMMAND])}
         for k in range(0, len(visits), VISITS_A_COMMAND)
@@ -144,7 +147,8 @@ def parts_of_route(first: int, visits: Sequence[Mapping[str, Any]]) -> list[dict
 
 
 def answers_within(session: Session, in_process_s: float) -> float:
-    """s until a command takes effect that answers an observed state."""
+    """Returns the time [s] from an observed state to the effect of a command sent in response: ANSWER_S over LCM, else
+    `in_process_s`."""
     from takt.remote import RemoteSession
 
     return ANSWER_S if isinstance(session, RemoteSession) else in_process_s

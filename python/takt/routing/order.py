@@ -1,4 +1,4 @@
-"""The order of hops: by time, without detours, and what of it has to be kept."""
+"""The order of hops: sorted by time, without detours, and reduced to the constraints that have to be kept."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from takt.routing.streets import SAME, Streets
 
 @dataclass(frozen=True)
 class Step:
-    """One hop of a mover, after those of others: (mover, number of its hop)."""
+    """One hop of a mover, and the hops of other movers that have to end before: (mover, number of its hop)."""
 
     hop: Hop
     after: tuple[tuple[int, int], ...]
@@ -20,22 +20,22 @@ class Step:
 
 @dataclass(frozen=True)
 class Shift:
-    """A hop to or from the row of a street, and where that has to be for it."""
+    """A hop to or from the row of a street, and the position of the row that it requires."""
 
     hop: tuple[int, int]  # mover, and number of its hop
-    compact: bool  # nobody is at its target yet: as far on as possible
-    most: Mapping[int, float]  # by mover: mm, no further than this
+    compact: bool  # True: no mover takes its target yet, the row is as far ahead as possible
+    most: Mapping[int, float]  # by mover: upper bound of its position [mm]
 
 
 def in_time(task: Task, hops: Sequence[Hop], speed: float) -> tuple[list[Hop], float]:
-    """The hops in an order in which whoever can be there first goes first, as long as the rest stays possible; and the
-    sum of the times, in s, after which movers with a target are there, without ramps and queues."""
+    """Returns the hops sorted by the time at which each can begin, as far as the remaining ones stay possible; and the
+    sum of the arrival times [s] of the movers with a target at `speed` [mm/s], without ramps and queues."""
     streets = task.streets
     left = list(hops)
     a = task.start
-    ready = [0.0] * len(task.starts)  # s, when it is where it is next
+    ready = [0.0] * len(task.starts)  # by mover: time at which its last hop so far ends [s]
     place = list(task.starts)
-    pending: dict[int, float] = {}  # by mover: when its next hop can begin, as far as is known
+    pending: dict[int, float] = {}  # by mover: time at which its next hop can begin, as far as is known [s]
     placed: list[tuple[Hop, float, float]] = []
     order: list[Hop] = []
 
@@ -71,7 +71,7 @@ def in_time(task: Task, hops: Sequence[Hop], speed: float) -> tuple[list[Hop], f
 
 
 def _over(streets: Streets, hop: Hop, earlier: tuple[Hop, float, float], speed: float) -> float:
-    """When an earlier hop lets this one begin."""
+    """Returns the time [s] from which an earlier hop allows this one to begin; 0 if they do not conflict."""
     before, start, end = earlier
     if before.mover == hop.mover or not streets.meet(hop.sweep, before.sweep):
         return 0.0
@@ -79,7 +79,7 @@ def _over(streets: Streets, hop: Hop, earlier: tuple[Hop, float, float], speed: 
 
 
 def _follows(hop: Hop, before: Hop) -> bool:
-    """It goes behind the other from the same street on; there it cannot overtake."""
+    """True if both lead forward from the same street to another one: there the mover cannot overtake the other."""
     return (
         not hop.backward
         and not before.backward
@@ -90,7 +90,7 @@ def _follows(hop: Hop, before: Hop) -> bool:
 
 
 def _still_possible(task: Task, a: Arrangement, hops: Sequence[Hop], first: int) -> bool:
-    """From this arrangement on: the hops in this order, but for one that goes first."""
+    """True if from this arrangement the hops are possible in this order, with hop number `first` moved to the front."""
     usual: Arrangement | None = a
     other = task.after(hops[first], a)
     for n, hop in enumerate(hops):
@@ -109,8 +109,8 @@ def _still_possible(task: Task, a: Arrangement, hops: Sequence[Hop], first: int)
 
 
 def shorter(task: Task, hops: Sequence[Hop]) -> list[Hop]:
-    """Without hops that lead round to where their mover was, or to a place that it only leaves again, as far as the
-    rest can do without."""
+    """Returns the hops without rounds that lead a mover back to where it was, and without stops in a zone before it
+    enters a row, as far as the remaining hops allow."""
     best = list(hops)
     for i in sorted({hop.mover for hop in hops}):
         while True:
@@ -130,7 +130,7 @@ def _leads_there(task: Task, hops: Sequence[Hop]) -> bool:
 
 def _shortcuts(hops: Sequence[Hop], mover: int) -> Iterator[list[Hop]]:
     own = [n for n, hop in enumerate(hops) if hop.mover == mover]
-    # Round: from where it was straight on to where it went from there the next time.
+    # A round: from the street where it begins directly to the hop by which the mover leaves that street again.
     for size in range(len(own) - 1, 0, -1):
         for first, after in zip(own, own[size:], strict=False):
             before, then = hops[first], hops[after]
@@ -145,7 +145,7 @@ def _shortcuts(hops: Sequence[Hop], mover: int) -> Iterator[list[Hop]]:
                 dropped = own[own.index(first) : own.index(after) + 1]
                 yield _in_place(hops, joined, after, dropped)
                 yield _in_place(hops, joined, first, dropped)
-    # Out of a row's way, and into the row.
+    # A stop in the zone before a row, and the hop from there into the row.
     for first, second in itertools.pairwise(own):
         one, two = hops[first], hops[second]
         if not (one.to_row or one.backward or two.backward) and two.to_row and one.street == two.street:
@@ -158,12 +158,12 @@ def _in_place(hops: Sequence[Hop], new: Hop, at: int, dropped: Sequence[int]) ->
     return [new if n == at else hop for n, hop in enumerate(hops) if n == at or n not in dropped]
 
 
-# --- what has to wait for what ---
+# --- which hop waits for which ---
 
 
 def steps_of(task: Task, hops: Sequence[Hop]) -> tuple[tuple[Step, ...], ...]:
     steps: list[list[Step]] = [[] for _ in task.starts]
-    # Hops of one kind differ by their movers alone; of each mover the last one of a kind counts.
+    # Hops of one kind differ only in their movers; for each mover only the last hop of a kind counts.
     last: dict[Hop, dict[int, int]] = {}
     waits: dict[tuple[Hop, Hop], bool] = {}
     for hop in hops:
@@ -183,7 +183,7 @@ def steps_of(task: Task, hops: Sequence[Hop]) -> tuple[tuple[Step, ...], ...]:
 
 
 def _waits_for(streets: Streets, hop: Hop, before: Hop) -> bool:
-    # Into a row that has to make room at its front comes nobody before that.
+    # No mover enters a row that has yet to make room at its front.
     if before.comes_back(streets[hop.street]):
         return True
     return streets.meet(hop.sweep, before.sweep) and not _follows(hop, before)
@@ -210,8 +210,9 @@ def shifts_of(task: Task, hops: Sequence[Hop]) -> dict[int, tuple[Shift, ...]]:
 
 
 def ends_of(task: Task, hops: Sequence[Hop], shifted: Collection[int]) -> dict[int, float]:
-    """Where those that move come to stand in the end: at their targets; others no further than they have to. All
-    in rows that are shifted on the way do move."""
+    """Returns the final position [mm] of each mover that moves: its target; without one the foremost free position of
+    its row after a hop, else a displacement no larger than necessary. All movers of rows that are shifted meanwhile
+    (`shifted`: their streets) count as moving."""
     a: Arrangement | None = task.start
     for hop in hops:
         assert a is not None

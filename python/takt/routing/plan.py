@@ -1,8 +1,8 @@
-"""Plans ways and the order of passing for many movers at once: all get to their targets, and none waits for ever.
+"""Plans routes and the order of passing for many movers at once: all reach their targets, and none waits for ever.
 
-What a plan is: for each mover its hops from row to row (arrangement.py), and for each hop those of others that have to
-be over before. Whoever keeps to that order gets there, however long each hop takes: of those that are left the one that
-comes first in the order they were found in can always be done.
+A plan consists of the hops of each mover from row to row (arrangement.py), and for each hop the hops of other movers
+that have to end before it. Movers that keep to that order reach their targets, however long each hop takes: of the
+remaining hops, the first one in the order in which they were found is always possible.
 """
 
 from __future__ import annotations
@@ -23,33 +23,33 @@ from takt.routing.surface import may_move_of
 if TYPE_CHECKING:
     from takt.session import Session
 
-EFFORT = 20_000  # arrangements looked at before a plan is given up
-ENOUGH = 20_000  # for one mover, where there is a plan by rules already; for more, as much less each ...
-LEAST_EFFORT = 500  # ... but for all together this
-WEIGHTS = (3.0, 1.5, 1.0)  # of what is left to go, in searches for orders with shorter ways ...
-BETTER = 30_000  # ... in which so many arrangements are looked at for one mover; for more, as much less each
-MOST_REORDERED = 250  # hops in a plan that is looked through for a better order; the time grows with their square
+EFFORT = 20_000  # arrangements tried before a plan is given up
+ENOUGH = 20_000  # arrangements tried if there is a plan by rules already, divided by the number of movers ...
+LEAST_EFFORT = 500  # ... but at least this many
+WEIGHTS = (3.0, 1.5, 1.0)  # of the distance left, in searches for orders with shorter routes ...
+BETTER = 30_000  # ... in which this many arrangements are tried, divided by the number of movers
+MOST_REORDERED = 250  # hops of a plan that is searched for a better order; the time grows with their square
 DYNAMICS = ("velocity", "acceleration", "deceleration", "jerk")
 STANDS = 1e-3  # mm/s
-Target = tuple[str, float]  # a track, and mm along it
+Target = tuple[str, float]  # a track, and a position along it [mm]
 
 
 @dataclass(frozen=True)
 class RoutePlan:
-    """Ways for movers, and who passes before whom. `str(plan)` says it in words."""
+    """Routes of movers on tracks, and their order of passing. `str(plan)` describes the plan in words."""
 
     names: tuple[str, ...]  # of the movers on tracks
     targets: Mapping[str, Target]
     task: Task
     steps: tuple[tuple[Step, ...], ...]  # by mover
     shifts: Mapping[int, tuple[Shift, ...]]  # by street, in the order of the plan
-    ends: Mapping[int, float]  # by mover that moves: mm along its last street; of a closed loop turns are counted in
-    tried: int = 0  # arrangements that were looked at
-    gap: float | None = None  # as asked for
+    ends: Mapping[int, float]  # by mover that moves: final position [mm along its last street]; on a loop with turns
+    tried: int = 0  # arrangements that were tried
+    gap: float | None = None  # as requested [mm]
     dynamics: Mapping[str, float] = field(default_factory=dict)
 
     def way(self, mover: str) -> list[str]:
-        """The tracks that a mover goes along, from where it is."""
+        """Returns the names of the tracks along which a mover moves, from its present one on."""
         i = self.names.index(mover)
         streets = [self.task.starts[i].street]
         for step in self.steps[i]:
@@ -79,15 +79,16 @@ def plan_routes(
     effort: int = EFFORT,
     **dynamics: float,
 ) -> RoutePlan:
-    """Ways and an order of passing, such that all movers with a target get there; nothing is moved.
+    """Returns routes and an order of passing with which all movers with a target reach it; nothing is moved.
 
-    targets: by mover, track and mm along it.
-    may_move: movers without a target that may be moved out of the way, or all of them (True).
-    gap: mm from centre to centre along the way, instead of the movers' own.
-    effort: arrangements of movers that are looked at before it is given up.
-    dynamics: velocity, acceleration, deceleration, jerk of all moves.
+    targets: by mover, the track and the position along it [mm].
+    may_move: movers without a target that may be moved out of the way; True: all of them, False: none.
+    gap: distance between the centres of movers along the track [mm]; None: the largest of the movers' own gaps, or
+        more where movers of their sizes would not clear each other.
+    effort: arrangements of movers that are tried before the search is given up.
+    dynamics: velocity, acceleration, deceleration, jerk of all moves, each above 0.
 
-    Raises RoutingError, with the reason, if there is no plan.
+    Raises RoutingError, with the reason, if no plan is found, TypeError if `dynamics` has another key.
     """
     for key, value in dynamics.items():
         if key not in DYNAMICS:
@@ -134,7 +135,7 @@ def plan_routes(
     ends = {i: s for loop in _loops(task) for i, s in go_round(loop, streets, names).items()}
     _check_ways(task, names)
     rules = by_rules(task)
-    # With an order at hand a shorter one is looked for only a little.
+    # If the rules give an order, the search for a shorter one is limited.
     found = search(task, effort if rules is None else min(effort, max(LEAST_EFFORT, ENOUGH // len(names))))
     hops = found.hops
     if hops is None:
@@ -156,8 +157,8 @@ def plan_routes(
 
 
 def _best(task: Task, hops: tuple[Hop, ...], pace: float, effort: int) -> tuple[tuple[Hop, ...], int]:
-    """Of this order of hops and others with shorter ways the one with the least sum of times; and how many arrangements
-    were looked at for them."""
+    """Returns the order with the least sum of arrival times, of this one and others with shorter routes; and the number
+    of arrangements that were tried for them."""
     if len(hops) > MOST_REORDERED:
         return hops, 0
     best, least = in_time(task, shorter(task, hops), pace)
@@ -186,7 +187,7 @@ def _point(place: Place) -> Sweep:
     return Sweep((place.street,), place.s, place.s)
 
 
-# --- what cannot be, whatever the order ---
+# --- targets that no order of passing can reach ---
 
 
 def _check_targets(task: Task, names: Sequence[str]) -> None:
@@ -234,7 +235,7 @@ def _check_ways(task: Task, names: Sequence[str]) -> None:
 
 
 def _frees(task: Task, j: int, here: int, there: int) -> bool:
-    """There would be a way if this one could be moved."""
+    """True if there would be a route if this mover could be moved."""
     without = Task(task.streets, task.starts, task.targets, task.fixed - {j})
     return without.ways[there][0][here] < math.inf
 

@@ -1,7 +1,7 @@
-"""The free surface as a raster of places: which are there, and which hold something that stands.
+"""The free surface as a raster of places (squares): which of them stators cover, and which of them movers cover.
 
-The surface is what the parts say where there are some, all in one coordinate system; else an environment. With parts
-the raster reaches over all that they may ever cover there, so that a place keeps its number while they come and go.
+If the machine has parts, their stators are the surface, all in one coordinate system; else those of an environment.
+With parts the raster extends over all their positions there, so that a place keeps its number while parts move.
 """
 
 from __future__ import annotations
@@ -18,33 +18,34 @@ if TYPE_CHECKING:
     from takt.part import Part
     from takt.session import Session
 
-STATOR = 240.0  # mm, side
-ROOM = 2.0  # mm between movers in neighbouring places, unless a pitch is given
-CLEARANCE = 0.01  # mm that a mover has to be smaller than a place
-APART = 1.0  # mm between movers where one is smaller than its place by more, at least
-NEAR = 0.05  # mm that a mover may be off the middle of a place
-MOST_PLACES = 128  # each way
+STATOR = 240.0  # [mm] side of a stator
+ROOM = 2.0  # [mm] between movers in neighbouring places, unless a pitch is given
+CLEARANCE = 0.01  # [mm] least difference of the sizes of place and mover
+APART = 1.0  # [mm] least distance between movers, where the pitch allows it
+NEAR = 0.05  # [mm] admissible deviation of a mover from the centre of a place
+MOST_PLACES = 128  # in each direction
 Point = tuple[float, float]
 
 
 @dataclass(frozen=True)
 class Raster:
-    """Places in rows and columns. Number of a place: row by row, from the lower left one on."""
+    """Places in rows and columns, numbered row by row from the lower left one."""
 
     origin: Point  # mm, lower left corner of the first place
     pitch: float  # mm
     width: int
     height: int
-    free: tuple[bool, ...]  # by place: stators cover it
-    reference: str = ""  # name of the coordinate system, where there are parts
-    coordinate_system: int = 0  # its number
+    free: tuple[bool, ...]  # by place: True if stators cover it
+    reference: str = ""  # name of the coordinate system; empty: the machine has no parts
+    coordinate_system: int = 0  # its number; 0: the machine has no parts
 
     def middle(self, place: int) -> Point:
         x, y = place % self.width, place // self.width
         return self.origin[0] + (x + 0.5) * self.pitch, self.origin[1] + (y + 0.5) * self.pitch
 
     def place_at(self, point: Point, what: str, mover: str = "") -> int:
-        """The place with this middle. `what`: the subject of the sentence that says that there is none."""
+        """Returns the place with this centre. Raises RoutingError, with `what` as the subject of its sentence, if
+        stators do not cover the place or the point is more than NEAR off its centre."""
         x, y = (math.floor((value - low) / self.pitch) for value, low in zip(point, self.origin, strict=True))
         inside = 0 <= x < self.width and 0 <= y < self.height
         place = y * self.width + x
@@ -61,7 +62,7 @@ class Raster:
         return place
 
     def covered_by(self, mover: Mover) -> list[int]:
-        """Places that a mover reaches into."""
+        """Returns the places that a mover covers in part; none if it is in another coordinate system."""
         if self.coordinate_system and mover.coordinate_system != self.coordinate_system:
             return []
         ranges = []
@@ -75,7 +76,7 @@ class Raster:
 
 
 def extent_of(mover: Mover) -> Point:
-    """Sides of the rectangle along X and Y around a mover, as it is turned, mm."""
+    """Returns the sides [mm] of the bounding rectangle of a mover along X and Y, at its present orientation."""
     angle = math.radians(mover.c)
     sine, cosine = abs(math.sin(angle)), abs(math.cos(angle))
     width, height = float(mover.parameters["width"]), float(mover.parameters["height"])
@@ -85,7 +86,8 @@ def extent_of(mover: Mover) -> Point:
 def make_raster(
     session: Session, movers: Sequence[Mover], environment: str | None, pitch: float | None, origin: Point | None
 ) -> Raster:
-    """The raster on the stators of an environment, or of the parts where these movers are, for movers as large."""
+    """Returns the raster for movers of these sizes on the stators of an environment, or of the parts in the coordinate
+    system of these movers. Raises RoutingError if the surface, the pitch [mm] or the origin [mm] does not allow one."""
     number = _coordinate_system(session, movers)
     if number:
         if environment is not None:
@@ -146,7 +148,7 @@ def _stators(session: Session, environment: str | None) -> list[Point]:
 
 
 def _coordinate_system(session: Session, movers: Sequence[Mover]) -> int:
-    """Number of that of all these movers; 0: there are no parts."""
+    """Returns the number of the coordinate system of all these movers; 0 if the machine has no parts."""
     if not session.parts:
         return 0
     for mover in movers[1:]:
@@ -158,7 +160,7 @@ def _coordinate_system(session: Session, movers: Sequence[Mover]) -> int:
 
 
 def _stators_of_parts(session: Session, number: int) -> tuple[list[Point], list[Point]]:
-    """Lower left corners of all stators that may be in this coordinate system, and of those that are there now."""
+    """Returns the lower left corners of all stators that may be in this coordinate system, and of those there now."""
     name = session.machine["coordinate_systems"][number - 1]["name"]
     ever: set[Point] = set()
     now: set[Point] = set()
@@ -178,13 +180,13 @@ def _stators_of_parts(session: Session, number: int) -> tuple[list[Point], list[
 
 
 def is_there(part: Part) -> bool:
-    """Movers can be sent onto it."""
+    """True if movers can be sent onto this part: it is enabled, or being enabled, and at rest at a position."""
     going = part.commanded_index != part.position_index
     return part.position_index > 0 and not going and part.state.value in ("Enabled", "Enabling")
 
 
 def _is_covered(middle: Point, pitch: float, by_column: dict[int, list[Point]]) -> bool:
-    """Stators cover the whole place."""
+    """True if stators cover the whole place."""
     left, low = middle[0] - pitch / 2, middle[1] - pitch / 2
     area = 0.0
     for column in range(math.floor(left / STATOR) - 1, math.floor((left + pitch) / STATOR) + 1):

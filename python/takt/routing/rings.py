@@ -1,16 +1,16 @@
-"""An order of hops for many movers on a network in which every street leads to every other one: found by rules, not by
-a search, so it takes no longer where there are many movers.
+"""An order of hops for many movers on a network in which every street leads to every other one. It is found by rules
+instead of a search, so the effort stays small for many movers.
 
-Ours. Streets with room are queues: movers enter at the back and leave at the front. The network is taken apart into a
-ring and ears (an ear is a chain of streets that leaves the rest somewhere and comes back to it). One ear after the
-other gets the movers whose targets are on it, the one furthest on first, and is closed; what is left is always strongly
-connected. With the last ear the movers on the ring are sorted: where the ear leaves the ring a mover takes one of two
-queues, where it comes back the queues are merged, so that a lap brings the order nearer to that of the targets. Then
-the last ear gets its movers, and the others stop at their targets in a last lap.
+Ours. Streets with room are queues: movers enter at the back and leave at the front. The network is decomposed into a
+ring and ears (an ear is a chain of streets that branches off the rest and joins it again). One ear after the other is
+filled with the movers whose targets are on it, the foremost first, and is closed; the remaining network is always
+strongly connected. With the last ear the movers on the ring are sorted: where the ear branches off, a mover takes one
+of two queues, where it joins, the queues are merged, so that a lap brings the order nearer to that of the targets. Then
+the last ear is filled, and the other movers stop at their targets in a last lap.
 
-It needs room for one mover more than there are. It holds because of the room: in a strongly connected network some
-street with room is reached from every street, and the movers at the fronts of the streets on the way there can move up
-by one street each.
+Requires room for one mover more than there are. The invariant: in a strongly connected network some street with room
+is reachable from every street, and the movers at the fronts of the streets on the path to it can move up by one street
+each.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from takt.routing.streets import MARGIN, Street, Sweep
 
 
 def by_rules(task: Task) -> tuple[Hop, ...] | None:
-    """None: the network, or what is asked for, is not as the rules need it."""
+    """Returns an order of hops; None if the network or the task does not meet the requirements of the rules."""
     try:
         return Rules(task).hops()
     except GivenUpError:
@@ -51,10 +51,11 @@ class Rules:
         self.aims = self._rows_of_targets()
         self.street_of = {i: k for k, row in self.aims.items() for i in row}
         self.found: list[Hop] = []
-        self.closed: set[int] = set()  # streets that have their movers
+        self.closed: set[int] = set()  # streets that are filled with their movers
 
     def _leave_out_the_rest(self) -> None:
-        """Only streets count from which movers get to all others that count, and back. All movers have to be there."""
+        """Keeps only the streets that are strongly connected to the one of the first mover. All movers have to be on
+        them."""
         first = next((k for k, row in self.rows.items() if row), None)
         if first is None:
             raise GivenUpError
@@ -72,8 +73,8 @@ class Rules:
         return int((street.last - street.first + MARGIN) / self.task.streets.gap) + 1
 
     def _rows_of_targets(self) -> dict[int, list[int]]:
-        """By street, the one furthest on first. A mover without a target stays on its street if there is room beside
-        those that have one, else it goes where there is."""
+        """Returns by street the movers that end there, the foremost first. A mover without a target stays on its street
+        if there is room beside the movers that have one, else it is assigned to a street with room."""
         task = self.task
         aims: dict[int, list[int]] = {k: [] for k in self.rows}
         for i, aim in task.targets.items():
@@ -112,10 +113,10 @@ class Rules:
             raise GivenUpError
         return tuple(self.found)
 
-    # --- what the network is like ---
+    # --- structure of the network ---
 
     def _is_one(self, streets: set[int]) -> bool:
-        """From each of them a way leads to each other one."""
+        """True if these streets are strongly connected."""
         first = next(iter(streets))
         ahead = {k: [n for n in self.ways[k] if n in streets] for k in streets}
         back: dict[int, list[int]] = {k: [] for k in streets}
@@ -125,7 +126,7 @@ class Rules:
         return all(_reached(first, links) == streets for links in (ahead, back))
 
     def _ear_of(self, streets: set[int]) -> Ear | None:
-        """A chain without which the rest is still one; the one with the least room first."""
+        """Returns the chain with the least room without which the rest is still strongly connected; None if none is."""
         ahead = {k: [n for n in self.ways[k] if n in streets] for k in streets}
         back: dict[int, list[int]] = {k: [] for k in streets}
         for k, behind in ahead.items():
@@ -168,7 +169,8 @@ class Rules:
         self.found.append(Hop(mover, sweep, False, True))
 
     def _make_room(self, street: int, allowed: set[int]) -> None:
-        """In this street: the movers at the fronts of the streets on the shortest way to one with room move up."""
+        """Makes room in a street: the movers at the fronts of the streets on the shortest path to one with room move
+        up."""
         before: dict[int, int] = {street: -1}
         waiting = deque([street])
         while waiting:
@@ -187,10 +189,10 @@ class Rules:
         raise GivenUpError
 
     def _fill(self, ear: Ear) -> None:
-        """The movers with targets on the ear come into it, the one furthest on first; then it is closed."""
+        """Brings the movers with targets on the ear into it, the foremost first; then closes it."""
         others = set(self.rows) - set(ear.streets) - self.closed
         wanted = [i for k in reversed(ear.streets) for i in self.aims[k]]
-        # Whoever is in it leaves, but for those behind whom, and before whom, all is as it is to be.
+        # The movers on the ear leave it until those that remain are the first ones of the wanted order.
         while (line := [i for k in reversed(ear.streets) for i in self.rows[k]]) != wanted[: len(line)]:
             self._move_up(next(k for k in reversed(ear.streets) if self.rows[k]), ear, others)
         for i in wanted:
@@ -198,7 +200,7 @@ class Rules:
         self.closed |= set(ear.streets)
 
     def _move_up(self, k: int, ear: Ear, others: set[int]) -> None:
-        """The front of a street of the ear goes on, out of it at the last one."""
+        """Moves the foremost mover of a street of the ear to the next street; from the last one out of the ear."""
         at = ear.streets.index(k)
         there = ear.streets[at + 1] if at + 1 < len(ear.streets) else ear.joins
         if not self.has_room(there):
@@ -231,7 +233,7 @@ class Rules:
         raise GivenUpError
 
     def _pass_on(self, here: int, mover: int, ear: Ear, others: set[int]) -> None:
-        """The front of a street goes on, where there is room, rather not where this mover has to go."""
+        """Moves the foremost mover of a street on to one with room, preferably not to the one that `mover` needs."""
         way = self._next_to(here, ear.leaves, others) if here != ear.leaves else -1
         ahead = [n for n in self.ways[here] if n in others]
         if not ahead:
@@ -244,7 +246,7 @@ class Rules:
         self.hop(here, there)
 
     def _next_to(self, here: int, goal: int, allowed: set[int]) -> int:
-        """The next street on the way there."""
+        """Returns the next street on the shortest path from `here` to `goal`."""
         after: dict[int, int] = {}
         waiting = deque([goal])
         seen = {goal}

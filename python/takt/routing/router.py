@@ -1,14 +1,14 @@
-"""Many movers on the free surface under a stream of orders: routes are planned anew from where movers are on their way.
+"""Many movers on the free surface under a stream of orders: routes are replanned while movers are under way.
 
 A new plan begins where each mover can come to rest: the visits up to there, which are granted already, come before all
-others at their places. They end by themselves, and what follows is a plan for movers that stand: so the order of visits
-is still one in which nobody waits for ever. The engine carries routes out; if movers are further on than was expected
-when new ones come to it, it refuses them, holds all of them, and they are planned anew from there.
+others at their places. They end by themselves, and the rest is a plan for movers at rest: so the order of visits is
+still free of deadlocks. The engine executes routes; if movers are farther along than expected when new routes arrive,
+it rejects them, all movers are held, and routes are planned again from there.
 
-A mover that fails, or is halted, stands in the way. All others go as far as they can come to rest out of its way; those
-behind it that cannot, because it covers a place that they are bound for, go back to the place that they have passed.
-No place that they go back to is granted to others: whoever was bound for it behind them goes back, too. Then routes
-are planned round what stands. The same when a part leaves with places of routes.
+A mover that fails, or is halted, is an obstacle. All others move on to where they can come to rest clear of it; those
+behind it that cannot, because it covers a place granted to them, return to the last place that they have reached. A
+place to which a mover returns must not be granted to another one: movers bound for it behind that mover return, too.
+Then routes are planned round the obstacles. The same applies when a part leaves with places of routes.
 """
 
 from __future__ import annotations
@@ -43,26 +43,26 @@ if TYPE_CHECKING:
     from takt.mover import Mover
     from takt.session import Session
 
-CYCLES = 8  # until routes are carried out, in process
-MOST_REFUSALS = 5  # of routes, one after the other
+CYCLES = 8  # cycles until the engine executes new routes, in process
+MOST_REFUSALS = 5  # of routes, in succession
 
 
 @dataclass
 class _Goal:
-    """Where a mover is to go. Movers of one pool may exchange their targets."""
+    """The target of a mover. Movers of one pool may exchange their targets."""
 
     order: SurfaceOrder
     pool: object
-    target: Point | None  # none yet: any of those of its pool that are left
+    target: Point | None  # None: not assigned yet, any remaining target of its pool
 
 
 @dataclass
 class _Started:
-    """Routes that were given to the engine, which may refuse them."""
+    """Routes that were sent to the engine, which may reject them."""
 
     start: Feedback
     told: list[Feedback]
-    before: dict[str, OnWay]  # movers on their way until then
+    before: dict[str, OnWay]  # movers under way until then
 
     @property
     def busy(self) -> bool:
@@ -78,30 +78,31 @@ class _Started:
 
 
 class SurfaceOrder:
-    """Targets that were given at once: `wait()` until movers are there."""
+    """Targets that were given together; `wait()` lets engine time pass until the movers have arrived."""
 
     def __init__(self, router: SurfaceRouter, movers: Iterable[str], started_s: float, may_move: Iterable[str]) -> None:
         self._router = router
         self.movers = tuple(movers)
         self.may_move = tuple(may_move)  # movers without a target that may be moved out of the way
         self.started_s = started_s
-        self.targets: dict[str, Point] = {}  # by mover, mm; while it is on its way it may exchange its own
-        self.arrived_s: dict[str, float] = {}  # by mover: s from the order on
-        self.failed: dict[str, str] = {}  # by mover: why it does not get there
+        self.targets: dict[str, Point] = {}  # by mover [mm]; movers of one pool may exchange theirs until they arrive
+        self.arrived_s: dict[str, float] = {}  # by mover: time of arrival, from the order on [s]
+        self.failed: dict[str, str] = {}  # by mover: the reason why it does not reach its target
 
     @property
     def done(self) -> bool:
-        """All are there, or do not get there."""
+        """True if every mover has arrived or failed."""
         return all(name in self.arrived_s or name in self.failed for name in self.movers)
 
     @property
     def waits(self) -> dict[str, str]:
-        """By mover: what it waits for, if it stands on its way."""
+        """By mover: the reason why it waits, if it is at rest before its target."""
         reasons = self._router.waits
         return {name: reasons[name] for name in self.movers if name in reasons}
 
     def wait(self, timeout: float = DEFAULT_TIMEOUT_S) -> SurfaceOrder:
-        """Lets engine time pass until all are there. RoutingError: some do not get there."""
+        """Lets engine time pass until all movers have arrived or failed, and returns the order. Raises TimeoutError,
+        with the movers that are late, after `timeout` [s], and RoutingError, with the reasons, if movers failed."""
         session = self._router.session
         try:
             session.wait(lambda: self.done, timeout)
@@ -120,9 +121,10 @@ class SurfaceOrder:
 
 
 class SurfaceRouter:
-    """Plans routes for orders as they come, and carries them out while engine time passes.
+    """Plans routes for orders as they arrive, and executes them while engine time passes.
 
-    options: environment, pitch, origin, effort, seed, velocity, acceleration, jerk, as those of takt.plan_surface.
+    options: environment, pitch, origin, effort, seed, velocity, acceleration, jerk, as in takt.plan_surface; `effort`
+        is 3,000 unless given.
     """
 
     def __init__(
@@ -143,18 +145,18 @@ class SurfaceRouter:
         if seed != 1:
             self.given["seed"] = seed
         self.options = given if effort is None else Options(environment, pitch, origin, effort, seed, dynamics)
-        self.plans = 0  # that were made
+        self.plans = 0  # number of plans so far
         self._planned: SurfacePlan | None = None  # the last one
-        self.waited_s: dict[str, dict[str, float]] = defaultdict(lambda: defaultdict(float))  # mover, for whom
+        self.waited_s: dict[str, dict[str, float]] = defaultdict(lambda: defaultdict(float))  # mover, its blocker: [s]
         self._on_way: dict[str, OnWay] = {}
         self._goals: dict[str, _Goal] = {}
-        self._back: dict[str, OnWay] = {}  # those that come to rest out of the way; none is granted more meanwhile
-        self._failed: set[str] = set()  # of these, those that stay where they come to rest
+        self._back: dict[str, OnWay] = {}  # movers that return to a place; meanwhile nothing more is granted
+        self._failed: set[str] = set()  # movers of `_back` that stay where they come to rest
         self._raster: Raster | None = None
         self._dynamics: dict[str, Any] = {}
         self._pending: list[_Started] = []  # routes that the engine has not answered yet
         self._held = False  # routes are being held
-        self._too_late = False  # routes came too late: they are planned anew
+        self._too_late = False  # routes arrived too late: they are planned again
         self._refusals = 0  # in a row
         self._surface: tuple[object, ...] = ()
         self._seen_s = session.now
@@ -166,12 +168,13 @@ class SurfaceRouter:
     def route(
         self, targets: Targets, *, movers: Iterable[str] | None = None, may_move: bool | Iterable[str] = False
     ) -> SurfaceOrder:
-        """Sends movers to their targets, those that are on their way from where they are; all others that are on their
-        way still get to theirs. Engine time has to pass for it, as in `wait()` of the order.
+        """Sends movers to their targets and returns the order. Those of them under way are redirected; all others under
+        way keep their targets. Engine time has to pass, as in `wait()` of the order.
 
-        targets, movers, may_move: as those of takt.plan_surface.
+        targets, may_move: as in takt.plan_surface.
+        movers: as in takt.plan_surface; None: all that can move and have no target yet.
 
-        Raises RoutingError, with the reason, if there is no plan; then all goes on as before.
+        Raises RoutingError, with the reason, if there is no plan; then all movements continue unchanged.
         """
         if movers is None and not isinstance(targets, Mapping):
             movers = [name for name in free_of(self.session, True) if name not in self._goals]
@@ -211,17 +214,17 @@ class SurfaceRouter:
     def route_any(
         self, points: Sequence[Point], *, movers: Iterable[str] | None = None, may_move: bool | Iterable[str] = False
     ) -> SurfaceOrder:
-        """Sends any of these movers to any of these places."""
+        """Sends any of these movers to any of these points (X and Y [mm]), one each; otherwise as `route`."""
         return self.route(list(points), movers=movers, may_move=may_move)
 
     @property
     def busy(self) -> bool:
-        """Movers are on their way."""
+        """True while movers are under way or have targets to reach."""
         return bool(self._on_way or self._back or self._goals)
 
     @property
     def waits(self) -> dict[str, str]:
-        """By mover: what it waits for, if it stands on its way."""
+        """By mover: the reason why it waits, if it is at rest before its target."""
         reasons = {}
         names = list(self.session.movers)
         for name, one in self._on_way.items():
@@ -237,10 +240,10 @@ class SurfaceRouter:
                 reasons[name] = f"waits for the place ({x:.6g}, {y:.6g}), which {names[mover.blocker - 1]} has before"
         return reasons
 
-    # --- every cycle ---
+    # --- in every cycle ---
 
     def scan(self) -> None:
-        """Sees who is there, who waits for whom, and who fails."""
+        """Updates arrivals, waiting times and failures, and plans routes again where necessary."""
         passed, self._seen_s = self.session.now - self._seen_s, self.session.now
         busy = self._on_way or self._back or self._pending or self._too_late
         if not busy or not self._are_started():
@@ -264,7 +267,8 @@ class SurfaceRouter:
         self._look_whether_there()
 
     def _are_started(self) -> bool:
-        """The engine has answered. If it has refused the last routes, all are held, and planned anew."""
+        """Returns True if the engine has answered and its last answer needs no new plan. If it has rejected the last
+        routes, all movers are held, and the next scan plans again."""
         if any(one.busy for one in self._pending):
             return False
         if not self._pending:
@@ -285,7 +289,7 @@ class SurfaceRouter:
         if self._refusals > MOST_REFUSALS:
             self._refusals = 0
             self._give_up(last.refusal)
-            if not self._goals:  # all go on as they were told before
+            if not self._goals:  # all movers keep their previous routes
                 self._release()
                 return True
         self._hold(self._on_way)
@@ -293,7 +297,7 @@ class SurfaceRouter:
         return False
 
     def _give_up(self, refusal: Feedback) -> None:
-        """The engine takes no routes from here: orders fail, that of the mover which it names, or all."""
+        """The engine accepts no routes from here: the target of the mover that it names fails, or all targets do."""
         named = refusal.object
         names = [named.name] if named is not None and named.name in self._goals else list(self._goals)
         for name in names:
@@ -341,8 +345,8 @@ class SurfaceRouter:
         return tuple((is_there(part), part.position_index) for part in self.session.parts.values())
 
     def _commitments(self) -> dict[str, int]:
-        """By mover on its way, the visit that it goes to in any case: where it can come to rest, or further, so that
-        those behind it get to theirs."""
+        """Returns by mover under way the index of the place that it moves to in any case: where it can come to rest, or
+        farther, so that the movers behind it reach theirs."""
         if self._held:
             return {name: one.granted for name, one in self._on_way.items()}
         later_s = max(self._later_s, (len(self._on_way) / COMMANDS_A_CYCLE + 4) * self.session.period)
@@ -362,14 +366,15 @@ class SurfaceRouter:
         return found
 
     def _behind(self, one: OnWay, place: int) -> tuple[str, int] | None:
-        """The mover on its way that visits this place before, and the place on its own way."""
+        """Returns the mover under way that visits this place before `one`, and the index of the place on its own route;
+        None if the place is not visited before by another mover under way."""
         before = one.before[place]
         if before is None or before[0] == one.mover.name or before[0] not in self._on_way:
             return None
         return before[0], before[1] - self._on_way[before[0]].first
 
     def _standing(self, raster: Raster, starts: Iterable[str]) -> dict[int, str]:
-        """By place: the mover that stands there."""
+        """Returns by place the mover that covers it; movers in `starts` are left out."""
         moved = set(starts)
         return {
             place: mover.name
@@ -431,7 +436,7 @@ class SurfaceRouter:
         self._planned = plan
 
     def _from_now(self, name: str, old: OnWay | None, at: int, points: Sequence[Point]) -> OnWay:
-        """Its way up to the place where it is bound for already, and these from there."""
+        """Returns the route of a mover up to place `at`, to which it is committed, and then along these points."""
         mover = self.session.mover(name)
         if old is None:
             one = OnWay(mover, points, mover.route_visit)
@@ -444,7 +449,7 @@ class SurfaceRouter:
         return one
 
     def _tell(self, ways: dict[str, OnWay], dynamics: Mapping[str, float]) -> None:
-        """Has the engine carry these out, from where movers are bound for already."""
+        """Sends these routes to the engine, each from the place to which its mover is committed."""
         numbers = {name: number for number, name in enumerate(self.session.movers, 1)}
         told: list[Feedback] = []
         for name, one in ways.items():
@@ -465,7 +470,7 @@ class SurfaceRouter:
         self._on_way = ways
 
     def _take_targets(self) -> None:
-        """Who goes where, where movers may exchange their targets."""
+        """Takes the targets that the last plan assigned to movers of pools; a mover without one leaves its order."""
         taken: Mapping[str, Point] = {} if self._planned is None else self._planned.targets
         for name in list(self._goals):
             goal = self._goals[name]
@@ -489,7 +494,7 @@ class SurfaceRouter:
                 goal.order.movers = tuple(other for other in goal.order.movers if other != name)
 
     def _plan_round(self) -> None:
-        """Plans anew, since movers failed or the surface has changed; first movers get out of the way if they must."""
+        """Plans again after movers failed or the surface changed; movers that are in the way return to places first."""
         movers = [self.session.mover(name) for name in dict.fromkeys([*self._on_way, *self._goals])]
         if not movers:
             return
@@ -519,7 +524,7 @@ class SurfaceRouter:
             self._plan_what_can_be(raster)
 
     def _bring_into_places(self, raster: Raster) -> None:
-        """Movers with an order that do not stand in places, or cannot be moved by now."""
+        """Takes movers that have a target and are between places under way to one; fails those that cannot be moved."""
         for name in [name for name in self._goals if name not in self._on_way]:
             try:
                 check_can_move(self.session.mover(name))
@@ -528,7 +533,7 @@ class SurfaceRouter:
                 self._fail(name, str(error))
 
     def _plan_what_can_be(self, raster: Raster) -> None:
-        """Orders for which there is no plan any more fail, with the reason."""
+        """Plans for all targets. Those for which there is no plan any more fail, with the reason."""
         while True:
             try:
                 self._install(*self._plan(self._goals, raster))
@@ -550,7 +555,7 @@ class SurfaceRouter:
         return any(raster.free[place] and math.dist(raster.middle(place), here) <= NEAR for place in places)
 
     def _end_routes(self) -> None:
-        """All come to rest as soon as they can in places."""
+        """Ends all routes in the first places where the movers can come to rest."""
         dynamics = {key: value for key, value in self._dynamics.items() if key != "reference"}
         ends = self._commitments()
         ways = {
@@ -559,7 +564,7 @@ class SurfaceRouter:
         self._tell(ways, dynamics)
 
     def _check_targets(self, goals: Mapping[str, _Goal], raster: Raster) -> None:
-        """RoutingError: these cannot be."""
+        """Raises RoutingError if a target is not the centre of a place, or two movers have the same one."""
         known: dict[int, str] = {}
         for name, goal in goals.items():
             if goal.target is not None:
@@ -571,7 +576,8 @@ class SurfaceRouter:
     # --- out of the way ---
 
     def _astray(self, names: Iterable[str], raster: Raster) -> list[str]:
-        """Those that stand between places: they go to one first."""
+        """Returns those of these movers that rest between places, and takes them under way to the nearest free place
+        straight along X or Y. Raises RoutingError if a mover has none."""
         shut = self._standing(raster, [*names, *self._on_way])
         bound = {_place(raster, p) for one in self._on_way.values() for p in one.points[one.passed :]}
         found = {}
@@ -591,7 +597,7 @@ class SurfaceRouter:
                     bound.add(place)
                     break
             else:
-                raster.place_at(here, f"mover {name}", name)  # says what is wrong
+                raster.place_at(here, f"mover {name}", name)  # raises the error with the reason
                 raise RoutingError(f"mover {name} at ({mover.x:.6g}, {mover.y:.6g}) has no way to a place", name)
         if found:
             if not self._on_way:
@@ -600,8 +606,8 @@ class SurfaceRouter:
         return list(found)
 
     def _go_to_rest(self, caught: Iterable[str], raster: Raster | None) -> None:
-        """These, and whoever is bound for places behind them, come to rest and go back to the place they have passed;
-        all others go as far as they have to."""
+        """Halts these movers, and those committed to places behind them, so that they return to the last place reached;
+        all others are held where they can come to rest."""
         commitments = self._commitments()
         back = set(caught)
         again = True
@@ -662,7 +668,8 @@ class SurfaceRouter:
 def router_for(
     session: Session, targets: Targets, movers: Iterable[str] | None, options: Mapping[str, Any]
 ) -> SurfaceRouter:
-    """The router of the session where these movers are: with these options, if any are given."""
+    """Returns the router of the session for the coordinate system of these movers: the existing one, or a new one if
+    there is none or its options differ from those given. Raises RoutingError if that one is busy."""
     if isinstance(targets, Mapping):
         names = [name for key in targets for name in names_of_key(key)]
     else:
@@ -681,7 +688,7 @@ def router_for(
 
 
 def _last(visits: Sequence[Before], ways: Mapping[str, OnWay]) -> Before | None:
-    """The last of the visits of one place, each of which has the one before."""
+    """Returns the last one of the visits of a place, each of which refers to the one before; None if there are none."""
     earlier = {ways[name].before[number - ways[name].first] for name, number in visits}
     return next((visit for visit in visits if visit not in earlier), None)
 

@@ -1,4 +1,4 @@
-"""Sorting of movers on a ring of streets with one ear (rings.py), so that in a last lap each stops at its target."""
+"""Sorts movers on a ring of streets with one ear (rings.py), so that each can stop at its target in a last lap."""
 
 from __future__ import annotations
 
@@ -12,43 +12,43 @@ if TYPE_CHECKING:
 
 
 class GivenUpError(Exception):
-    """The rules do not lead there."""
+    """The rules do not lead to a solution."""
 
 
 class Ear(NamedTuple):
-    streets: tuple[int, ...]  # in the order of the way
-    leaves: int  # the street of the rest that leads into it
-    joins: int  # and the one that it leads into
+    streets: tuple[int, ...]  # in the direction of travel
+    leaves: int  # the street of the rest that leads into the ear
+    joins: int  # the street of the rest into which the ear leads
 
 
 class Sorting:
-    """Movers on a ring and one ear."""
+    """Sorting of the movers on a ring and one ear."""
 
     def __init__(self, rules: Rules, ring: list[int], ear: Ear) -> None:
         self.rules = rules
         self.rows = rules.rows
         self.ear = ear
-        # The ring from where the ear joins it to where it leaves, and the queue beside the ear.
+        # The ring from where the ear joins it to where it branches off, and the queue parallel to the ear.
         at = ring.index(ear.joins)
         turned = ring[at:] + ring[:at]
         leaves = turned.index(ear.leaves)
         self.main = turned[: leaves + 1]
         self.beside = turned[leaves + 1 :]
-        # As movers come to where the ear leaves, the first one first.
+        # In the order in which movers arrive where the ear branches off.
         aims = rules.aims
         order = [i for k in reversed(self.main) for i in aims[k]] + [i for k in reversed(self.beside) for i in aims[k]]
         self.on_ear = [i for k in reversed(ear.streets) for i in aims[k]]
         self.order = order + self.on_ear
         self.rank = {i: n for n, i in enumerate(self.order)}
         self.count = len(self.order)
-        self.last = self.count - 1  # the rank that joined last of those in order
+        self.last = self.count - 1  # rank of the ordered mover that joined last
         self.kept: set[int] = set()
 
     def run(self) -> None:
         if not self.order:
             return
         self._empty_ear()
-        for _ in range(self.count + 1):  # each puts one at least where it belongs
+        for _ in range(self.count + 1):  # each lap moves at least one mover to its place in the order
             if self._is_sorted():
                 break
             self._lap()
@@ -57,7 +57,7 @@ class Sorting:
         self._settle()
 
     def _empty_ear(self) -> None:
-        """As far as there is room on the ring."""
+        """Moves movers from the ear to the ring, as far as there is room."""
         ear, ring = list(self.ear.streets), [*self.main, *self.beside]
         while any(self.rows[k] for k in ear):
             self._close_up(self.main)
@@ -71,11 +71,11 @@ class Sorting:
         return [i for k in reversed(list(streets)) for i in self.rows[k]]
 
     def _ahead(self, i: int) -> int:
-        """So many come before it, seen from the one that joined last."""
+        """Returns the number of movers in the order between the one that joined last and this one."""
         return (self.rank[i] - self.last - 1) % self.count
 
     def _is_sorted(self) -> bool:
-        """Both queues merge into what is on the rest of the ring, in the order of the targets."""
+        """True if both queues can be merged with the rest of the ring in the order of the targets."""
         both = sorted(self._line(self.beside) + self._line(self.ear.streets), key=self._ahead)
         for line in (self._line(self.beside), self._line(self.ear.streets)):
             if [self._ahead(i) for i in line] != sorted(map(self._ahead, line)):
@@ -85,10 +85,11 @@ class Sorting:
         falls = sum(a > b for a, b in zip(ranks, [*ranks[1:], ranks[0]], strict=True))
         return falls <= 1
 
-    # --- one street further ---
+    # --- one street ahead ---
 
     def _close_up(self, streets: Sequence[int], stop: Mapping[int, int] | None = None) -> bool:
-        """Movers go on as far as there is room, within these streets. False: none did."""
+        """Moves movers ahead within these streets, as far as there is room; `stop`: by mover, the street on which it
+        stays. Returns False if none moved."""
         moved = False
         for n in range(len(streets) - 2, -1, -1):
             here, there = streets[n], streets[n + 1]
@@ -107,11 +108,11 @@ class Sorting:
         return [list(q) for q in (self.beside, list(self.ear.streets)) if q]
 
     def _lap(self) -> None:
-        """Once round. The longest sequence that is in order stays as it is; of the others as many as there is room for
-        wait in the ear, and come back where they belong."""
+        """Moves all movers round once. The longest sequence in order is kept; of the others as many as there is room
+        for wait in the ear, and rejoin where they belong."""
         main, beside = self._line(self.main), self._line(self.beside)
         self.kept = self._in_order(main + beside)
-        # As the ring stands the last ones of it have joined last.
+        # The rearmost movers on the ring are those that joined last.
         for i in beside + main:
             self._note(i)
         passed, laps = 0, len(main) + len(beside)
@@ -159,7 +160,7 @@ class Sorting:
         return next((i for i in line if i in self.kept), None)
 
     def _belongs_here(self, i: int) -> bool:
-        """Between the one in order that joined last and the next one."""
+        """True if the mover belongs between the ordered mover that joined last and the next one."""
         then = self._next_kept()
         return then is None or self._ahead(i) < self._ahead(then)
 
@@ -168,12 +169,12 @@ class Sorting:
         return not line or self._ahead(line[-1]) < self._ahead(i)
 
     def _in_order(self, line: Sequence[int]) -> set[int]:
-        """The longest part of a line in the order of the targets, which may begin anywhere in that."""
+        """Returns the longest subsequence of a line in the cyclic order of the targets."""
         best: list[int] = []
         for base in {self.rank[i] for i in line}:
             keys = [(self.rank[i] - base) % self.count for i in line]
             tails: list[int] = []  # keys, by length
-            ends: list[int] = []  # where in the line
+            ends: list[int] = []  # index in the line
             before = [-1] * len(line)
             for n, key in enumerate(keys):
                 at = bisect.bisect_left(tails, key)
@@ -187,10 +188,10 @@ class Sorting:
                     n = before[n]
         return set(best)
 
-    # --- in order: everyone to its target ---
+    # --- in order: each mover to its target ---
 
     def _settle(self) -> None:
-        """The ear gets its movers; the others stop where their targets are."""
+        """Fills the ear with its movers, and stops the others on the streets of their targets."""
         ring = [i for i in self.order if i not in set(self.on_ear)]
         first = ring[0] if ring else -1
         waiting = deque(self.on_ear)
@@ -208,7 +209,7 @@ class Sorting:
             queues = self._queues()
             for queue in queues:
                 moved |= self._close_up(queue, self._ear_stops(ear, stays, entered) if queue == ear else stop)
-            # Out of the queues, in order; who stays in the ear does not count.
+            # Out of the queues, in order; movers that stay in the ear do not count.
             heads = [q for q in queues if self.rows[q[-1]] and not (q == ear and self.rows[q[-1]][0] in entered)]
             ready = [q for q in heads if stop.get(self.rows[q[-1]][0]) != q[-1]]
             if ready and self.rules.has_room(self.main[0]):

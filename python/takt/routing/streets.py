@@ -1,10 +1,10 @@
-"""The tracks of a machine as a planner of ways sees them: where movers can rest out of everyone's way, how they get
-from one such place to the next, and which of these passages do not go together.
+"""The tracks of a machine as a route planner sees them: where movers can rest without blocking others, how they pass
+from one such stretch to the next, and which of these passages conflict.
 
-The engine keeps movers apart by their gap, along the way; around a node, where tracks meet, it looks at everyone who is
-nearer to it than its gap or the collision range of its track. Out of these zones movers on different tracks have
-nothing to do with one another. So a track has room for a row of movers between the zones at its ends, and whoever
-passes from one row to another has the zones between to itself.
+The engine keeps movers apart by their gap, along the track. Around a node, where tracks meet, it checks all movers that
+are nearer to the node than their gap or the collision range of their track. Outside these zones movers on different
+tracks do not affect one another. So a track has room for a row of movers between the zones at its ends, and a mover
+that passes from one row to another needs the zones between for itself.
 """
 
 from __future__ import annotations
@@ -25,13 +25,14 @@ if TYPE_CHECKING:
     from takt.mover import Mover
     from takt.session import Session
 
-MARGIN = 2e-3  # mm that rows stay away from zones; the engine lets movers wait half as far away
-SAME = 1e-6  # mm
-LONGEST = 32  # tracks in one way, as in the engine
+MARGIN = 2e-3  # [mm] distance of rows from zones; in the engine movers wait at half of it
+SAME = 1e-6  # [mm] positions closer than this are equal
+LONGEST = 32  # tracks in one route, as in the engine
 
 
 class RoutingError(TaktError):
-    """No plan of ways was found, or it could not be carried out. `mover`: the one to which that is due, if any."""
+    """No plan of routes was found, or it could not be executed. `mover`: name of the mover that caused it; empty if
+    none did."""
 
     def __init__(self, sentence: str, mover: str = "") -> None:
         super().__init__(sentence)
@@ -47,8 +48,8 @@ class Street:
     behind: tuple[int, ...]  # streets that start where it ends
     start_node: int  # -1: none
     end_node: int
-    first: float  # mm, where the row of movers that are in nobody's way begins
-    last: float  # and ends; before `first`: it has no room for one
+    first: float  # [mm] start of the stretch on which a row of movers blocks no others
+    last: float  # [mm] its end; less than `first`: there is no room for a row
 
     @property
     def has_room(self) -> bool:
@@ -59,7 +60,7 @@ class Street:
 
     @property
     def zone_ends(self) -> float:
-        """mm; before it is the zone of the node at its start. A mover that waits there is out of it."""
+        """End of the zone of the node at the start [mm]. A mover that waits there is outside the zone."""
         return self.first - 0.9 * MARGIN if self.start_node >= 0 else -SAME
 
     @property
@@ -69,7 +70,7 @@ class Street:
 
 @dataclass(frozen=True)
 class Sweep:
-    """A stretch of way: over these streets, from a place on the first one to a place on the last one."""
+    """A stretch over these streets, from a position on the first one to a position on the last one."""
 
     streets: tuple[int, ...]
     start: float  # mm
@@ -77,7 +78,7 @@ class Sweep:
 
 
 class Presence(NamedTuple):
-    """An interval within the zones of a node, along the route; the streets before and behind the node, -1: none."""
+    """An interval within the zones of a node, along the route, and the streets before and after the node (-1: none)."""
 
     node: int
     low: float  # mm, from the node
@@ -87,7 +88,7 @@ class Presence(NamedTuple):
 
 
 class Streets:
-    """All tracks by number, from 0, with a gap that all movers keep."""
+    """All tracks, numbered from 0, with a gap [mm] that all movers keep."""
 
     def __init__(self, tracks: Sequence[LaidTrack], gap: float) -> None:
         self.gap = gap
@@ -108,7 +109,7 @@ class Streets:
             )
             for i, t in enumerate(tracks)
         )
-        # By node, for streets that start and that end there: the largest lead between movers on two of them.
+        # By node, for the streets that start there and for those that end there: the largest lead between two movers.
         self._leads: tuple[dict[int, float], dict[int, float]] = (defaultdict(float), defaultdict(float))
         for i, t in enumerate(tracks):
             for leads, node, lead in zip(self._leads, (starts[i], ends[i]), t.leads, strict=True):
@@ -129,7 +130,7 @@ class Streets:
 
     @cached_property
     def passages(self) -> tuple[tuple[tuple[int, ...], ...], ...]:
-        """By street: the ways from its end to the next streets, those in between having no room to rest."""
+        """By street: the routes from its end to the next streets; streets in between have no room for a row."""
         return tuple(tuple(self._passages((street.index,))) for street in self.all)
 
     def _passages(self, way: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
@@ -146,8 +147,9 @@ class Streets:
         closed_off: Collection[int] = (),
         shut: Collection[tuple[int, int]] = (),
     ) -> tuple[list[float], list[int]]:
-        """By street: mm from its end to the start of the target, and the next street there. Infinite and -1: none leads
-        there. Not through streets that are closed off, nor from one to the next where that is shut."""
+        """Returns by street the least distance [mm] from its end to the start of the target street, and the next street
+        on that route; infinite and -1 if no route leads there. Routes neither pass through streets in `closed_off` nor
+        use the passages (from, to) in `shut`."""
         way, after = [math.inf] * len(self.all), [-1] * len(self.all)
         heap = [(0.0, k, target) for k in self.before[target]]
         while heap:
@@ -161,7 +163,8 @@ class Streets:
         return way, after
 
     def is_the_way(self, streets: Sequence[int]) -> bool:
-        """The engine goes this way by itself from each of these streets to the last one: no other is as short."""
+        """True if the engine takes this route by itself from each of these streets to the last one: no other route is
+        as short."""
         target = streets[-1]
         if target in streets[:-1] or len(streets) > LONGEST:
             return False
@@ -181,13 +184,13 @@ class Streets:
     def _open_ways(self) -> dict[int, list[float]]:
         return {}
 
-    # --- what goes together ---
+    # --- conflicts ---
 
     def length(self, sweep: Sweep) -> float:
         return sum(self[k].length for k in sweep.streets[:-1]) + sweep.end - sweep.start
 
     def meet(self, a: Sweep, b: Sweep) -> bool:
-        """Movers somewhere on both may come too near to each other."""
+        """True if two movers, each anywhere on one of the sweeps, may come too near to each other."""
         known = self._meetings.get((a, b))
         if known is None:
             known = self._meetings[a, b] = self._meetings[b, a] = self._meet(a, b)
@@ -220,7 +223,7 @@ class Streets:
             yield k, min(low, high), max(low, high)
 
     def _at_nodes(self, sweep: Sweep) -> tuple[Presence, ...]:
-        """Nodes, and from where to where it is within their zones; mm from the node along the way."""
+        """Returns the intervals of a sweep within the zones of nodes [mm from the node along the route]."""
         if sweep not in self._presences:
             self._presences[sweep] = tuple(self._find_nodes(sweep))
         return self._presences[sweep]
@@ -239,7 +242,7 @@ class Streets:
             if street.end_node >= 0 and high - at > before and low - at < behind:
                 to = streets[i + 1].index if i + 1 < len(streets) else -1
                 yield Presence(street.end_node, max(low - at, before), min(high - at, behind), street.index, to)
-        # Nodes that whoever is here may have come over shortly before count on.
+        # Nodes that a mover on the first street may have passed shortly before still count.
         yield from self._behind(streets[0], low, high, 0)
 
     def _behind(self, street: Street, low: float, high: float, depth: int) -> Iterator[Presence]:
@@ -252,11 +255,12 @@ class Streets:
 
 
 def read_streets(session: Session, gap: float, movers: Iterable[Mover] = ()) -> Streets:
-    """The tracks of a session's machine file, linked as its parts stand now.
+    """Returns the tracks of a session's machine file, linked according to the commanded positions of its parts.
 
+    gap: distance between movers [mm].
     movers: the gap is raised to the least one at which these clear each other on all tracks.
 
-    Raises RoutingError if a track has other lengths or links in the engine."""
+    Raises RoutingError if the machine has no tracks, or a track has another length or other links in the engine."""
     layout = TrackLayout(session.machine_text) if session.tracks else None
     if layout is None:
         raise RoutingError("the machine has no tracks")
@@ -274,7 +278,7 @@ def read_streets(session: Session, gap: float, movers: Iterable[Mover] = ()) -> 
 
 
 def _nodes(links: Sequence[tuple[int, ...]]) -> tuple[list[int], list[int]]:
-    """Numbers of the nodes where streets start and end; -1: nothing meets them there."""
+    """Returns the numbers of the nodes where each street starts and where it ends; -1: no other street meets it there."""
     starts, ends = [-1] * len(links), [-1] * len(links)
     count = 0
 

@@ -1,6 +1,7 @@
-"""Plans routes for many movers on the free surface at once: all get to their targets, and none waits for ever (PL-72).
+"""Plans routes for many movers on the free surface at once: all reach their targets, and none waits for ever (PL-72).
 
-The planner is C++ (cpp/takt/routing/surface.h says what a plan keeps); here it is asked for the movers of a session.
+The planner is C++ (cpp/takt/routing/surface.h states what a plan guarantees); this module calls it for the movers of a
+session.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 EFFORT = 3_000  # search states of the improvement, at least
 EFFORT_BY_MOVERS = 50  # times the square of the number of movers
 MOST_EFFORT = 500_000  # 2 to 5 s of planning
-MOST_RUN_S = 1e5  # the longest run: the planner compares sums of such times to a nanosecond
+MOST_RUN_S = 1e5  # [s] longest motion: the planner compares sums of such times to a nanosecond
 
 
 @dataclass(frozen=True)
@@ -40,37 +41,37 @@ class SurfaceLeg:
 
 @dataclass(frozen=True)
 class Visit:
-    """A mover at a place of its route."""
+    """The visit of a mover at a place of its route."""
 
     place: int
-    entry_s: float  # from here on it cannot rest before the place any more
-    left_s: float  # end of the visit: no part of the mover covers the place; of the last one: arrival
-    before: tuple[int, int] | None  # mover and number of its visit that has to be over before
+    entry_s: float  # from this time on the mover cannot come to rest before the place any more
+    left_s: float  # end of the visit: no part of the mover covers the place; of the last visit: arrival
+    before: tuple[int, int] | None  # index of a mover and of its visit that has to end before; None: none
 
 
 @dataclass(frozen=True)
 class SurfacePlan:
-    """Routes, and who is where before whom. `str(plan)` says it in words."""
+    """Routes of movers, and the order in which they visit each place. `str(plan)` describes the plan in words."""
 
     names: tuple[str, ...]  # of the movers with a route, or that may have one
-    targets: Mapping[str, Point]  # by mover, where it ends; movers that stay are not in it
+    targets: Mapping[str, Point]  # by mover: where it ends [mm]; movers that stay, without a target, are left out
     legs: Mapping[str, tuple[SurfaceLeg, ...]]  # by mover
-    visits: tuple[tuple[Visit, ...], ...]  # by mover, from where it starts
+    visits: tuple[tuple[Visit, ...], ...]  # by mover, from its start on
     moved_aside: tuple[str, ...]  # movers that move without a target
     raster: Raster
     dynamics: Mapping[str, float]  # of all moves: velocity, acceleration, jerk
-    sum_s: float  # of all arrivals
-    lower_bound_s: float  # no sum is less: that of all movers alone
+    sum_s: float  # of all arrival times
+    lower_bound_s: float  # of `sum_s`: the sum if each mover were alone
     first_sum_s: float  # of the first plan, before it was improved
 
     @property
     def arrival_s(self) -> dict[str, float]:
-        """By mover: when it is where it stays."""
+        """By mover: time of arrival at its final position, from the start on [s]."""
         return {name: legs[-1].arrival_s if legs else 0.0 for name, legs in self.legs.items()}
 
     @property
     def duration_s(self) -> float:
-        """When the last one is."""
+        """Time of arrival of the last mover [s]."""
         return max(self.arrival_s.values(), default=0.0)
 
     def __str__(self) -> str:
@@ -82,17 +83,17 @@ class SurfacePlan:
         return "\n".join([*lines, f"sum {self.sum_s:.3f} s{ratio}"])
 
 
-# By mover a point, by several movers, as a tuple, some points; or points alone, for any mover.
+# A point by mover, several points by several movers (a tuple); or points alone, for any mover.
 Targets = Mapping[Any, Any] | Sequence[Point]
 
 
 @dataclass(frozen=True)
 class Order:
-    """Movers, and places to which they are to go: any of the movers to any of them, one each."""
+    """Movers and their targets: each target is for any one of the movers."""
 
     movers: tuple[str, ...]
     points: tuple[Point, ...]
-    own: bool  # the one mover has this one target
+    own: bool  # True: one mover, whose own target this is
 
     def says(self, k: int) -> str:
         if self.own:
@@ -102,7 +103,7 @@ class Order:
 
 @dataclass(frozen=True)
 class Options:
-    """What a plan is like, beside its targets."""
+    """The options of a plan, besides its targets; None: as plan_surface says."""
 
     environment: str | None = None
     pitch: float | None = None
@@ -147,21 +148,24 @@ def plan_surface(
     seed: int = 1,
     **dynamics: float,
 ) -> SurfacePlan:
-    """Routes on the free surface on which all movers with a target get there; nothing is moved.
+    """Returns routes on the free surface on which all movers with a target reach it; nothing is moved.
 
-    targets: by mover, X and Y in mm; by several movers, as a tuple, a list of places that any of them may take. Or a
-        list alone: interchangeable, each for any of `movers`.
-    movers: with a list of targets, those that may take one; all that can move, unless given.
-    may_move: movers without a target that may be moved out of the way, or all of them (True). All others stand.
-    environment: whose stators are the surface; needed where several have some. Where there are parts, these are it.
-    pitch: mm between places, no less than the largest mover; else the least that divides a stator (240 mm).
-    origin: lower left corner of the raster; else that of the stators.
-    effort: states that are looked at to make the first plan better. Counted, so that the plan is the same each time.
-        Unless given, 50 times the square of the number of movers, from 3,000 to 500,000.
-    seed: another one gives another plan.
-    dynamics: velocity, acceleration (of braking, too), jerk of all moves; else the least of the movers' own.
+    targets: by mover, X and Y of its target [mm]; by several movers (a tuple of names), a list of such points, each for
+        any one of them. Or a list alone: each point is for any one of `movers`.
+    movers: with a list of targets, the movers that may take one; None: all that can move.
+    may_move: movers without a target that may be moved out of the way; True: all of them, False: none. All others stay.
+    environment: the environment whose stators are the surface; needed if several have stators. If the machine has
+        parts, their stators are the surface, and an environment is an error.
+    pitch: distance between the centres of places [mm], larger than the largest mover by 0.01 mm or more; None: the
+        least part or multiple of a stator's 240 mm that leaves 2 mm between movers.
+    origin: lower left corner of the raster [mm]; None: that of the stators.
+    effort: search states that are expanded to improve the first plan. A count, so that the plan is reproducible. None:
+        50 times the square of the number of movers, from 3,000 to 500,000.
+    seed: of the search; another seed may give another plan.
+    dynamics: velocity, acceleration (of braking, too), jerk of all moves, each above 0; else the least of the movers'
+        own. The movers' maxima bound them.
 
-    Raises RoutingError, with the reason, if there is no plan.
+    Raises RoutingError, with the reason, if no plan is found, TypeError if `dynamics` has another key.
     """
     options = Options(environment, pitch, origin, EFFORT if effort is None else effort, seed, dynamics)
     orders = orders_of(session, targets, movers)
@@ -173,7 +177,7 @@ def plan_surface(
         if math.hypot(mover.velocity_x, mover.velocity_y) > STANDS:
             raise RoutingError(f"mover {name} is in motion: routes are planned for movers that stand")
     routed = {name: session.mover(name) for name in session.movers if name in {*wanted, *free}}
-    if may_move is True and session.parts and wanted:  # those elsewhere are in nobody's way
+    if may_move is True and session.parts and wanted:  # movers in other coordinate systems block none
         here = session.mover(wanted[0]).coordinate_system
         routed = {name: m for name, m in routed.items() if name in wanted or m.coordinate_system == here}
     if effort is None:
@@ -186,7 +190,8 @@ def plan_surface(
 
 
 def orders_of(session: Session, targets: Targets, movers: Iterable[str] | None) -> list[Order]:
-    """Targets as they are given, in one form. RoutingError: no such target, or one mover has two."""
+    """Returns the targets in one form. Raises RoutingError if a target is invalid, there are more targets than movers,
+    or a mover has two."""
     if not isinstance(targets, Iterable):
         raise RoutingError(f"targets are places by mover, or a list of places, not {targets!r}")
     if not isinstance(targets, Mapping):
@@ -220,7 +225,7 @@ def orders_of(session: Session, targets: Targets, movers: Iterable[str] | None) 
 
 
 def names_of_key(key: Any) -> tuple[str, ...]:
-    """The movers of a key of targets: a name, or a tuple of names."""
+    """Returns the names of the movers of a key of `targets`: one name, or a tuple of names."""
     if isinstance(key, str):
         return (key,)
     if not isinstance(key, Iterable):
@@ -229,12 +234,12 @@ def names_of_key(key: Any) -> tuple[str, ...]:
 
 
 def may_move_of(may_move: bool | Iterable[str]) -> list[str]:
-    """The movers that may be moved aside, where they are given by name."""
+    """Returns the names of the movers that may be moved aside, if `may_move` gives them by name."""
     return [] if may_move is False or may_move is None else list(names_in(may_move, "may_move", "mover"))
 
 
 def free_of(session: Session, may_move: bool | Iterable[str]) -> list[str]:
-    """Movers that may be moved aside."""
+    """Returns the names of the movers that may be moved aside; True: all that can move."""
     if may_move is True:
         return [name for name, mover in session.movers.items() if _cannot_move(mover) is None]
     return may_move_of(may_move)
@@ -257,7 +262,9 @@ def make_plan(
     options: Options,
     standing: Mapping[int, str] | None = None,
 ) -> SurfacePlan:
-    """The plan for movers that start there; those that are not in `starts` stand (where, by place: `standing`)."""
+    """Returns the plan for the movers in `starts`, from these points. All others are obstacles: `standing` has the
+    mover by place that it covers; None: as the movers are now. Raises RoutingError, with the reason, if no plan is
+    found."""
     names = tuple(starts)
     start_places = [raster.place_at(point, f"mover {name}") for name, point in starts.items()]
     _check_apart("mover", names, start_places, raster)
@@ -383,7 +390,7 @@ def _point(what: str, point: object) -> Point:
 
 
 def _cannot_move(mover: Mover) -> str | None:
-    """Why it cannot be sent over the surface."""
+    """Returns the reason why the mover cannot be sent over the surface; None if it can."""
     if mover.state.value != "Enabled":
         return f"it is {mover.state.value}"
     if mover.command_mode.value != "FreeMovement":

@@ -1,7 +1,7 @@
 """Movers on their planned routes over the free surface.
 
-The engine carries them out, by the order of visits and not by the clock: a mover that is late holds up those behind it.
-Here it is told the plan, and looked at.
+The engine executes the routes, by the order of visits and not by the clock: a late mover delays those behind it. This
+module sends the plan to the engine and monitors it.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ if TYPE_CHECKING:
 
 
 def dynamics_of(plan: SurfacePlan) -> dict[str, float]:
-    """What all motions of a plan have in common."""
+    """Returns velocity, acceleration, deceleration and jerk of all motions of a plan."""
     return {**plan.dynamics, "deceleration": plan.dynamics["acceleration"]}
 
 
 class SurfaceJourney:
-    """A plan that is carried out, by the engine itself. `scan` in every cycle, or `wait`.
+    """Execution of a plan by the engine: call `scan` in every cycle, or `wait`.
 
-    If a mover is halted, disabled, or refuses to go on, RoutingError says so, and all others come to rest in the next
-    places where they can. Once it can move again, `wait` goes on: the order is still good.
+    If a mover is halted, disabled, or cannot continue, RoutingError is raised, and all others come to rest in the next
+    places where they can. Once the mover can move again, `wait` resumes the plan: its order is still valid.
     """
 
     def __init__(self, session: Session, plan: SurfacePlan) -> None:
@@ -44,7 +44,7 @@ class SurfaceJourney:
         self._untold: list[tuple[str, dict[str, Any]]] = []
         self._told: list[tuple[str, Feedback]] = []
         self._feedbacks: dict[str, Feedback] = {}  # of the routes
-        self._start: Feedback | None = None  # None: not all are told
+        self._start: Feedback | None = None  # None: the engine does not have all routes yet
         self._interrupted = False
         for name, visits in zip(plan.names, plan.visits, strict=True):
             self._check_start(name, plan.raster.middle(visits[0].place))
@@ -52,16 +52,17 @@ class SurfaceJourney:
 
     @property
     def arrived_s(self) -> dict[str, float]:
-        """By mover: s from the start on, when it was where it stays; NaN: it is not yet."""
+        """By mover: time of arrival at its final position, from the start on [s]; NaN until then."""
         return dict(self._arrived_s)
 
     @property
     def duration_s(self) -> float:
-        """s until the last one was there."""
+        """Time until the last mover arrived [s]; valid once all have."""
         return max(self._arrived_s.values(), default=0.0)
 
     def scan(self) -> bool:
-        """Looks who is there. True: all are."""
+        """Updates arrivals, and returns True once all movers have arrived. Raises RoutingError if the engine rejects a
+        route or a mover no longer follows its own."""
         if self._interrupted:
             self._go_on_again()
         self._check()
@@ -78,7 +79,7 @@ class SurfaceJourney:
             raise RoutingError(f"mover {name} is {off:.6g} mm off its route: plan anew", name)
 
     def _routes(self) -> Iterator[tuple[str, dict[str, Any]]]:
-        """Commands that give each mover its route."""
+        """Yields the names of movers and the arguments of the commands that give them their routes."""
         first = {name: self.session.mover(name).route_visit for name in self.plan.names}
         for name, visits in zip(self.plan.names, self.plan.visits, strict=True):
             if name in self._left:
@@ -86,7 +87,7 @@ class SurfaceJourney:
                     yield name, part
 
     def _tell(self) -> None:
-        """Gives each mover its route, so many in a cycle as the engine takes, and then starts all at once."""
+        """Sends the routes, in each call as many commands as the engine accepts in a cycle, then starts all at once."""
         now, self._untold = self._untold[:COMMANDS_A_CYCLE], self._untold[COMMANDS_A_CYCLE:]
         for name, route in now:
             given = self.session.mover(name).set_route(**route)
@@ -104,7 +105,7 @@ class SurfaceJourney:
         plan, told = self.plan, []
         for visit in visits:
             x, y = plan.raster.middle(visit.place)
-            # The entries of a plan are early by surface_early_s, for a program that looks now and then.
+            # The entry times of a plan are early by surface_early_s, for a program that polls.
             times = {"entry_time": visit.entry_s + _core.surface_early_s, "exit_time": visit.left_s}
             told.append({"x": x, "y": y, **{key: max(value, 0.0) for key, value in times.items()}})
             if visit.before is not None and visit.before[0] != plan.names.index(name):
@@ -134,12 +135,12 @@ class SurfaceJourney:
                 raise RoutingError(why, name)
 
     def _fault(self, name: str) -> str | None:
-        """Why it does not go its way any more."""
+        """Returns the reason why the mover no longer follows its route; None if it does."""
         feedback = self._feedbacks[name]
         return None if feedback.busy or feedback.done else why_not_on(self.session.mover(name), feedback)
 
     def _come_to_rest(self) -> None:
-        """In places; `scan` goes on from there."""
+        """Lets all movers come to rest in places; `scan` resumes from there."""
         self._interrupted = self._start is not None
         if self._interrupted:
             self._hold(True)
@@ -159,10 +160,11 @@ class SurfaceJourney:
         self._interrupted = False
 
     def wait(self, timeout: float = DEFAULT_TIMEOUT_S) -> SurfaceJourney:
-        """Lets engine time pass until all are there.
+        """Lets engine time pass until all movers have arrived, and returns the journey.
 
-        If that is not within `timeout` [s] (TimeoutError, says which are late and why) or is broken off, all come to
-        rest in the next places where they can, and a further `wait` goes on.
+        Raises TimeoutError, with the movers that are late and why, after `timeout` [s], and RoutingError as `scan`
+        does. After these, or another interruption, all movers come to rest in the next places where they can, and a
+        further `wait` resumes the plan.
         """
         try:
             self.session.wait(self.scan, timeout)
@@ -186,7 +188,7 @@ class SurfaceJourney:
         return ""
 
     def halt(self) -> None:
-        """Brings all to rest that are not there yet. `wait` goes on."""
+        """Halts all enabled movers that have not arrived, and waits until they are at rest. `wait` resumes the plan."""
         going = [self.session.mover(name) for name in self._left]
         for feedback in [mover.halt() for mover in going if mover.state.value == "Enabled"]:
             feedback.wait_final()
@@ -202,7 +204,7 @@ def move_on_surface(
     timeout: float,
     **options: Any,
 ) -> dict[str, float]:
-    """As Session.move_on_surface."""
+    """Implements Session.move_on_surface."""
     plan = plan_surface(session, targets, movers=movers, may_move=may_move, **options)
     journey = SurfaceJourney(session, plan).wait(timeout)
     return {name: journey.arrived_s[name] for name in plan.targets}
