@@ -1,4 +1,4 @@
-"""Arguments of methods: how OPC UA types them, and what the engine is given for what a client gave."""
+"""Arguments of methods: their types in OPC UA, and the conversion of a client's values to those of the engine."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ REALS = INTEGERS | {ua.VariantType.Float, ua.VariantType.Double}
 
 
 class RefusedError(Exception):
-    """The status of a call, and of each of its arguments."""
+    """A call is rejected: its status code, and those of its arguments."""
 
     def __init__(self, status: int, arguments: Sequence[int] = ()) -> None:
         super().__init__(status)
@@ -39,8 +39,8 @@ class RefusedError(Exception):
 
 
 def described(argument: Argument, types: Types) -> ua.Argument:
-    """As a client sees it. A number that may be left out is given as NaN; a yes or no, a whole number or a member as
-    no value (null), so their type is open."""
+    """Returns the OPC UA description of an argument. An optional real number is left out as NaN; an optional boolean,
+    integer or enumeration is left out as null, so its data type is BaseDataType."""
     data_type = types[argument.enumeration] if argument.enumeration else ua.NodeId(BUILT_IN[argument.kind])
     open_type = argument.unset and argument.kind in ("bool", "integer", "enum") and not argument.is_list
     about = argument.about
@@ -65,8 +65,9 @@ def _members(enumeration: str) -> str:
 
 
 def values_of(arguments: Sequence[Argument], given: Sequence[ua.Variant]) -> dict[str, Any]:
-    """What to give the engine, without what was left out. Raises RefusedError where there are too many or too few, or
-    one is of another type; whether a value is good is for the engine to say."""
+    """Returns the values for the engine by name, without arguments that were left out. Raises RefusedError if there are
+    too many or too few arguments, or one is of another type or no member of its enumeration; the engine checks all
+    else."""
     if len(given) > len(arguments):
         raise RefusedError(ua.StatusCodes.BadTooManyArguments)
     if any(not argument.has_default for argument in arguments[len(given) :]):
@@ -128,6 +129,6 @@ def _scalar(argument: Argument, value: Any, given: ua.VariantType) -> Any:
             loaded = load(value) if value else None
         except yaml.YAMLError:
             raise ValueError from None
-        to_text({"value": loaded})  # raises ValueError where a key is no name
+        to_text({"value": loaded})  # raises ValueError if a key is not a name
         return loaded
     return value

@@ -16,8 +16,8 @@ from takt import _core
 from takt.errors import TaktError
 
 FILE = click.Path(path_type=Path)
-LOOK_S = 0.2  # from one look at the server and the engine's process to the next
-OWN_ENGINE_S = 20.0  # that an engine of one's own may take to be heard
+LOOK_S = 0.2  # [s] between two checks of the server and the engine's process
+OWN_ENGINE_S = 20.0  # [s] in which an engine started here has to answer
 FAILED = 1
 
 
@@ -39,8 +39,8 @@ def _say(sentence: str) -> None:
 @click.option("--pace", default="paced", show_default=True, help="Of an engine for MACHINE: paced, real-time or fast.")
 @click.option("--key", type=FILE, help="File with the key of the engine [TAKT_KEY_FILE, else none].")
 def opcua(machine: Path | None, url: str | None, pace: str, key: Path | None, **given: Any) -> int:
-    """Show an engine to PLCs and plants as an OPC UA server: of a MACHINE file, which then runs on a taktd of its own,
-    or the one of an LCM network."""
+    """Serve an engine to PLCs and plants over OPC UA: that of a MACHINE file, which is then started in a taktd of its
+    own, or the running one of an LCM network."""
     if (machine is None) == (url is None):
         raise click.UsageError("give a MACHINE file, or the network of a running engine with --connect")
     try:
@@ -65,7 +65,7 @@ def _run(machine: Path | None, url: str, options: Any, pace: str, key_file: Path
     with contextlib.ExitStack() as stack:
         process: subprocess.Popen[bytes] | None = None
         if machine is not None:
-            _core.load_machine(*read_machine(machine))  # says what is wrong with it
+            _core.load_machine(*read_machine(machine))  # raises ConfigError if the file is invalid
             url = free_url()
             directory = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="takt-opcua-")))
             process = stack.enter_context(taktd(machine, url, None, pace, directory, key))
@@ -91,7 +91,7 @@ def _until_it_ends(process: subprocess.Popen[bytes] | None, why: Callable[[], st
 @click.option("--commands", is_flag=True, help="May command, too [may only read].")
 @click.option("--password", help="[asked for]")
 def opcua_user(file: Path, name: str, commands: bool, password: str | None) -> int:
-    """Add a user to the FILE that takt opcua --users reads, or give one another password."""
+    """Add a user to the FILE that takt opcua --users reads, or replace the password and rights of a user."""
     from takt.opcua.users import COMMANDS, READ, add_user
 
     if password is None:

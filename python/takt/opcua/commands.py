@@ -1,4 +1,5 @@
-"""Commands of OPC UA clients: each session is a client of the engine by itself, and lets go when it goes away."""
+"""Commands of OPC UA clients: each session is a client of the engine of its own, and releases what it holds when it
+ends."""
 
 from __future__ import annotations
 
@@ -23,15 +24,15 @@ from takt.view.client import FINAL, GIVEN_UP_S, Client
 from takt.view.feed import Feed
 from takt.view.machine import Machine
 
-MOST = 1000  # commands that are remembered
+MOST = 1000  # commands whose feedback is kept
 BUSY, ERROR = 0, 4
-SETTLES_S = 0.1  # how long a method waits for more than that the engine has the command
+SETTLES_S = 0.1  # [s] a method waits for the next feedback after the engine has accepted the command
 UNANSWERED = "the engine does not answer"
 
 
 @dataclass
 class Followed:
-    """A command, and what has become of it."""
+    """A command, and its latest feedback."""
 
     target: str
     told: dict[str, Any]  # the fields of `takt.opcua.space.FEEDBACK`
@@ -39,7 +40,8 @@ class Followed:
 
 
 class _Client(Client):
-    """Of one session. `told` takes the number of a command within the session, and its feedback; None: no answer."""
+    """The engine's client of one session. `told` receives the number of a command within the session, and its feedback;
+    None: the engine did not answer."""
 
     def __init__(self, network: Any, machine: Machine, told: Callable[[int, msgs.feedback | None], None]) -> None:
         super().__init__(network, machine, "opcua")
@@ -48,7 +50,7 @@ class _Client(Client):
     def give(self, target: str, verb: str, arguments: str, held: bool, now: float) -> int:
         if held:
             self.hold(now)
-            self._beat(now)  # the name is known before the command needs it
+            self._beat(now)  # the engine knows this client's name before the command needs it
         return self._send(target, verb, arguments, now, held)
 
     def _became(self, message: msgs.command, feedback: msgs.feedback) -> None:
@@ -60,15 +62,15 @@ class _Client(Client):
 
 class Commands:
     def __init__(self, feed: Feed, target_of: Callable[[ua.NodeId], tuple[str, str] | None]) -> None:
-        """target_of: name and kind of what an object stands for."""
-        self.changed: dict[str, Followed] = {}  # by target: there is something new; whoever reads it empties it
+        """target_of: returns the target's name and kind for the node of an object; None: it is no target."""
+        self.changed: dict[str, Followed] = {}  # by target: commands with news; the reader empties it
         self._feed = feed
         self._target_of = target_of
         self._clients: dict[Session, _Client] = {}
-        self._leaving: list[tuple[float, Session, _Client]] = []  # lets go of what it held, at least until then
+        self._leaving: list[tuple[float, Session, _Client]] = []  # still releasing, at least until this time
         self._followed: OrderedDict[int, Followed] = OrderedDict()
-        self._open: dict[tuple[Session, int], int] = {}  # number of a command by session, and number in there
-        self._latest: dict[str, int] = {}  # of each target
+        self._open: dict[tuple[Session, int], int] = {}  # number of a command by session and number within it
+        self._latest: dict[str, int] = {}  # by target: number of its last command
         self._count = 0
 
     # --- methods ---
@@ -80,7 +82,7 @@ class Commands:
         return call
 
     async def ask(self, _: ua.NodeId, *given: ua.Variant) -> ua.CallMethodResult:
-        """What has become of a command."""
+        """Returns the latest feedback of the command with the given number; BadNotFound if it is not known."""
         result = ua.CallMethodResult()
         followed = self._followed.get(given[0].Value) if len(given) == 1 and isinstance(given[0].Value, int) else None
         if followed is None:
@@ -167,10 +169,11 @@ class Commands:
         if self._latest.get(followed.target) == known:
             self.changed[followed.target] = followed
 
-    # --- while time passes ---
+    # --- periodic ---
 
     def tick(self, now: float) -> None:
-        """Holds for those sessions that are heard, and lets go for those that are gone."""
+        """Keeps alive what open sessions hold, as long as their clients are heard, and releases it for sessions that
+        have ended. now: time of the monotonic clock [s]."""
         for session, client in list(self._clients.items()):
             if session.is_closed:
                 client.release()
@@ -187,7 +190,7 @@ class Commands:
                 self._feed.listeners.discard(client.take)
 
     def forget(self) -> None:
-        """Another start of the engine: it knows nothing of what was commanded before."""
+        """Discards all clients and fails open commands after a restart of the engine, which does not know them."""
         for client in (*self._clients.values(), *(client for *_, client in self._leaving)):
             self._feed.listeners.discard(client.take)
         self._clients.clear()
@@ -202,7 +205,7 @@ class Commands:
         self._open.clear()
 
     def release(self) -> None:
-        """Lets go of everything that any session holds."""
+        """Releases everything that the sessions hold."""
         for client in self._clients.values():
             client.release()
 
@@ -222,7 +225,7 @@ async def _answered(call: Any) -> ua.CallMethodResult:
     except RefusedError as error:
         result.StatusCode = ua.StatusCode(error.status)
         result.InputArgumentResults = [ua.StatusCode(one) for one in error.arguments]
-    except Exception:  # a fault of ours: the client gets an answer, whoever runs the server gets to see it
+    except Exception:  # a fault of the server: the client gets an answer, the terminal of the server the trace
         traceback.print_exc()
         result.StatusCode = ua.StatusCode(ua.StatusCodes.BadInternalError)
     return result

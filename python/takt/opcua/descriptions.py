@@ -1,4 +1,4 @@
-"""What the address space is made of: the descriptions that machine files, commands and published values have, too."""
+"""The descriptions from which the address space is built; machine files, commands and published values use the same."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from takt import _core
 from takt.tables import KINDS
 
 Type = dict[str, Any]
-MACHINE = "machine"  # target of commands that are for no component
+MACHINE = "machine"  # target of commands to the machine as a whole
 SCALARS = ("bool", "integer", "real", "text", "enum")
 
 
@@ -26,24 +26,24 @@ class Enumeration:
 
 @dataclass(frozen=True)
 class Field:
-    """What a component or the engine publishes."""
+    """A value that a component publishes."""
 
     name: str
     unit: str  # as in the descriptions: u/s2
     about: str
-    enumeration: str  # its name; empty: a number, or a yes or no
+    enumeration: str  # name of its enumeration; empty: a number or a boolean
 
 
 @dataclass(frozen=True)
 class Argument:
-    """Of a command."""
+    """An argument of a command."""
 
     name: str
-    kind: str  # one of SCALARS; "yaml": a text that the engine reads as such
+    kind: str  # one of SCALARS; "yaml": a structure, given as YAML text
     is_list: bool
-    enumeration: str
+    enumeration: str  # name of its enumeration; empty: none
     has_default: bool
-    unset: bool  # may be left out, and has no value then
+    unset: bool  # True: has no value if it is left out
     about: str  # with unit, range and default
 
 
@@ -62,7 +62,7 @@ def _reference() -> dict[str, Any]:
 
 
 def _below(kind: Type, name: str = "") -> Iterator[tuple[str, Type]]:
-    """A type and all types inside it, with the names of fields as they are published: pcs1_x."""
+    """Yields a type and all types inside it, with the names of fields as they are published: pcs1_x."""
     yield name, kind
     for field in kind.get("fields", ()):
         yield from _below(field["type"], f"{name}_{field['name']}" if name else field["name"])
@@ -78,7 +78,7 @@ def _roots() -> Iterator[Type]:
 
 @functools.cache
 def enumerations() -> dict[str, Enumeration]:
-    """Of everything that is published, and of all arguments, by name."""
+    """Returns the enumerations of all published values and all arguments, by name."""
     found: dict[str, Enumeration] = {}
     for root in _roots():
         for _, kind in _below(root):
@@ -90,7 +90,7 @@ def enumerations() -> dict[str, Enumeration]:
 
 @functools.cache
 def fields_of(kind: str) -> tuple[Field, ...]:
-    """What components of this kind publish, in the order of `takt.tables.KINDS`."""
+    """Returns the fields that components of this kind publish, in the order of `takt.tables.KINDS`."""
     types = dict(_below(_reference()["outputs"][kind]))
     return tuple(
         Field(name, unit, about, types[name]["name"] if name in KINDS[kind].names else "")
@@ -100,7 +100,7 @@ def fields_of(kind: str) -> tuple[Field, ...]:
 
 @functools.cache
 def verbs_of(kind: str) -> tuple[Verb, ...]:
-    """The commands of components of this kind, or of the machine."""
+    """Returns the commands of components of this kind, or of the machine."""
     return tuple(
         Verb(kind, verb["name"], verb["arguments"]["about"], tuple(map(_argument, verb["arguments"]["fields"])))
         for verb in _reference()["verbs"]
@@ -110,7 +110,7 @@ def verbs_of(kind: str) -> tuple[Verb, ...]:
 
 @functools.cache
 def figures() -> Mapping[str, str]:
-    """What the engine says of itself, with its meaning."""
+    """Returns the meanings of the figures that the engine publishes of itself, by name."""
     return {field["name"]: field["about"] for field in _reference()["figures"]["fields"]}
 
 

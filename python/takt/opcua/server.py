@@ -1,4 +1,5 @@
-"""The server: what an engine publishes goes into the address space some times a second, commands go to the engine."""
+"""The server: writes the values that an engine publishes to the address space several times a second, and sends
+commands to the engine."""
 
 from __future__ import annotations
 
@@ -34,8 +35,8 @@ from takt.opcua.users import Users, read_users
 from takt.view.feed import Feed
 
 PORT = 4840  # registered for OPC UA
-TICK_S = 0.02  # from one look at what the engine has answered to the next, at most
-FIRST_S = 1.5  # for the engine's own state to come, after its description
+TICK_S = 0.02  # [s] longest interval between two checks for answers of the engine
+FIRST_S = 1.5  # [s] longest wait for the engine's own state, after its description
 SECURE = [
     *(ua.SecurityPolicyType.Basic256Sha256_SignAndEncrypt, ua.SecurityPolicyType.Basic256Sha256_Sign),
     *(ua.SecurityPolicyType.Aes128Sha256RsaOaep_SignAndEncrypt, ua.SecurityPolicyType.Aes128Sha256RsaOaep_Sign),
@@ -53,17 +54,17 @@ Say = Callable[[str], None]
 @dataclass(frozen=True)
 class Options:
     host: str = "127.0.0.1"
-    port: int = PORT  # 0: any
-    rate_hz: float = 10.0
-    commands: bool = False
+    port: int = PORT  # 0: any free one
+    rate_hz: float = 10.0  # of values
+    commands: bool = False  # clients may command
     users: Path | None = None
     certificate: Path | None = None
     private_key: Path | None = None
-    trust: Path | None = None  # a folder of certificates
-    timeout_s: float = 5.0  # for the engine to be heard, at first
+    trust: Path | None = None  # folder with the certificates of clients; None: all clients
+    timeout_s: float = 5.0  # longest wait for the engine at the start
 
     def check(self) -> None:
-        """Raises TaktError for what must not be."""
+        """Raises TaktError if options contradict one another, or would let any client on the network command."""
         if (self.certificate is None) != (self.private_key is None):
             raise TaktError("--certificate and --private-key go together: give both or none")
         if self.trust is not None and self.certificate is None:
@@ -78,7 +79,7 @@ class Options:
 
 
 class AnotherMachineError(TaktError):
-    """The engine was started again with another machine file: the address space is not its any more."""
+    """The engine was restarted with another machine file: the address space no longer describes its machine."""
 
 
 class Service:
@@ -93,18 +94,20 @@ class Service:
         self._epoch = 0
         self._gone = True
         self._told: tuple[bool, str, int] | None = None
-        self._failed = ""  # what went wrong in here, said once
+        self._failed = ""  # the last error of `run`, printed once
         self._commands = Commands(self._feed, self._target_of)
 
     async def start(self) -> str:
-        """Waits for the engine, makes the address space, listens. Returns the address."""
+        """Waits for the engine, builds the address space, listens, and returns the address. Raises ConnectionError if
+        no engine answers within `timeout_s` or the key does not permit commands, TaktError if the port or a certificate
+        cannot be used."""
         await self._wait_for_engine()
         machine, feed, options = self._feed.machine, self._feed, self.options
         assert machine is not None
         if options.commands and not feed.may_command:
             raise ConnectionError(no_key(feed.url))
         self._epoch = feed.epoch
-        port = _free_port(options.host, options.port)  # before much is made in vain
+        port = _free_port(options.host, options.port)  # fails before the address space is built
         self._server = Server(iserver=Sessions(user_manager=Users(self._known, options.commands)))
         self._server.iserver.allow_remote_admin = False
         self._server.set_server_name(f"Takt: {machine.name}")
@@ -143,7 +146,8 @@ class Service:
             await asyncio.sleep(TICK_S)
 
     async def _secure(self, uri: str) -> str:
-        """Takes up certificates and rights. Returns the name of the application: that of its certificate, else this."""
+        """Sets up certificates and kinds of login. Returns the URI of the application: that of the certificate, else
+        `uri`."""
         server, options = self._server, self.options
         tokens: list[type] = [ua.UserNameIdentityToken if self._known is not None else ua.AnonymousIdentityToken]
         server.set_identity_tokens(tokens)
@@ -183,7 +187,7 @@ class Service:
     # --- while it runs ---
 
     async def run(self, stop: asyncio.Event) -> None:
-        """Until `stop` is set. Raises AnotherMachineError."""
+        """Runs until `stop` is set. Raises AnotherMachineError if the engine is restarted with another machine."""
         step = 1.0 / self.options.rate_hz
         loop = asyncio.get_running_loop()
         due = shown = loop.time()
@@ -197,7 +201,7 @@ class Service:
                 await self._show_commands()
             except AnotherMachineError:
                 raise
-            except Exception as error:  # goes on for those that look at the rest
+            except Exception as error:  # continues for clients that read the rest
                 if self._failed != repr(error):
                     self._failed = repr(error)
                     traceback.print_exc()
@@ -224,7 +228,7 @@ class Service:
             await self._space.show(feed.overview, feed.engine)
 
     async def _begin_again(self) -> None:
-        """Another start of the engine."""
+        """Continues after a restart of the engine. Raises AnotherMachineError if it has another machine."""
         machine = self._feed.machine
         assert machine is not None
         if machine.text != self._space.machine.text:
@@ -243,17 +247,18 @@ class Service:
             await self._space.tell_of(target, followed.told)
 
     async def stop(self) -> None:
-        """Lets go of everything and closes all connections."""
+        """Releases everything that sessions hold, and closes all connections."""
         self._commands.release()
         clock, self._server.iserver.time_task = self._server.iserver.time_task, None
-        clock.cancel()  # it would sleep on for up to a second
+        clock.cancel()  # it would sleep for up to a second more
         await self._server.stop()
 
 
 @contextlib.contextmanager
 def serving(url: str, options: Options, key: Key | None, say: Say) -> Iterator[tuple[str, Callable[[], str]]]:
-    """A server on a thread of its own. Yields its address, and what says why it has ended ("": it has not)."""
-    logging.getLogger("asyncua").setLevel(logging.CRITICAL)  # its clients get what it would say
+    """Runs a server on a thread of its own. Yields its address, and a function that returns the reason why it has ended
+    ("": it is running). Raises as Service.start does."""
+    logging.getLogger("asyncua").setLevel(logging.CRITICAL)  # clients receive the errors that it would log
     started: concurrent.futures.Future[tuple[str, Callable[[], None]]] = concurrent.futures.Future()
     ended: list[str] = []
 
@@ -304,7 +309,7 @@ def _is_local(host: str) -> bool:
 
 
 def _free_port(host: str, port: int) -> int:
-    """This port, or any for 0. Raises TaktError where it cannot be used."""
+    """Returns this port, or any free one for 0. Raises TaktError if the port cannot be used."""
     with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
@@ -319,7 +324,7 @@ def _not_usable(host: str, port: int, error: OSError) -> TaktError:
 
 
 def _uri_of(certificate: Any) -> str:
-    """The name of the application, as its certificate says it."""
+    """Returns the application URI of a certificate; empty if it has none."""
     try:
         names = certificate.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
     except x509.ExtensionNotFound:

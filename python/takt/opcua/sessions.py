@@ -1,4 +1,4 @@
-"""Sessions of OPC UA clients: which of them calls a method, and when each was heard last."""
+"""Sessions of OPC UA clients: the caller of a method, and the time of each client's last request."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ SHORTEST_MS = 10.0  # between two notifications of a subscription
 
 
 class Session(InternalSession):  # type: ignore[misc]
-    """What `asyncua` has, and what a dead man needs."""
+    """A session of `asyncua`, with the data that dead-man supervision needs."""
 
-    heard_at = 0.0  # when its last request came
-    certificate: bytes | None = None  # of the client, as it named it
+    heard_at = 0.0  # time of its last request, monotonic clock [s]
+    certificate: bytes | None = None  # of the client, as given at the creation of the session
     calls = 0  # methods that have not returned yet
 
     @property
@@ -31,7 +31,7 @@ class Session(InternalSession):  # type: ignore[misc]
 
     @property
     def client(self) -> str:
-        """For people: the user's name, or the address."""
+        """The client for display: the user's name, or the address."""
         if isinstance(self.user, Person) and self.user.name:
             return str(self.user.name)
         return ":".join(map(str, self.name[:2])) if isinstance(self.name, tuple) else str(self.name)
@@ -41,7 +41,7 @@ class Session(InternalSession):  # type: ignore[misc]
         return isinstance(self.user, Person) and self.user.commands
 
     async def create_session(self, params: Any, sockname: Any = None) -> Any:
-        # asyncua looks at the certificate that the client names here; whether it is that of the channel, nobody does.
+        # asyncua checks the certificate that the client gives here, but not whether it is that of the secure channel.
         self.certificate = params.ClientCertificate
         if self.iserver.certificate_validator is not None and not self.certificate:
             raise ServiceError(ua.StatusCodes.BadCertificateInvalid)
@@ -78,7 +78,7 @@ class Session(InternalSession):  # type: ignore[misc]
 
 
 class Sessions(InternalServer):  # type: ignore[misc]
-    """The server behind the wire, with sessions of ours."""
+    """The internal server of `asyncua`, with sessions of this module."""
 
     def create_session(self, name: str, user: User | None = None, external: bool = False) -> InternalSession:
         user = user or User(role=UserRole.Anonymous)

@@ -1,5 +1,5 @@
-"""The address space: an object for each component with all that it publishes, types for each kind, methods for each
-command. Everything is made from descriptions; nothing here knows a field or a command by name.
+"""The address space: an object for each component with all values that it publishes, a type for each kind, a method for
+each command. Everything is built from descriptions; this module knows no field and no command by name.
 
 Methods belong to the types and are shared by all objects of a type, as OPC 10000-3 allows: a plant of 200 movers has
 each command once."""
@@ -26,7 +26,7 @@ from takt.view.ring import Floats
 
 NAMESPACE = "urn:takt:motion"
 Call = Callable[..., Awaitable[ua.CallMethodResult]]
-Caller = Callable[[Verb], Call]  # what carries out a verb
+Caller = Callable[[Verb], Call]  # returns the function that executes a verb
 
 ABOUT = {
     "connected": "The engine is heard. While it is not, all that it publishes has the status BadNoCommunication.",
@@ -36,7 +36,7 @@ ABOUT = {
     "period": "Length of a cycle.",
     "run_id": "Tells one start of the engine from the next.",
 }
-# Of the last command that came through this server, to a component or to the machine.
+# The fields of the last command given through this server, to a component or to the machine.
 FEEDBACK: Mapping[str, tuple[ua.VariantType, str]] = {
     "command": (ua.VariantType.UInt32, "Its number, as the method returned it; 0: none was given yet."),
     "client": (ua.VariantType.String, "The OPC UA client: its user's name, or its address."),
@@ -50,12 +50,12 @@ FEEDBACK: Mapping[str, tuple[ua.VariantType, str]] = {
     "ticket": (ua.VariantType.Int64, "The engine's number of the command; 0: refused before it got one."),
 }
 STATES = "FeedbackState"
-ANSWER = ("command", "state", "reached", "error_id", "sentence", "value", "ticket")  # what a method returns of these
+ANSWER = ("command", "state", "reached", "error_id", "sentence", "value", "ticket")  # the fields that a method returns
 NOTHING = (ua.VariantType.Null, None)
 
 
 class Space:
-    """Of one machine. `make` once, then `show` again and again."""
+    """The address space of one machine. Call `make` once, then `show` periodically."""
 
     def __init__(self, server: Server, index: int, machine: Machine) -> None:
         self.machine = machine
@@ -64,19 +64,23 @@ class Space:
         self._session = server.iserver.isession
         self._types: dict[str, ua.NodeId] = {}  # of enumerations
         self._variables: dict[str, list[tuple[ua.NodeId, ua.VariantType]]] = {}  # of each component, by field
-        self._texts: dict[str, list[tuple[int, ua.NodeId]]] = {}  # of error numbers: place of the field, the node
-        self._seen: dict[str, Floats] = {}  # what was shown last
+        self._texts: dict[str, list[tuple[int, ua.NodeId]]] = {}  # of error numbers: index of the field, the node
+        self._seen: dict[str, Floats] = {}  # values written last
         self._figures: dict[str, tuple[ua.NodeId, ua.VariantType]] = {}
         self._seen_figures: dict[str, Any] = {}
 
     def node(self, name: str) -> ua.NodeId:
         return ua.NodeId(name, self._index)
 
-    # --- made once ---
+    # --- built once ---
 
     async def make(self, engine: Mapping[str, Any], caller: Caller | None, ask: Call | None) -> None:
-        """engine: figures, as they come. caller: makes what carries out commands; None: nobody may command. ask: tells
-        what became of a command."""
+        """Builds the address space; values are not known until `show` writes them.
+
+        engine: figures of the engine, as published.
+        caller: returns the function that executes a verb; None: clients may not command.
+        ask: returns the feedback of a command.
+        """
         for name, about, members in [
             *((one.name, one.about, one.members) for one in enumerations().values()),
             (STATES, "What has become of a command.", ("busy", "active", "done", "aborted", "error")),
@@ -180,7 +184,7 @@ class Space:
     async def _property(
         self, of: ua.NodeId, name: str, value: ua.Variant, data_type: ua.NodeId, *, is_list: bool = False
     ) -> None:
-        """One of OPC UA's own."""
+        """Adds a property that OPC UA defines."""
         attributes = ua.VariableAttributes()
         attributes.Value, attributes.DataType = value, data_type
         attributes.ValueRank = ua.ValueRank.OneDimension if is_list else ua.ValueRank.Scalar
@@ -256,7 +260,7 @@ class Space:
         ]
 
     async def _share(self, of: ua.NodeId, kind: str) -> None:
-        """The methods of its type are those of an object."""
+        """Lets an object reference the methods of its type."""
         items = []
         for verb in verbs_of(kind):
             item = ua.AddReferencesItem()
@@ -321,10 +325,10 @@ class Space:
                 self.node(f"{name}/last_command/{field}"), field, node, value, about, data_type=data_type
             )
 
-    # --- again and again ---
+    # --- periodic ---
 
     async def show(self, overview: Overview, engine: Mapping[str, Any] | None) -> None:
-        """Writes what has changed."""
+        """Writes the values that have changed."""
         now = datetime.now(timezone.utc)
         for source in self.machine.sources:
             values = overview.values(source.index, KINDS[source.kind].units)
@@ -349,7 +353,7 @@ class Space:
                 await self._write(self._figures[name][0], value, self._figures[name][1], now)
 
     async def tell(self, connected: bool, trouble: str) -> None:
-        """What is known of the engine itself."""
+        """Writes the state of the connection to the engine."""
         now = datetime.now(timezone.utc)
         for name, value, kind in (
             ("connected", connected, ua.VariantType.Boolean),
@@ -359,7 +363,7 @@ class Space:
             await self._write(self.node(f"/machine/{name}"), value, kind, now)
 
     async def silence(self, status: int = ua.StatusCodes.BadNoCommunication) -> None:
-        """Nothing is known any more."""
+        """Sets all published values to this bad status: they are not known any more."""
         self._seen.clear()
         self._seen_figures.clear()
         now = datetime.now(timezone.utc)
@@ -368,7 +372,7 @@ class Space:
             await self._server.iserver.write_attribute_value(node, value)
 
     async def tell_of(self, target: str, feedback: Mapping[str, Any]) -> None:
-        """What became of the last command to a component."""
+        """Writes the feedback of the last command to a component or the machine."""
         name = "/machine" if target == MACHINE else target
         now = datetime.now(timezone.utc)
         for field, value in feedback.items():
@@ -386,7 +390,7 @@ class Space:
 
 
 def answer(feedback: Mapping[str, Any]) -> list[ua.Variant]:
-    """What a method returns."""
+    """Returns the output arguments of a method for this feedback."""
     return [ua.Variant(feedback[name], FEEDBACK[name][0]) for name in ANSWER]
 
 

@@ -1,11 +1,11 @@
-"""Units as OPC UA says them: EUInformation with the common codes of UNECE recommendation 20 (OPC 10000-8, 5.6.3)."""
+"""Units in OPC UA: EUInformation with the common codes of UNECE recommendation 20 (OPC 10000-8, 5.6.3)."""
 
 from __future__ import annotations
 
 from asyncua import ua
 
 UNECE = "http://www.opcfoundation.org/UA/units/un/cefact"
-# Common code and name by Takt's unit; others have the number -1 and their text alone.
+# Common code and name by Takt's unit; other units have the number -1 and only their text.
 CODES = {
     "1": ("C62", "one"),
     "%": ("P1", "percent"),
@@ -39,7 +39,7 @@ CODES = {
 
 
 def number_of(code: str) -> int:
-    """A common code as OPC UA numbers it: its characters are the bytes of the number."""
+    """Returns the OPC UA number of a common code: the code's characters are the bytes of the number."""
     return int.from_bytes(code.encode("ascii"), "big")
 
 

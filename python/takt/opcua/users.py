@@ -1,4 +1,4 @@
-"""Who may connect to an OPC UA server, and who may command: a file with names, rights and hashes of passwords."""
+"""Users of an OPC UA server and their rights, to read or to command: a file with names, rights and password hashes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from takt.errors import TaktError
 READ, COMMANDS = "read", "commands"
 RIGHTS = (READ, COMMANDS)
 LENGTH = 32
-COST = {"n": 1 << 14, "r": 8, "p": 1}  # of scrypt: 16 MiB and some 50 ms for each try
+COST = {"n": 1 << 14, "r": 8, "p": 1}  # of scrypt: 16 MiB and about 50 ms for each attempt
 
 
 @dataclass
@@ -27,11 +27,12 @@ class Person(User):  # type: ignore[misc]
 
 
 class Users:
-    """Asked by the server for each client. `known`: rights and hash of each name; None: nobody has to say a name."""
+    """Authentication of clients for the server. `known`: rights and hash by user name; None: all clients are accepted
+    without a name."""
 
     def __init__(self, known: Mapping[str, tuple[str, str]] | None, commands: bool) -> None:
         self.known = known
-        self._commands = commands  # anybody at all may command
+        self._commands = commands  # False: no client may command, whatever its rights
 
     def get_user(
         self, iserver: Any, username: str | None = None, password: str | None = None, certificate: Any = None
@@ -44,7 +45,8 @@ class Users:
 
 
 def read_users(file: Path) -> dict[str, tuple[str, str]]:
-    """Rights and hash by name. Raises TaktError, which says what is wrong and in which line."""
+    """Returns rights and hash by user name. Raises TaktError, with the reason and the line, if the file is invalid,
+    accessible to users other than its owner, or has no users."""
     try:
         mode = file.stat().st_mode
         lines = file.read_text(encoding="utf-8").splitlines()
@@ -68,7 +70,8 @@ def read_users(file: Path) -> dict[str, tuple[str, str]]:
 
 
 def add_user(file: Path, name: str, password: str, rights: str) -> None:
-    """Adds a user, or gives one another password. The file is made where there is none; its owner alone may open it."""
+    """Adds a user, or replaces the password and rights of a user. A missing file is created, accessible to its owner
+    only. Raises TaktError if the name is not one word, the password is empty, or the file cannot be written."""
     if not name or len(name.split()) != 1 or name.startswith("#"):
         raise TaktError(f"a name is one word, not {name!r}")
     if not password:

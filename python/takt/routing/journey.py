@@ -76,7 +76,7 @@ class _Traveller:
 
     @property
     def may_plan_on(self) -> bool:
-        """True if the next hop may be released. Where the mover stops on its way, that is after it was there."""
+        """True if the next hop may be released; if the last one released ends with a stop, only after that stop."""
         last = self.steps[self.level - 1].hop if self.level else None
         stops = last is not None and (not last.to_row or len(self.steps[self.level].hop.sweep.streets) == 1)
         return not stops or self.over == self.level

@@ -345,7 +345,7 @@ class SurfaceRouter:
         return tuple((is_there(part), part.position_index) for part in self.session.parts.values())
 
     def _commitments(self) -> dict[str, int]:
-        """Returns by mover under way the index of the place that it moves to in any case: where it can come to rest, or
+        """Returns by mover under way the index of the place to which it is committed: where it can come to rest, or
         farther, so that the movers behind it reach theirs."""
         if self._held:
             return {name: one.granted for name, one in self._on_way.items()}
@@ -494,7 +494,8 @@ class SurfaceRouter:
                 goal.order.movers = tuple(other for other in goal.order.movers if other != name)
 
     def _plan_round(self) -> None:
-        """Plans again after movers failed or the surface changed; movers that are in the way return to places first."""
+        """Plans again after movers failed or the surface changed; movers that cannot keep clear of obstacles return to
+        places first."""
         movers = [self.session.mover(name) for name in dict.fromkeys([*self._on_way, *self._goals])]
         if not movers:
             return
@@ -524,7 +525,7 @@ class SurfaceRouter:
             self._plan_what_can_be(raster)
 
     def _bring_into_places(self, raster: Raster) -> None:
-        """Takes movers that have a target and are between places under way to one; fails those that cannot be moved."""
+        """Sends movers with a target that rest between places to a place first; fails those that cannot be moved."""
         for name in [name for name in self._goals if name not in self._on_way]:
             try:
                 check_can_move(self.session.mover(name))
@@ -573,11 +574,11 @@ class SurfaceRouter:
                     raise RoutingError(f"mover {known[place]} and mover {name} have one target", name)
                 known[place] = name
 
-    # --- out of the way ---
+    # --- returning to places ---
 
     def _astray(self, names: Iterable[str], raster: Raster) -> list[str]:
-        """Returns those of these movers that rest between places, and takes them under way to the nearest free place
-        straight along X or Y. Raises RoutingError if a mover has none."""
+        """Returns those of these movers that rest between places, each registered with a route to the nearest free
+        place straight along X or Y. Raises RoutingError if there is no such place for a mover."""
         shut = self._standing(raster, [*names, *self._on_way])
         bound = {_place(raster, p) for one in self._on_way.values() for p in one.points[one.passed :]}
         found = {}

@@ -278,7 +278,7 @@ def read_streets(session: Session, gap: float, movers: Iterable[Mover] = ()) -> 
 
 
 def _nodes(links: Sequence[tuple[int, ...]]) -> tuple[list[int], list[int]]:
-    """Returns the numbers of the nodes where each street starts and where it ends; -1: no other street meets it there."""
+    """Returns by street the numbers of the nodes at its start and at its end; -1: no other street meets it there."""
     starts, ends = [-1] * len(links), [-1] * len(links)
     count = 0
 

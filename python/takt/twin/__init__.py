@@ -1,9 +1,9 @@
-"""A twin of a machine in a physics engine that nobody here wrote: MuJoCo (PY-23).
+"""A twin of a machine in an independent physics engine, MuJoCo (PY-23).
 
 with takt.Engine("machine.yaml", plant="mujoco") as session: ...
 
-The section `twin` of the machine file says which axes it moves, with which motors and masses; the model is made from
-the kinematics, or given as MJCF or URDF. MuJoCo is an extra: pip install takt-motion[twin].
+The section `twin` of the machine file lists the axes that the twin moves, with their motors and masses. The model is
+generated from the kinematics, or read from an MJCF or URDF file. MuJoCo is an extra: pip install takt-motion[twin].
 """
 
 from takt.twin.cargo import Cargo, Gripper, Handled, ProductSeen

@@ -1,8 +1,8 @@
-"""Belts, products and grippers of a twin: products lie on belts by friction, a gripper holds one by a weld that is
-switched on where its cup is near enough, and light barriers across belts are touch probes.
+"""Belts, products and grippers of a twin: products lie on belts by friction, a gripper holds a product by a weld that
+is enabled if its cup is near enough, and light barriers across belts act as touch probes.
 
-A belt is a plate whose body moves and whose shape stays: contact sees a surface that slides. Products that are not in
-the machine wait beside it. MuJoCo alone decides where products are; nothing here moves one that has been put in.
+A belt is a plate whose body moves and whose shape stays: in contact it is a sliding surface. Products that are not in
+the machine are parked beside it. MuJoCo alone moves products in the machine, except for `Cargo.move`.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from takt.twin.model import Array, Model
 
 PER_M = 1000.0  # mm
-GONE_MM = 100.0  # beneath the surfaces of all belts: it has fallen
-REST_S = 0.02  # from when a gripper lets go until its product lies where it will lie
-ROUNDING_M = 1e-6  # more than two ways to compute a place differ
-LOOK = 10  # cycles between two looks at belts' ends, at what fell and at what waits
+GONE_MM = 100.0  # [mm] this far beneath the surfaces of all belts a product has fallen
+REST_S = 0.02  # [s] from the release of a product until it is at rest
+ROUNDING_M = 1e-6  # [m] more than the rounding errors of two ways to compute a position
+LOOK = 10  # cycles between two checks of belt ends, fallen products and parked ones
 
 
 @dataclass(frozen=True)
@@ -33,31 +33,31 @@ class ProductSeen:
     """A product on a belt, as a camera above it would see it."""
 
     number: int  # from 1, in the order in which products were put in; never used again
-    x: float  # mm, of its middle from the origin of the belt
+    x: float  # [mm] centre of its top, in the belt's frame
     y: float
-    z: float  # mm, of its top
-    c: float  # deg, about Z
+    z: float
+    c: float  # [deg] about Z
 
 
 @dataclass(frozen=True)
 class Handled:
-    """A product that a gripper held, and what became of it."""
+    """A product that a gripper held, and the outcome."""
 
     number: int
     gripper: str  # the group's name
     gripped: int  # cycle
-    offset: Array  # (3,), mm in the world: from the tool to the centre of its top when it was gripped
-    put: int | None = None  # cycle in which the gripper let go
-    belt: str | None = None  # on which it lies then, None: on none
-    moved: float = math.nan  # mm along the belt's surface, from where it was let go to where it came to rest
-    turned: float = math.nan  # deg between its vertical axis and the belt's normal, at rest
-    lost: str = ""  # why it is not where it should be
+    offset: Array  # (3,) [mm], world frame: from the tool to the centre of its top when it was gripped
+    put: int | None = None  # cycle of its release; None: still held
+    belt: str | None = None  # the belt on which it was released; None: none
+    moved: float = math.nan  # [mm] relative to the belt's surface, from its release until it was at rest
+    turned: float = math.nan  # [deg] between its vertical axis and the belt's normal, at rest
+    lost: str = ""  # the reason if it was not put down properly
 
 
 @dataclass
 class _Belt:
     name: str
-    joint: int  # place in qpos
+    joint: int  # index in qpos
     dof: int
     geom: int
     row: int  # of its axis
@@ -78,13 +78,13 @@ class _Product:
     qpos: int
     qvel: int
     geom: int
-    number: int = 0  # 0: it waits beside the machine
+    number: int = 0  # 0: parked beside the machine
     held: Gripper | None = None
 
 
 @dataclass
 class _Rests:
-    """A product that a gripper has let go."""
+    """A product that a gripper has released."""
 
     product: _Product
     number: int
@@ -95,8 +95,8 @@ class _Rests:
 
 
 class Gripper:
-    """A vacuum gripper at the tool of a group. `close` and `open` act after the time that the machine file says;
-    `closed` tells whether it is, `holds` the number of its product, or None."""
+    """A vacuum gripper at the tool of a group. `close` and `open` take effect after the time set in the machine file.
+    `closed` is True while it is closed, `holds` is the number of the product held, or None."""
 
     def __init__(
         self, cargo: Cargo, told: Mapping[str, Any], group: str, tool: Any, at: Array, body: int, welds: Sequence[int]
@@ -107,18 +107,18 @@ class Gripper:
         self._cargo = cargo
         self._told = told
         self._tool = tool
-        self._at = at  # m, the tool's point from the flange
+        self._at = at  # [m] position of the TCP in the flange frame
         self._body = body
         self._welds = welds
         self._due: list[tuple[int, bool]] = []
-        self._product: _Product | None = None  # that it holds
+        self._product: _Product | None = None  # the one held
 
     def close(self) -> None:
-        """Tells it to close; it holds the product within its reach, if there is one then."""
+        """Commands the gripper to close; when it does, it grips the nearest product within its reach, if any."""
         self._tell(True)
 
     def open(self) -> None:
-        """Tells it to open."""
+        """Commands the gripper to open; when it does, it releases its product."""
         self._tell(False)
 
     def _tell(self, close: bool) -> None:
@@ -164,7 +164,7 @@ class Gripper:
         cargo._released(product, cycle, lost)
 
     def _pull(self) -> float:
-        """N between cup and product."""
+        """Returns the force [N] between cup and product; 0 if none is held."""
         product = self._product
         if product is None:
             return 0.0
@@ -172,7 +172,7 @@ class Gripper:
         weld, ids = self._welds[product.slot], data.efc_id[: data.ne]
         if not len(ids):
             return 0.0
-        first = int((ids == weld).argmax())  # rows of one constraint follow one another, forces first
+        first = int((ids == weld).argmax())  # rows of one constraint are adjacent, forces first
         if ids[first] != weld:
             return 0.0
         force = data.efc_force[first : first + 3]
@@ -180,7 +180,7 @@ class Gripper:
 
 
 class Cargo:
-    """All that is carried in a twin. `grippers` by group."""
+    """The belts, products and grippers of a twin. `grippers`: by name of the group."""
 
     def __init__(self, mujoco: Any, machine: Mapping[str, Any], built: Model, axes: Sequence[str], period_s: float):
         twin = machine["twin"]
@@ -224,7 +224,7 @@ class Cargo:
                 None if barrier is None else barrier / PER_M,
             )
         surfaces = [float(belt.origin[2, 3]) + belt.surface for belt in self._belts.values()]
-        self._floor = min(surfaces, default=-math.inf) - GONE_MM / PER_M  # what is beneath has fallen
+        self._floor = min(surfaces, default=-math.inf) - GONE_MM / PER_M  # [m] products below have fallen
         self._place_of = np.array([[one.qpos + i for i in range(3)] for one in self._products], int).reshape(-1, 3)
         self.grippers: dict[str, Gripper] = {}
         for mechanism in twin["mechanisms"]:
@@ -246,7 +246,7 @@ class Cargo:
 
     @property
     def here(self) -> tuple[int, ...]:
-        """Numbers of the products in the machine."""
+        """The numbers of the products in the machine."""
         return tuple(sorted(one.number for one in self._there()))
 
     def put(self, belt: str, x: float = 0.0, y: float = 0.0, c: float = 0.0) -> int:
@@ -349,7 +349,7 @@ class Cargo:
         return turn.reshape(3, 3)
 
     def _top(self, one: _Product) -> Array:
-        """m: the middle of its top."""
+        """Returns the centre of a product's top [m], world frame."""
         return np.asarray(self._data.qpos[one.qpos : one.qpos + 3] + self._turn(one)[:, 2] * self._half[2])
 
     def _seen_from(self, belt: _Belt, place: Array) -> Array:
@@ -380,7 +380,7 @@ class Cargo:
         self._data.qvel[one.qvel : one.qvel + 6] = 0
 
     def _may_leave(self) -> list[_Product]:
-        """Products that may be at the end of a belt, or beneath all of them: a look at all of them at once."""
+        """Returns the products that may be at the end of a belt, or below all belts: a fast check of all products."""
         free = [one for one in self._there() if one.held is None]
         if not free:
             return []
@@ -393,7 +393,7 @@ class Cargo:
         return [one for one, leaves in zip(free, may.tolist(), strict=True) if leaves]
 
     def _leave(self, one: _Product, cycle: int) -> None:
-        """Removes a product at the end of its belt, where no other one carries it on, or that has fallen."""
+        """Removes a product that has fallen, or is at the end of its belt with no other belt to carry it further."""
         place = self._data.qpos[one.qpos : one.qpos + 3]
         half, at_end = self._half[0], False
         for belt in self._belts.values():
@@ -413,7 +413,7 @@ class Cargo:
             self._wait(one)
 
     def _forget(self, one: _Product) -> None:
-        """Where it came to rest is not judged any more."""
+        """Cancels the check of where a product came to rest."""
         self._rests = [rests for rests in self._rests if rests.product is not one]
 
     def _weld(self, weld: int, body: int, one: _Product) -> None:
@@ -444,7 +444,7 @@ class Cargo:
             self._rests.append(_Rests(one, one.number, index, due, belt, self._carried(belt, one)))
 
     def _carried(self, belt: _Belt, one: _Product) -> Array:
-        """m: X and Y on the belt as if it stood still."""
+        """Returns X and Y of a product [m] relative to the moving belt surface."""
         place = self._seen_from(belt, self._data.qpos[one.qpos : one.qpos + 3])[:2]
         return np.asarray(place - [self._data.qpos[belt.joint], 0])
 
@@ -467,10 +467,11 @@ class Cargo:
         )
 
     def _sense(self, belt: _Belt, measured: Rows) -> None:
-        """The light barrier: on while any product is in it. Edges come as late as the product is past it."""
+        """Updates the light barrier: on while any product is in it. The age of an edge follows from the distance by
+        which the product has passed the barrier."""
         assert belt.barrier is not None
         speed = float(self._data.qvel[belt.dof])
-        past = math.inf  # m that the front of the last product to come is past it, or its end
+        past = math.inf  # [m] by which the front, or else the end, of the nearest product is past the barrier
         blocked = False
         for one in self._there():
             x, y, _ = self._seen_from(belt, self._data.qpos[one.qpos : one.qpos + 3])
@@ -496,7 +497,7 @@ class Cargo:
         measured["probe_falls"][belt.row] = belt.falls
 
     def _allowed(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """(n, n): shapes that may touch one another: products and belts."""
+        """Returns (n, n): True for pairs of shapes that may touch, a product and a belt."""
         count = self._model.ngeom
         allowed = np.zeros((count, count), bool)
         products = [one.geom for one in self._products]

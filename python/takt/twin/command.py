@@ -1,4 +1,4 @@
-"""`takt twin`: a scenario in the twin of its machine, with the twin's verdicts beside the scenario's own."""
+"""`takt twin`: runs a scenario in the twin of its machine, and adds the twin's verdicts to those of the scenario."""
 
 from __future__ import annotations
 
@@ -24,12 +24,15 @@ class TwinRun:
     outcome: Outcome  # with the verdicts of both
     judged: Judged
     twin: Twin
-    cycles_s: float  # cycles a second of the wall clock, Takt and scenario included
-    servo_cycles_s: float | None  # the same with our servo model
+    cycles_s: float  # cycles per second of wall clock, Takt and scenario included
+    servo_cycles_s: float | None  # the same with our servo model; None: not compared
 
 
 def find(what: Path, scenario: Path | None) -> tuple[Path, Scenario]:
-    """Machine file and scenario of a machine file, a ready machine's name or a scenario file."""
+    """Returns machine file and scenario for a machine file, a ready machine's name or a scenario file.
+
+    scenario: scenario file; None: that of the machine, for a machine file the `scenario.py` beside it.
+    """
     if what.suffix in (".yaml", ".yml"):
         file = scenario or what.parent / "scenario.py"
         return what, load_scenario(file)
@@ -38,10 +41,16 @@ def find(what: Path, scenario: Path | None) -> tuple[Path, Scenario]:
 
 
 def run(machine: Path, scenario: Scenario, *, compare: bool = True, report: Path | None = None) -> TwinRun:
-    """Runs a scenario in the twin of a machine, and with our servo model to compare."""
+    """Runs a scenario in the twin of a machine.
+
+    compare: run it with our servo model, too, for comparison.
+    report: folder of the report; None: no report.
+
+    Raises PlantError if the physics explodes.
+    """
     servo = None
     servo_rate = None
-    Twin.of(machine)  # what is wrong with it is said before anything runs
+    Twin.of(machine)  # raises its errors before anything runs
     if compare:
         with Engine(machine) as session:
             start = time.perf_counter()
@@ -71,7 +80,7 @@ def _drawn(twin: Twin, report: Path | None) -> str:
 
 
 def table(judged: Judged) -> Table:
-    """Figures of the twin beside those of our servo model."""
+    """Returns the figures of the twin beside those of our servo model as a table."""
     made = Table(*HEAD, box=None)
     for row in judged.table():
         made.add_row(*row)

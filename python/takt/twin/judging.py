@@ -1,4 +1,4 @@
-"""What a twin says of a run: verdicts of its own, and figures beside those of our servo model."""
+"""Evaluation of a run in a twin: verdicts, and figures beside those of our servo model."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from takt.twin.model import Array
 from takt.twin.plant import Twin
 from takt.verdict import Verdict, seconds
 
-AGREES_MM = 0.3  # between the tool of the model and Takt's kinematics of the model's joints: its rods are springs
+AGREES_MM = 0.3  # between the model's tool and Takt's kinematics of the model's joints: constraints in MuJoCo are soft
 AGREES_DEG = 0.3
-LIES_MM = 1.0  # that a product may move on its belt after a gripper has let it go
+LIES_MM = 1.0  # admissible displacement of a product on its belt after its release
 LIES_DEG = 2.0
 HEAD = ("", "", "twin rms", "largest", "servo rms", "largest")
 
 
 @dataclass(frozen=True)
 class AxisFigures:
-    """Of one axis, in its unit and in Nm or N."""
+    """Figures of one axis, in its unit and in Nm or N."""
 
     axis: str
     unit: str
@@ -32,12 +32,12 @@ class AxisFigures:
     servo: tuple[float, float] | None  # the same with our servo model
     torque: tuple[float, float]
     max_torque: float
-    limited: int  # cycles in which its motor was at its limit
+    limited: int  # number of cycles with the motor at its limit
 
 
 @dataclass(frozen=True)
 class ToolFigures:
-    """Of the tool of one group, in mm and deg."""
+    """Figures of the tool of one group, in mm and deg."""
 
     group: str
     agreement: tuple[float, float]  # rms and largest
@@ -48,12 +48,12 @@ class ToolFigures:
 
 @dataclass(frozen=True)
 class ProductFigures:
-    """Of all products that grippers held, in mm."""
+    """Figures of all products that grippers held, in mm."""
 
     gripped: int
     put: int
-    beside: tuple[float, float]  # rms and largest distance from the tool to the middle of a product that it gripped
-    moved: tuple[float, float]  # on the belt, after it was let go
+    beside: tuple[float, float]  # rms and largest distance from the tool to the centre of a product's top when gripped
+    moved: tuple[float, float]  # rms and largest displacement on the belt after the release
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Judged:
         return all(verdict.passed for verdict in self.verdicts)
 
     def table(self) -> list[tuple[str, ...]]:
-        """Rows of figures under `HEAD`."""
+        """Returns the rows of figures; their columns are those of `HEAD`."""
         rows: list[tuple[str, ...]] = []
         for tool in self.tools:
             rows.append((tool.group, "tool from its set pose [mm]", *_pair(tool.off), *_pair(tool.servo_off)))
@@ -97,8 +97,11 @@ def _pair(values: tuple[float, float] | None) -> tuple[str, str]:
 
 
 def judge(twin: Twin, recording: Recording, servo: Recording | None = None) -> Judged:
-    """Judges what a twin has seen since its start. recording: of the same time, for the figures of axes and groups;
-    servo: the same run with our servo model, to compare."""
+    """Returns verdicts and figures of the run of a twin since its start.
+
+    recording: of the same run, for the figures of axes and groups.
+    servo: recording of the same run with our servo model, for comparison; None: not compared.
+    """
     seen = twin.seen()
     period = float(recording.meta["period_s"])
     verdicts: list[Verdict] = []
@@ -184,7 +187,8 @@ def _untouched(twin: Twin, period: float) -> Verdict:
 
 
 def _lie(cargo: Cargo, period: float) -> tuple[ProductFigures, Verdict]:
-    """Whether products lie where grippers have let them go, upright, and none fell."""
+    """Returns the figures of products, and the verdict that they rest where they were released, upright, and that none
+    fell."""
     handled = cargo.handled
     put = [one for one in handled if one.put is not None]
     moved = np.array([one.moved for one in put if not math.isnan(one.moved)])
@@ -219,7 +223,7 @@ def _verdict(
 
 
 def _size(values: Array) -> tuple[float, float]:
-    """Root mean square and largest magnitude."""
+    """Returns root mean square and largest magnitude; NaN if there are no values."""
     if not len(values):
         return math.nan, math.nan
     return float(np.sqrt(np.mean(np.square(values)))), float(np.abs(values).max())
@@ -231,8 +235,8 @@ def _following(recording: Recording, axis: str) -> Array:
 
 
 def _off(recording: Recording, group: str) -> Array:
-    """Distance of the tool from its set pose while the group is enabled. The measured pose answers the set pose of the
-    cycle before."""
+    """Returns the distances [mm] of the tool from its set pose while the group is enabled. The actual pose corresponds
+    to the set pose of the preceding cycle."""
     table = recording[group]
     poses = np.array([table[name] for name in ("x", "y", "z", "actual_x", "actual_y", "actual_z")], float)
     off = np.linalg.norm(poses[3:, 1:] - poses[:3, :-1], axis=0)

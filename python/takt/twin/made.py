@@ -1,7 +1,7 @@
-"""Models made from the kinematics of a machine file: MJCF, in m, kg and degrees.
+"""Models generated from the kinematics of a machine file: MJCF, in m, kg and degrees.
 
-Each axis moves one body, whose mass the section `twin` says; shapes are there for inertia, contact and pictures. A
-Delta is a closed chain: six rods on ball joints between its arms and a platform that nothing else holds.
+Each axis moves one body with the mass given in the section `twin`; shapes serve for inertia, contact and pictures. A
+Delta is a closed chain: six rods on ball joints between its arms and a platform that only the rods hold.
 """
 
 from __future__ import annotations
@@ -13,28 +13,28 @@ from typing import Any
 from xml.sax.saxutils import quoteattr
 
 MECHANISMS = ("gantry", "core_xy", "scara", "delta", "six_axis", "serial")
-ROD_SPACING = 60.0  # mm: of the rods of a Delta that does not say it
-ENVIRONMENT = 1 << 30  # contact group of obstacles; each mechanism has one of its own
-PRODUCTS = 1 << 29  # and that of products
+ROD_SPACING = 60.0  # [mm] default rod spacing of a Delta
+ENVIRONMENT = 1 << 30  # contact group of obstacles; each mechanism has its own group
+PRODUCTS = 1 << 29  # contact group of products
 GROUPS = 29
-PARK_M = (0.0, 50.0, 0.0)  # where products wait that are not in the machine, and one from another
-PARK_STEP_M = 1.0
-UNSEEN = 'rgba="0 0 0 0" contype="0" conaffinity="0"'  # what is there for its mass alone
-SEEN = 'contype="0" conaffinity="0"'  # what is there for pictures alone
-TIP = 1.0  # mm between a cup and what it hangs from
+PARK_M = (0.0, 50.0, 0.0)  # [m] position of the first parked product
+PARK_STEP_M = 1.0  # distance between parked products
+UNSEEN = 'rgba="0 0 0 0" contype="0" conaffinity="0"'  # shapes that only have mass
+SEEN = 'contype="0" conaffinity="0"'  # shapes that are only visible
+TIP = 1.0  # [mm] distance between a cup and the body from which it hangs
 SLIDES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
 TURNS = {"a": (1, 0, 0), "b": (0, 1, 0), "c": (0, 0, 1)}
 
 
 @dataclass(frozen=True)
 class Body:
-    """What an axis of a made mechanism moves, seen from what the axis before it moves."""
+    """The body that an axis of a generated mechanism moves, in the frame of the body of the preceding axis."""
 
     axis: str
     direction: tuple[float, float, float]
     slides: bool
-    at: tuple[float, float, float] = (0.0, 0.0, 0.0)  # mm
-    to: tuple[float, float, float] = (0.0, 0.0, 0.0)  # mm, where its shape ends
+    at: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [mm]
+    to: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [mm] end of its shape
 
 
 @dataclass
@@ -44,20 +44,20 @@ class Made:
     world: list[str] = field(default_factory=list)
     equality: list[str] = field(default_factory=list)
     contact: list[str] = field(default_factory=list)
-    solids: list[str] = field(default_factory=list)  # shapes of mechanisms, which belts and products must not touch
-    joints: dict[str, str] = field(default_factory=dict)  # of axes
-    tools: dict[str, str] = field(default_factory=dict)  # sites of groups
+    solids: list[str] = field(default_factory=list)  # shapes of mechanisms, checked for contact with belts
+    joints: dict[str, str] = field(default_factory=dict)  # by axis
+    tools: dict[str, str] = field(default_factory=dict)  # by group: site
 
 
 def mechanism_of(group: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
-    """Kind and parameters of a group's kinematics."""
+    """Returns kind and parameters of a group's kinematics."""
     kinematics = group["kinematics"]
     kind = next(kind for kind in MECHANISMS if kinematics.get(kind) is not None)
     return kind, kinematics[kind]
 
 
 def document(name: str, made: Made, step_s: float) -> str:
-    """The model as one MJCF."""
+    """Returns the model as one MJCF document. step_s: time step of the physics [s]."""
     return f"""<mujoco model={quoteattr(name)}>
 <compiler angle="degree" eulerseq="XYZ" autolimits="true"/>
 <option timestep="{step_s!r}" integrator="implicitfast" gravity="0 0 -9.81"/>
@@ -72,7 +72,7 @@ def document(name: str, made: Made, step_s: float) -> str:
 
 
 def add_group(made: Made, number: int, group: Mapping[str, Any], twin: Mapping[str, Any]) -> None:
-    """A group's mechanism; not one from a URDF."""
+    """Adds the mechanism of a group; not for kinematics from a URDF. number: index of the group, for its contacts."""
     kind, params = mechanism_of(group)
     axes = {axis["axis"]: axis for axis in twin["axes"]}
     told: Mapping[str, Any] = next((one for one in twin["mechanisms"] if one["group"] == group["name"]), {})
@@ -85,23 +85,24 @@ def add_group(made: Made, number: int, group: Mapping[str, Any], twin: Mapping[s
 
 
 def belt(name: str) -> str:
-    """What body, joint's body and shape of a belt are called."""
+    """Returns the name of body and shape of a belt."""
     return f"belt {name}"
 
 
 def product(slot: int) -> str:
-    """What body, joint and shape of a product are called."""
+    """Returns the name of body, joint and shape of a product."""
     return f"product {slot + 1}"
 
 
 def grip(group: str, slot: int) -> str:
-    """What the weld is called by which a gripper holds a product."""
+    """Returns the name of the weld by which a gripper holds a product."""
     return f"{group} holds {slot + 1}"
 
 
 def add_belt(made: Made, told: Mapping[str, Any], params: Mapping[str, Any], axis: Mapping[str, Any]) -> None:
-    """A belt: a plate whose body its axis moves along X. Its shape is put back in each cycle (takt.twin.cargo), so that
-    it stays, and its surface moves; pairs say what it touches, since MuJoCo looks for others where its body is."""
+    """Adds a belt: a plate whose body is moved along X by its axis. Its shape is moved back every few cycles
+    (takt.twin.cargo), so that the plate stays and its surface moves. Contacts are explicit pairs, since MuJoCo's own
+    search for contacts uses the position of the body."""
     name, thick = belt(told["belt"]), 10.0  # mm
     length = (told["to"] - told["from"]) / 2000
     at = _metres(((told["from"] + told["to"]) / 2, 0, told["surface"] - thick / 2))
@@ -115,7 +116,7 @@ def add_belt(made: Made, told: Mapping[str, Any], params: Mapping[str, Any], axi
 
 
 def add_products(made: Made, told: Mapping[str, Any], belts: Sequence[Mapping[str, Any]]) -> None:
-    """Products, which wait beside the machine."""
+    """Adds the products, parked beside the machine, and their contacts with belts."""
     size = " ".join(repr(told[edge] / 2000) for edge in ("length", "width", "height"))
     contacts = f'contype="{PRODUCTS}" conaffinity="{(1 << GROUPS) - 1 | PRODUCTS | ENVIRONMENT}"'
     for slot in range(told["count"]):
@@ -135,7 +136,7 @@ def add_products(made: Made, told: Mapping[str, Any], belts: Sequence[Mapping[st
 
 
 def add_gripper(made: Made, group: Mapping[str, Any], count: int) -> None:
-    """The welds by which the gripper of a group holds products."""
+    """Adds the welds by which the gripper of a group holds products, disabled."""
     kind, params = mechanism_of(group)
     name = group["name"]
     body = f"{name}.platform" if kind == "delta" and not params["rotary"] else _last(group, kind)
@@ -147,16 +148,16 @@ def add_gripper(made: Made, group: Mapping[str, Any], count: int) -> None:
 
 
 def _last(group: Mapping[str, Any], kind: str) -> str:
-    """The axis that moves the tool's body."""
+    """Returns the name of the axis that moves the tool's body."""
     if kind == "delta":
         return str(group["axes"][3])
     return _bodies(kind, group["axes"], mechanism_of(group)[1])[-1].axis
 
 
 def _cup(made: Made, group: Mapping[str, Any], told: Mapping[str, Any]) -> str:
-    """The cup of a gripper, above the tool's point. It touches obstacles and belts; products it may touch."""
+    """Returns the cup of a gripper, above the TCP. It collides with obstacles and belts, not with products."""
     tool, gripper = group["tool"], told["gripper"]
-    back = -1 if mechanism_of(group)[0] == "six_axis" else 1  # its flange looks along Z, others look against it
+    back = -1 if mechanism_of(group)[0] == "six_axis" else 1  # its flange points along Z, all others against Z
     at = _metres((tool["x"], tool["y"], tool["z"] + back * gripper["length"] / 2))
     name = f"{group['name']}.gripper"
     made.solids.append(name)
@@ -171,7 +172,7 @@ def _cup(made: Made, group: Mapping[str, Any], told: Mapping[str, Any]) -> str:
 
 
 def add_alone(made: Made, number: int, place: int, axis: Mapping[str, Any], rotary: bool) -> None:
-    """An axis without a mechanism."""
+    """Adds an axis that no mechanism uses. place: index among these axes, for its position in the world."""
     direction = axis.get("direction") or ("z" if rotary else "x")
     joint = _joint(made, axis, SLIDES[direction], not rotary)
     if rotary:
@@ -226,7 +227,7 @@ def _chain(
         to = body.to if math.hypot(*body.to) > 1 else (0.0, 0.0, -30.0)
         start = (0.0, 0.0, 0.0)
         if told.get("gripper") and body.slides:
-            to = (to[0], to[1], abs(to[2]))  # away from what the gripper reaches for
+            to = (to[0], to[1], abs(to[2]))  # away from the products
         if told.get("gripper") and body is bodies[-1]:  # the cup hangs from it
             above = max(0.0, group["tool"]["z"] + told["gripper"]["length"]) + 20 + TIP
             start, to = (0.0, 0.0, above), (0.0, 0.0, above + 30)
@@ -252,7 +253,7 @@ def _delta(
     half = (p["rod_spacing"] or ROD_SPACING) / 2000
     platform = p["platform_radius"] / 1000
     thick = 0.008
-    # A gripper's cup hangs from the platform, which then is above it.
+    # The cup of a gripper hangs from the platform, so the platform's shape is above the cup.
     height = (
         max(0.0, (group["tool"]["z"] + told["gripper"]["length"]) / 1000 + thick + TIP / 1000)
         if told.get("gripper")
@@ -298,11 +299,11 @@ def _delta(
             f'<geom type="cylinder" size="0.02 0.01" pos="0 0 {height!r}" mass="{axis["mass"]!r}" {_contacts(number)}/>'
             f"{tool}</body>"
         )
-    # Moved onto the world by its free joint, which MuJoCo allows there only: see Twin, which assembles the chain.
+    # A child of the world, since MuJoCo allows free joints only there; takt.twin.model assembles the chain.
     body = f"{name}.platform"
     made.solids.append(body)
     disc = f'type="cylinder" size="{max(platform, 0.01)!r} {thick!r}"'
-    # Its mass is where the rods are, wherever its shape is.
+    # The mass is at the height of the rods, wherever the shape is.
     made.world.append(
         f"<body name={quoteattr(body)}><freejoint name={quoteattr(body)}/>"
         f'<geom {disc} mass="{told["platform_mass"]!r}" {UNSEEN}/>'
@@ -335,7 +336,7 @@ def _tool(made: Made, number: int, group: Mapping[str, Any], told: Mapping[str, 
 
 
 def _contacts(number: int) -> str:
-    """Parts of one mechanism do not touch one another; those of others and obstacles they do."""
+    """Returns contact groups with which the parts of a mechanism collide with other mechanisms and obstacles only."""
     own = 1 << (number % GROUPS)
     return f'contype="{own}" conaffinity="{((1 << GROUPS) - 1) & ~own | ENVIRONMENT}"'
 

@@ -1,4 +1,5 @@
-"""The model of a twin: made or read, and what of it belongs to which axis and group. Says what does not fit."""
+"""The model of a twin, generated or read, with its joints by axis and its tools by group. Checks that model and machine
+file agree."""
 
 from __future__ import annotations
 
@@ -21,10 +22,10 @@ from takt.urdf_files import urdf_folders
 
 Array = npt.NDArray[np.float64]
 
-FITS_MM = 0.5  # how far a model's tool may be from where the kinematics say
+FITS_MM = 0.5  # admissible deviation of a model's tool from the kinematics
 FITS_DEG = 0.5
-STABLE = 0.8  # gain of the velocity loops over one step, all together: below 2, with room for other poses
-LOOP_MM = 0.05  # how far a loop may be open at the start
+STABLE = 0.8  # gain of all velocity loops together over one step: below 2, with a margin for other poses
+LOOP_MM = 0.05  # admissible gap of a closed loop at the start
 PER_M = 1000.0  # mm
 PER_RAD = 180 / math.pi  # deg
 
@@ -35,31 +36,32 @@ class Joint:
 
     axis: str
     name: str
-    position: int  # place in qpos
-    velocity: int  # place in qvel
+    position: int  # index in qpos
+    velocity: int  # index in qvel
     scale: float
     zero: float
 
 
 @dataclass(frozen=True)
 class Tool:
-    """The flange of a group, and what Takt knows of it."""
+    """The flange of a group in the model, and Takt's kinematics of it."""
 
     group: str
     kinematics: Kinematics
-    rows: tuple[int, ...]  # of its axes, among those of the twin
-    site: int  # of the model, or -1: a body
-    body: int
-    base: Array  # (4, 4), mm: pose of the group's MCS in the world
+    rows: tuple[int, ...]  # indices of its axes among those of the twin
+    site: int  # of the model; -1: the flange is a body
+    body: int  # of the model; -1: the flange is a site
+    base: Array  # (4, 4) [mm] pose of the group's MCS in the world
 
     def pose_in(self, data: Any) -> tuple[Array, Array]:
-        """Position (3,) [m] and rotation (9,), row by row, of the flange in the world, by MuJoCo."""
+        """Returns position (3,) [m] and rotation matrix (9,), row by row, of the flange in the world, from MuJoCo."""
         if self.site >= 0:
             return data.site_xpos[self.site], data.site_xmat[self.site]
         return data.xpos[self.body], data.xmat[self.body]
 
     def expected(self, joints: npt.ArrayLike) -> tuple[Array, Array]:
-        """Positions in mm, and rotations, by Takt's own kinematics, of rows of positions of its axes."""
+        """Returns positions (n, 3) [mm] and rotations (n, 3, 3) of the flange in the world, from Takt's kinematics, for
+        positions of its axes (n, axes) [u]. Raises KinematicsError if the kinematics have no solution."""
         poses = np.atleast_2d(self.kinematics.forward(joints))
         turns = rotations(poses[:, 3:])
         return poses[:, :3] @ self.base[:3, :3].T + self.base[:3, 3], self.base[:3, :3] @ turns
@@ -67,17 +69,18 @@ class Tool:
 
 @dataclass
 class Model:
-    """A model and its state at the start."""
+    """A model and its initial state."""
 
     model: Any  # mujoco.MjModel
     data: Any
     joints: tuple[Joint, ...]
     tools: tuple[Tool, ...]
-    inertia: Array  # kg m2 or kg, that the gain of each drive fits
+    inertia: Array  # [kg m2 or kg] for which the gain of each drive is set
 
 
 def rotations(angles: Array) -> Array:
-    """Rotation matrices (n, 3, 3), Rz(c) Ry(b) Rx(a), of angles a, b, c (n, 3) [deg] about fixed axes X, Y, Z."""
+    """Returns the rotation matrices (n, 3, 3), Rz(c) Ry(b) Rx(a), of angles a, b, c (n, 3) [deg] about the fixed axes
+    X, Y, Z."""
     a, b, c = np.radians(angles).T
     zero, one = np.zeros_like(a), np.ones_like(a)
 
@@ -91,7 +94,10 @@ def rotations(angles: Array) -> Array:
 
 
 def build(text: bytes, file_name: str, machine: Mapping[str, Any], step_s: float) -> Model:
-    """The model of the machine's twin, at rest where its axes stand when power comes on."""
+    """Returns the model of a machine's twin, at rest at the start positions of its axes. step_s: time step [s].
+
+    Raises TaktError if MuJoCo is not installed, ConfigError if the section `twin` is missing or the model does not fit.
+    """
     try:
         import mujoco
     except ImportError:
@@ -111,8 +117,8 @@ def build(text: bytes, file_name: str, machine: Mapping[str, Any], step_s: float
 
 
 def silent(_: str) -> None:
-    """For MuJoCo's own warnings, which would go to the terminal and into MUJOCO_LOG.TXT wherever the command was given.
-    A twin finds them in its data, and says them with cycle and joint."""
+    """Discards MuJoCo's own warnings, which would otherwise be printed and written to MUJOCO_LOG.TXT in the working
+    directory. A twin reads them from its data, and reports them with cycle and joint."""
 
 
 class _Builder:
@@ -129,12 +135,12 @@ class _Builder:
             if group.get("kinematics") and any(axis in self.moved for axis in group["axes"])
         ]
 
-    # --- both kinds ---
+    # --- both kinds of models ---
 
     def compiled(self, spec: Any, path: str) -> Any:
         try:
             model = spec.compile()
-        except Exception as error:  # the compiler's own sentence says which element
+        except Exception as error:  # the compiler's own message names the element
             raise self.problems.fail(path, f"MuJoCo does not take the model: {_line(error)}") from None
         model.opt.timestep = self.step_s
         model.opt.disableflags |= int(self.mujoco.mjtDisableBit.mjDSBL_ACTUATION)
@@ -142,11 +148,11 @@ class _Builder:
         return model
 
     def rotary(self, axis: str) -> bool:
-        """Whether an axis without a mechanism turns."""
+        """True if an axis without a mechanism is rotary."""
         return bool(self.axes[axis]["unit"] == "deg")
 
     def joint_of(self, model: Any, number: int, name: str) -> Joint | None:
-        """The joint of an axis, if it fits."""
+        """Returns the joint of an axis; None, with a problem added, if it does not fit."""
         axis, path = self.moved[number], f"twin.axes[{number}].joint"
         names = [model.joint(i).name for i in range(model.njnt)]
         if name not in names:
@@ -174,7 +180,8 @@ class _Builder:
         return Joint(axis, name, int(joint.qposadr[0]), int(joint.dofadr[0]), scale, zero)
 
     def member(self, axis: str) -> tuple[Mapping[str, Any] | None, int]:
-        """The group whose mechanism an axis moves, and its place there."""
+        """Returns the group whose mechanism an axis moves, and the index of the axis in it; None and -1 if there is
+        none."""
         for group in self.groups:
             count = Kinematics(folder=self.folder, **mechanism(group)).axes
             if axis in group["axes"][:count]:
@@ -203,14 +210,14 @@ class _Builder:
         return Tool(group["name"], kinematics, rows, site, body, base)
 
     def add_drive_trains(self, model: Any, joints: Sequence[Joint]) -> None:
-        """Gives the joints motors, gears and friction."""
+        """Adds rotor inertia and friction to the joints."""
         for joint, told in zip(joints, self.twin["axes"], strict=True):
             model.dof_armature[joint.velocity] += told["rotor_inertia"]
             model.dof_frictionloss[joint.velocity] += told["coulomb_friction"]
             model.dof_damping[joint.velocity] += told["viscous_friction"]
             if told["coulomb_friction"]:
-                # Friction of MuJoCo is soft: what it holds creeps at 1 ms times the acceleration that it holds back.
-                # Like this it does at less than 1 us times it.
+                # MuJoCo's friction is soft: a joint held by it creeps at 1 ms times the acceleration that is held back.
+                # With these parameters it is less than 1 us times that.
                 model.dof_solref[joint.velocity] = (2 * self.step_s, 1.0)
                 model.dof_solimp[joint.velocity, :2] = (0.999, 0.999)
 
@@ -219,7 +226,7 @@ class _Builder:
         return float(next((s["mechanics"]["start_position"] for s in servos if s["axis"] == axis), 0.0))
 
     def time_constant_of(self, axis: str) -> float:
-        """Time constant of the velocity loop of its drive."""
+        """Returns the time constant [s] of the velocity loop of an axis' drive."""
         servos = self.machine["simulation"]["servos"]
         return float(next((s["drive"]["velocity_time_constant_s"] for s in servos if s["axis"] == axis), 0.001))
 
@@ -262,8 +269,9 @@ class _Builder:
                 self.problems.add(path, f"{sentence} and {turned:.3g} deg away, at the start")
 
     def inertia_of(self, model: Any, data: Any, joints: Sequence[Joint]) -> Array:
-        """The inertia that fits each motor's gain: what it moves at the start while the others hold, less where all
-        together would swing. From the accelerations that a torque gives, so that loops count, too."""
+        """Returns the inertia for which each motor's gain is set: the one it moves in the initial pose while the others
+        hold, reduced if all loops together would be unstable. It is computed from accelerations per torque, so that
+        closed chains are included."""
         losses = model.dof_frictionloss.copy()
         model.dof_frictionloss[:] = 0
         data.qvel[:] = 0
@@ -287,7 +295,7 @@ class _Builder:
         swing = float(np.abs(np.linalg.eigvals(gained * held)).max())
         return np.asarray(held * min(1.0, STABLE / (max(shares) * swing)))
 
-    # --- made ---
+    # --- generated ---
 
     def from_kinematics(self) -> Model:
         parts, twin = made.Made(), self.twin
@@ -336,7 +344,7 @@ class _Builder:
         return self.done(model, data, fitting, found)
 
     def assemble(self, model: Any, data: Any, tool: Tool, group: Mapping[str, Any], joints: Sequence[Joint]) -> None:
-        """Puts the platform of a Delta where it hangs at the start, and turns its rods towards it."""
+        """Sets the platform of a Delta to its pose at the start positions of the axes, and turns the rods to it."""
         at = [self.start_of(joints[row].axis) for row in tool.rows]
         try:
             places, _ = tool.expected(at)
@@ -391,13 +399,13 @@ class _Builder:
         parts.tools[group["name"]] = prefix + "flange"
 
     def read_urdf(self, text: str, path: str, folder: Path) -> Any:
-        """The model of a URDF in `folder`; its meshes are found as those of a workspace."""
+        """Returns the model of a URDF in `folder`; its meshes are resolved as those of a workspace."""
         try:
             spec = self.mujoco.MjSpec.from_string(text)
         except Exception as error:
             raise self.problems.fail(path, f"MuJoCo cannot read it: {_line(error)}") from None
         spec.compiler.fusestatic = False
-        # MuJoCo's own element in the URDF counts for what is not found so.
+        # Meshes not found in this way are searched in the folder that MuJoCo's own element of the URDF names.
         own = folder / spec.compiler.meshdir
         spec.strippath = False
         for mesh in spec.meshes:
@@ -405,7 +413,7 @@ class _Builder:
             mesh.file = file if Path(file).is_file() else _core.urdf_mesh_file(mesh.file, shown(own))
         return spec
 
-    # --- given ---
+    # --- from a file ---
 
     def from_file(self) -> Model:
         file = self.folder / self.twin["model"]
@@ -442,7 +450,7 @@ class _Builder:
 
 
 def mechanism(group: Mapping[str, Any]) -> dict[str, Any]:
-    """The arguments of takt.kinematics.Kinematics for a group."""
+    """Returns the arguments of takt.kinematics.Kinematics for a group."""
     kind, params = made.mechanism_of(group)
     found: dict[str, Any] = {kind: params}
     if group["kinematics"]["joints"]:

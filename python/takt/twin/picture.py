@@ -1,5 +1,5 @@
 """Pictures of a twin, without a screen: MuJoCo's renderer in a process of its own (takt/twin/render.py), since a driver
-that cannot draw may end its process."""
+that cannot draw may terminate its process."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from takt.twin.model import Model
     from takt.twin.plant import Frame
 
-DRIVERS = ("egl", "osmesa")  # that need no screen
+DRIVERS = ("egl", "osmesa")  # these need no screen
 SIZE = (960, 640)  # pixels
 RENDER = Path(__file__).with_name("render.py")
 WAIT_S = 60.0
@@ -27,7 +27,8 @@ ERROR = re.compile(r"[\w.]+Error: ")
 
 
 def draw(model: Model, frame: Frame, file: Path) -> Path:
-    """Draws a state as PNG. Raises PlantError with the reason where no driver here can."""
+    """Draws a state as PNG, and returns the path of the file. Raises PlantError, with the reasons, if no driver on this
+    machine can draw, or the file is no .png. MUJOCO_GL selects a driver; else those of DRIVERS are tried."""
     import mujoco
 
     if file.suffix.lower() != ".png":
@@ -54,7 +55,7 @@ def draw(model: Model, frame: Frame, file: Path) -> Path:
 
 
 def _reason(said: str) -> str:
-    """What a program that failed says last: the line of its exception, where it has one."""
+    """Returns the last line with an exception from the output of a failed program; without one its last line."""
     lines = [line.strip() for line in said.splitlines() if line.strip()]
     errors = [line for line in lines if ERROR.match(line)]
     return (errors or lines or [""])[-1]

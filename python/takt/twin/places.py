@@ -1,4 +1,4 @@
-"""Problems of the section `twin` that only the model shows, with file, line and key as those of the loader."""
+"""Problems of the section `twin` that only show in the model, with file, line and key like those of the loader."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from takt.yaml_text import compose
 
 
 def problem(text: bytes, file_name: str, path: str, sentence: str) -> str:
-    """ "machine.yaml:12:5: twin.axes[0].joint: expected ..."; the place of the innermost key that is written."""
+    """Returns a problem as "machine.yaml:12:5: twin.axes[0].joint: expected ...", with line and column of the innermost
+    key of `path` that the file has."""
     try:
         node = compose(text.decode())
     except (UnicodeDecodeError, yaml.YAMLError):
@@ -35,7 +36,7 @@ def problem(text: bytes, file_name: str, path: str, sentence: str) -> str:
 
 
 class Problems:
-    """Those of one machine file, gathered."""
+    """The problems of one machine file, collected."""
 
     def __init__(self, text: bytes, file_name: str) -> None:
         self._text = text
@@ -46,7 +47,7 @@ class Problems:
         self._all.append(problem(self._text, self._file_name, path, sentence))
 
     def end(self) -> None:
-        """Raises ConfigError if there were any."""
+        """Raises ConfigError if there are any problems."""
         if self._all:
             raise ConfigError(self._all)
 
@@ -59,7 +60,7 @@ def mujoco_missing() -> TaktError:
 
 
 def near(word: str, known: Sequence[str]) -> str:
-    """What a name could have been, and what there is."""
+    """Returns a hint for an unknown name: the most similar known one, and all known ones."""
     import difflib
 
     match = difflib.get_close_matches(word, known, n=1)

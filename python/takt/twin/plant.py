@@ -1,9 +1,9 @@
-"""A machine's twin as a plant of its engine: MuJoCo has the mechanics, Takt's simulated drives turn set points into
-torques, its encoders and switches read the joints.
+"""A machine's twin as the plant of its engine: MuJoCo simulates the mechanics, Takt's simulated drives convert set
+points into torques, and its encoders and switches read the joints.
 
-In each cycle every drive takes its set point, then MuJoCo makes the cycle's steps with the torques that the drives ask
-for at the beginning of each, then the encoders are read. It is a function of the set points alone: the same run comes
-out the same, bit for bit, on the same build of MuJoCo and the same processor.
+In each cycle every drive takes its set point, then MuJoCo makes the cycle's steps with the torques that the drives
+command at the beginning of each step, then the encoders are read. The result is a function of the set points alone: a
+run is reproducible, bit for bit, on the same build of MuJoCo and the same processor.
 """
 
 from __future__ import annotations
@@ -24,24 +24,24 @@ from takt.twin.model import Array, Model, build, silent
 if TYPE_CHECKING:
     from takt.recording import Recording
 
-MOST_KEPT = 4096  # answers about contacts
-FASTEST = 1e6  # m/s or rad/s: no machine, the physics has exploded
+MOST_KEPT = 4096  # cached results of contact checks
+FASTEST = 1e6  # [m/s or rad/s] above this speed the physics has exploded
 
 
 @dataclass(frozen=True)
 class Frame:
-    """A state of the model: what `takt.twin.picture` shows."""
+    """A state of the model, as `takt.twin.picture` draws it."""
 
     cycle: int
     positions: Array  # MuJoCo's qpos
-    velocities: Array  # and qvel
+    velocities: Array  # MuJoCo's qvel
 
 
 @dataclass(frozen=True)
 class ContactSeen:
-    """Two bodies that touched."""
+    """Two bodies that touched, at their first contact."""
 
-    cycle: int  # the first
+    cycle: int
     bodies: tuple[str, str]
     depth_mm: float
     at_mm: tuple[float, float, float]
@@ -49,16 +49,16 @@ class ContactSeen:
 
 @dataclass(frozen=True)
 class Seen:
-    """What the twin saw, a row a cycle from 0 on."""
+    """What the twin measured, one row for each cycle from 0 on."""
 
-    joints: Array  # (n, axes): in the units of the axes, at the last step of the physics in the cycle
-    torques: Array  # (n, axes): Nm or N, of the motors
-    limited: np.ndarray[Any, np.dtype[np.bool_]]  # (n, axes): held back by the motor's limit
-    tools: dict[str, tuple[Array, Array]]  # by group: (n, 3) mm and (n, 3, 3), in the world, at the same instant
+    joints: Array  # (n, axes) [u], at the last step of the physics in the cycle
+    torques: Array  # (n, axes) [Nm or N] of the motors
+    limited: np.ndarray[Any, np.dtype[np.bool_]]  # (n, axes): True if the motor was at its limit
+    tools: dict[str, tuple[Array, Array]]  # by group: (n, 3) [mm] and (n, 3, 3), in the world, at the same instant
 
 
 class Twin(Plant):
-    """The twin of a machine, `takt.Engine(machine, plant="mujoco")`; made for one engine."""
+    """The twin of a machine, `takt.Engine(machine, plant="mujoco")`; each engine needs a twin of its own."""
 
     def __init__(
         self,
@@ -68,7 +68,7 @@ class Twin(Plant):
         period: float | None = None,
     ) -> None:
         self._period_s = period or float(machine["cycle"]["period_s"])
-        twin: Mapping[str, Any] = machine.get("twin") or {"step_s": 1.0, "axes": ()}  # build says what is wrong then
+        twin: Mapping[str, Any] = machine.get("twin") or {"step_s": 1.0, "axes": ()}  # build raises the error then
         self.steps = max(1, round(self._period_s / twin["step_s"]))
         self.built: Model = build(text, os.fspath(file_name), machine, self._period_s / self.steps)
         self.name = str(machine["name"])
@@ -86,7 +86,7 @@ class Twin(Plant):
             self._servos.add(joint.axis, joint.position, joint.velocity, joint.scale, joint.zero, inertia, most, brake)
         self._servos.start()
         model, data = self.built.model, self.built.data
-        # Views of MuJoCo's own memory: asking the data for them costs more than a step of a small model.
+        # Views of MuJoCo's own memory: reading them through the data takes longer than a step of a small model.
         self._qpos, self._qvel, self._torques = data.qpos, data.qvel, data.qfrc_applied
         self._warnings = data.warning.number
         self._no_warnings = self._warnings.tobytes()
@@ -98,7 +98,7 @@ class Twin(Plant):
         carries = twin["belts"] or twin.get("products")
         self.cargo = Cargo(mujoco, machine, self.built, self.axes, self._period_s) if carries else None
         self._allowed = self.cargo.allowed if self.cargo else np.zeros((model.ngeom, model.ngeom), bool)
-        # By the shapes of all contacts, as bytes: contacts that are not allowed. They hardly change between cycles.
+        # By the shapes of all contacts, as bytes: the contacts not allowed. They hardly change from cycle to cycle.
         self._suspects: dict[bytes, list[int]] = {}
         self._rows: list[tuple[Any, ...]] = []
         self._good = (data.qpos.copy(), data.qvel.copy())
@@ -106,7 +106,8 @@ class Twin(Plant):
 
     @classmethod
     def of(cls, machine: str | os.PathLike[str]) -> Twin:
-        """That of a machine file."""
+        """Returns the twin of a machine file. Raises ConfigError if the file or its section `twin` is invalid,
+        TaktError if MuJoCo is not installed."""
         import json
 
         from takt.engine import read_machine
@@ -119,7 +120,7 @@ class Twin(Plant):
 
     @property
     def frame(self) -> Frame:
-        """The state after the last cycle that was good."""
+        """The state after the last valid cycle."""
         return Frame(self._cycle, self._good[0].copy(), self._good[1].copy())
 
     def step(self, cycle: int, told: Rows, measured: Rows) -> None:
@@ -139,13 +140,13 @@ class Twin(Plant):
                 step(model, data)
         finally:
             self._warn(warned)
-        # NaN is not below either.
+        # Written so that NaN fails, too.
         if not qvel.dot(qvel) < FASTEST * FASTEST or self._warnings.tobytes() != self._no_warnings:
             self._explode(cycle)
         servos.sense(qpos, qvel, measured)
         if self.cargo is not None:
             self.cargo.after(cycle, measured)
-        # After a step of MuJoCo, poses of bodies are those of its beginning.
+        # After a step of MuJoCo, the poses of bodies are those at the start of the step.
         if cycle >= 0:
             self._rows.append((at, servos.torques, bytes(servos.limited), *[view.copy() for view in self._poses]))
         if data.ncon:
@@ -155,7 +156,7 @@ class Twin(Plant):
         self._cycle = cycle
 
     def _explode(self, cycle: int) -> None:
-        """Says what has exploded, before anything of it is believed."""
+        """Raises PlantError with the joint or warning that shows the explosion, before any of its values are used."""
         data = self.built.data
         model = self.built.model
         finite = np.isfinite(data.qvel)
@@ -197,7 +198,7 @@ class Twin(Plant):
                 self.contacts[pair] = ContactSeen(cycle, pair, -float(contact.dist) * 1000, (x, y, z))
 
     def seen(self) -> Seen:
-        """What it has seen so far."""
+        """Returns what the twin has measured so far."""
         count = len(self.axes)
         columns = list(zip(*self._rows, strict=True)) or [() for _ in range(3 + 2 * len(self.built.tools))]
         joints = np.array(columns[0], float).reshape(-1, count)
@@ -213,7 +214,8 @@ class Twin(Plant):
         recording.meta["plant"] = f"MuJoCo {_version()}"
 
     def picture(self, file: str | os.PathLike[str], frame: Frame | None = None) -> Path:
-        """Draws a state, the last one if none is given, as PNG. Raises PlantError where nothing here can draw."""
+        """Draws a state as PNG, and returns the path of the file. frame: None: the last valid state. Raises PlantError
+        if no driver on this machine can draw, or the file is no .png."""
         from takt.twin.picture import draw
 
         return draw(self.built, frame or self.frame, Path(file))

@@ -1,5 +1,5 @@
-"""The process that draws a twin (takt.twin.picture): `python render.py MODEL STATE PICTURE WIDTH HEIGHT`. It needs
-nothing of takt, so that it starts soon."""
+"""The process that draws a twin (takt.twin.picture): `python render.py MODEL STATE PICTURE WIDTH HEIGHT`. It imports
+nothing of takt, so that it starts quickly."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def render(saved: str, state: str, file: str, width: int, height: int) -> None:
     data = mujoco.MjData(model)
     data.qpos[:] = np.load(state)
     mujoco.mj_forward(model, data)
-    places = [data.geom_xpos[i] for i in range(model.ngeom) if model.geom_rgba[i, 3] > 0]  # others wait elsewhere
+    places = [data.geom_xpos[i] for i in range(model.ngeom) if model.geom_rgba[i, 3] > 0]  # others are parked
     if not places:
         raise SystemExit("the model has no shape that can be seen")
     middle = (np.min(places, axis=0) + np.max(places, axis=0)) / 2
@@ -23,7 +23,7 @@ def render(saved: str, state: str, file: str, width: int, height: int) -> None:
     camera = mujoco.MjvCamera()
     camera.lookat[:] = middle
     camera.distance, camera.azimuth, camera.elevation = 1.7 * extent, 125, -18
-    # Of a model that is given: what it was made for may be smaller.
+    # The frame buffer of a model from a file may be smaller.
     frame = model.vis.global_
     frame.offwidth, frame.offheight = max(frame.offwidth, width), max(frame.offheight, height)
     renderer = mujoco.Renderer(model, height, width)
