@@ -1,12 +1,12 @@
-"""Reads G-code (RS274/NGC, ISO 6983, Marlin's) into a path for a tool.
+"""Reads G-code (RS274/NGC, ISO 6983, Marlin's) as the path of a tool.
 
     path = read_gcode("part.ngc")
     path = read_gcode("part.nc", dialect="fanuc", leave_out=["G41", "A"])
 
-Lines, arcs, helices, splines (G5, G5.1) and drilling cycles become the path of the tool's tip in the coordinates of the
-system (G54 to G59.3) in which the first move is made. Expressions, parameters, o-words, M98 and M99 are run. What says
-nothing about the path (spindles, coolant, dwells, tools, extruders) is left out and listed; all else is an error with
-its line: a path that is not the one in the file is worse than none. docs/drawings.md has the tables.
+Lines, arcs, helices, splines (G5, G5.1, NURBS) and drilling cycles become the path of the tool tip, in the coordinate
+system (G54 to G59.3) in which the first move is made. Expressions, parameters, o-words, M98 and M99 are executed. Codes
+that do not affect the path (spindles, coolant, dwells, tools, extruders) are left out and listed; all others are errors
+with their line, since a path that differs from the file is worse than none. docs/drawings.md has the tables.
 """
 
 from __future__ import annotations
@@ -37,10 +37,13 @@ _FILE_NAME = re.compile(r"[a-z0-9_-]+")
 class Options:
     """How to read a program.
 
-    `dialect`: one of DIALECTS; None: the one that the program's own lines tell. `leave_out`: words that are left out,
-    with those that belong to them: "M7", "G41", "A". `delete_blocks`: lines that begin with / are skipped. `offsets`:
-    where the zeros of coordinate systems lie on the machine, mm, by their names. `parameters`: values by number or name
-    ("5410", "_depth"). `subroutines`: a folder with files of subs, or several, beside the program's own."""
+    dialect: one of DIALECTS; None: recognised from the lines of the program.
+    leave_out: codes and letters that are left out, with the words that belong to them: "M7", "G41", "A".
+    delete_blocks: lines that begin with / are skipped; False: they are executed.
+    offsets: zeros of coordinate systems in machine coordinates [mm], by name ("G54").
+    parameters: values by number or name ("5410", "_depth").
+    subroutines: a folder with files of subs, or several, searched after the program's own folder.
+    """
 
     dialect: str | None = None
     leave_out: Iterable[str] = ()
@@ -50,7 +53,7 @@ class Options:
     subroutines: str | PathLike[str] | Iterable[str | PathLike[str]] = ()
 
     def checked(self) -> Options:
-        """The same with names as programs write them. Raises ToolpathError."""
+        """Returns the options with names as in programs. Raises ToolpathError if an option is invalid."""
         if self.dialect is not None and self.dialect not in DIALECTS:
             raise ToolpathError(f"dialect: expected {', '.join(DIALECTS)}, found '{self.dialect}'")
         names = []
@@ -74,7 +77,7 @@ class Options:
 
     @property
     def folders(self) -> list[Path]:
-        """Those of `subroutines`, which may be a single one."""
+        """The folders of `subroutines` as a list."""
         given = self.subroutines
         return [Path(one) for one in ([given] if isinstance(given, str | PathLike) else given)]
 
@@ -85,8 +88,14 @@ def read_gcode(
     tolerance: float = TOLERANCE,
     options: Options | None = None,
 ) -> Toolpath:
-    """Reads a file. `start`: where the tool is when the program begins, in mm. `tolerance`: of the lines that helices
-    and splines become, in mm. Raises ToolpathError."""
+    """Returns the path of a file.
+
+    start: position of the tool when the program begins [mm].
+    tolerance: of the chords that replace helices and splines [mm].
+    options: None: the defaults of Options.
+
+    Raises ToolpathError, with file and line, if the file cannot be read or a line cannot be part of a path.
+    """
     given = options or Options()
     try:
         with Path(path).open("rb") as file:
@@ -105,7 +114,7 @@ def parse_gcode(
     *,
     source: str = "G-code",
 ) -> Toolpath:
-    """The same of text; `source` is what errors call it."""
+    """Returns the path of a program given as text. `source`: its name in errors; all else is as in `read_gcode`."""
     given = (options or Options()).checked()
     leave_out = frozenset(given.leave_out)
     main = Text(text.removeprefix("\ufeff"), source, leave_out, delete_blocks=given.delete_blocks)

@@ -1,7 +1,7 @@
-"""Canned cycles of drilling: G73, G81, G82, G83, G85, G89.
+"""Canned drilling cycles: G73, G81, G82, G83, G85, G89.
 
-Source: the manual of LinuxCNC, G80 to G89. Between two pecks the tool goes up by CLEARANCE (G73) or to R and down again
-to CLEARANCE above the bottom reached (G83); other controllers have other clearances, in their settings."""
+Source: the manual of LinuxCNC, G80 to G89. Between two pecks the tool retracts by CLEARANCE (G73), or to R and back
+down to CLEARANCE above the depth reached (G83); other controllers have other clearances, in their settings."""
 
 from __future__ import annotations
 
@@ -15,21 +15,22 @@ from takt.toolpath import Point
 if TYPE_CHECKING:
     from takt.gcode.machine import Modal
 
-CLEARANCE = 0.254  # mm, LinuxCNC's
+CLEARANCE = 0.254  # [mm] as in LinuxCNC
 MOST = 100_000  # repeats, and pecks of one hole
 
 
 class Cycle:
-    """The words of a cycle, which hold from one line to the next while the cycle does."""
+    """The words of a cycle, which are modal as long as the cycle is active."""
 
     def __init__(self) -> None:
-        self._depth: float | None = None  # mm as programmed
+        self._depth: float | None = None  # [mm] as programmed
         self._retract: float | None = None
         self._peck: float | None = None
-        self._old: float | None = None  # the height at which the cycle began, of the path
+        self._old: float | None = None  # [mm] height at which the cycle began, in path coordinates
 
     def run(self, code: str, numbers: dict[str, float], modal: Modal, shift: Point, path: PathBuilder) -> None:
-        """Drills the holes of a line. Raises LineError."""
+        """Appends the holes of a line to the path. numbers: words of the line; shift: path coordinates of the zero of
+        the active system [mm]. Raises LineError if words are missing or invalid."""
         first, second, third = PLANES[modal.plane]
         letters, unit = "XYZ", modal.unit
         if modal.inverse_time or modal.diameters:

@@ -1,4 +1,4 @@
-"""Dialects of G-code: by what a program is recognised. docs/drawings.md says what the same words mean in each."""
+"""Dialects of G-code, and how they are recognised. docs/drawings.md states what the same words mean in each."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from takt.gcode.errors import LineError
 
 NAMES = ("rs274", "linuxcnc", "fanuc", "grbl", "marlin")
 
-# What tells a dialect, of lines in capital letters with their comments.
+# Patterns that identify a dialect, for lines in capital letters with their comments.
 _TELLING = {
     "marlin": r"""
         ^[ \t]* (?: N[0-9]+ [ \t]*)?
@@ -41,13 +41,14 @@ _PATTERNS = {name: re.compile(pattern, re.MULTILINE | re.VERBOSE) for name, patt
 @dataclass(frozen=True)
 class Dialect:
     name: str
-    why: str = ""  # what it was recognised by
+    why: str = ""  # the line by which it was recognised; empty: none
 
 
 def of_text(lines: list[str]) -> Dialect:
-    """The dialect that a program's own lines tell, rs274 if none does. Raises LineError where they tell two.
+    """Returns the dialect that the lines of a program identify, rs274 if none. Raises LineError if they identify two.
 
-    What two dialects write is told by neither: O1000 and M98 are LinuxCNC's as well as Fanuc's."""
+    Lines of linuxcnc take precedence over those of fanuc and grbl, and fanuc over grbl: LinuxCNC has O1000 and M98,
+    too."""
     text = "\n".join(lines).upper()
     found: dict[str, int] = {}
     for name, pattern in _PATTERNS.items():

@@ -1,4 +1,4 @@
-"""Numbers, parameters and expressions of RS274/NGC, compiled once and evaluated as often as their line runs.
+"""Numbers, parameters and expressions of RS274/NGC, compiled once and evaluated each time their line is executed.
 
 Source: T. Kramer, F. Proctor, E. Messina, The NIST RS274NGC Interpreter, Version 3 (NISTIR 6556), 3.3.2, and the manual
 of LinuxCNC for named parameters, comparisons (equal within 1e-6) and precedence: `**` before `* / MOD` before `+ -`
@@ -14,12 +14,12 @@ from typing import Protocol
 
 from takt.gcode.errors import LineError
 
-DEPTH = 100  # of brackets in one another
+DEPTH = 100  # of nested brackets
 EQUAL = 1e-6
 
 
 class Values(Protocol):
-    """Where parameters are looked up."""
+    """Source of the values of parameters."""
 
     def number(self, index: float) -> float: ...
     def name(self, name: str) -> float: ...
@@ -37,7 +37,7 @@ _LEVELS = {"**": 4, "*": 3, "/": 3, "MOD": 3, "+": 2, "-": 2, "AND": 0, "OR": 0,
 
 
 def evaluate(value: Value, values: Values) -> float:
-    """The number that it is now. Raises LineError where it is none."""
+    """Returns the present value of an expression. Raises LineError if it is not a finite number."""
     if isinstance(value, float):
         return value
     try:
@@ -52,13 +52,14 @@ def evaluate(value: Value, values: Values) -> float:
 
 
 class Reader:
-    """Reads a line (capital letters, without blanks and comments) from left to right."""
+    """Parses a line (capital letters, without blanks and comments) from left to right. Its methods raise LineError if
+    the line has something else at this position."""
 
     def __init__(self, text: str, at: int = 0) -> None:
         self.text, self.at = text, at
 
     def value(self, depth: int = 0) -> Value:
-        """A number, parameter, expression or function, with or without a sign."""
+        """Reads a number, parameter, expression or function, with or without a sign."""
         if depth > DEPTH:
             raise LineError(f"brackets, signs or # nest deeper than {DEPTH}")
         number = NUMBER.match(self.text, self.at)
@@ -83,7 +84,7 @@ class Reader:
         raise self.unexpected("a number, a parameter or an expression")
 
     def bracket(self, depth: int = 0) -> Value:
-        """[...]: operands and operators by precedence."""
+        """Reads [...], operands and operators by precedence."""
         self._take("[")
         operands, operators = [self._operand(depth)], list[str]()
         while True:
@@ -103,7 +104,7 @@ class Reader:
             operands.append(self._operand(depth))
 
     def parameter_name(self, depth: int = 0) -> str | Value:
-        """What stands behind #: a name (local or global), or the value of an index."""
+        """Reads a parameter from # on. Returns its name (local or global), or the value of its index."""
         self._take("#")
         name = _NAME.match(self.text, self.at)
         if name:
@@ -117,7 +118,7 @@ class Reader:
 
     def _operand(self, depth: int) -> Value:
         value = self.value(depth + 1)
-        # Within brackets E is no word, but an exponent.
+        # Within brackets E is an exponent, not a word.
         exponent = _EXPONENT.match(self.text, self.at)
         if isinstance(value, float) and exponent:
             self.at = exponent.end()
@@ -170,7 +171,7 @@ def _binary(function: Callable[[float, float], float], left: Value, right: Value
 def _constant(function: Callable[..., float], *arguments: float) -> float:
     try:
         return function(*arguments)
-    except (OverflowError, ValueError):  # of infinity, too
+    except (OverflowError, ValueError):  # infinity raises ValueError
         raise LineError("an expression has no finite value") from None
 
 
@@ -181,7 +182,7 @@ def _divided(left: float, right: float) -> float:
 
 
 def _modulo(left: float, right: float) -> float:
-    """Never negative."""
+    """Returns the remainder, which is never negative."""
     if right == 0:
         raise LineError("MOD by 0")
     rest = math.fmod(left, right)
@@ -206,7 +207,7 @@ def _within(name: str, function: Callable[[float], float], low: float, high: flo
 
 
 def _rounded(x: float) -> float:
-    """Halves away from 0."""
+    """Returns the nearest integer; halves are rounded away from 0."""
     return math.copysign(math.floor(abs(x) + 0.5), x)
 
 

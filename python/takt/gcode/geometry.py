@@ -10,23 +10,23 @@ from typing import NamedTuple
 from takt.gcode.errors import LineError
 from takt.toolpath import MOST_ELEMENTS, REACH, SAME, Element, Point, chords, chords_of_bezier, split_turn
 
-# The manual of LinuxCNC, G2 G3: the ends of an arc may be unequally far from its centre by ALWAYS, or by SHARE of its
-# radius if that is more, but never by more than NEVER; mm, and the same in programs in inches.
+# The manual of LinuxCNC, G2 G3: the radii at the two ends of an arc may differ by ALWAYS, or by SHARE of the radius if
+# that is more, but never by more than NEVER; [mm], for programs in mm and for programs in inches.
 ALWAYS, SHARE, NEVER = (0.005, 0.0005 * 25.4), 0.001, (0.5, 0.05 * 25.4)
 PLANES = {"G17": (0, 1, 2), "G18": (2, 0, 1), "G19": (1, 2, 0)}  # counterclockwise as seen from the third axis
 
 
 class Arc(NamedTuple):
-    """An arc about an axis, or a helix, or no motion at all (sweep 0); mm and rad."""
+    """An arc about an axis, or a helix, or no motion at all (sweep 0); [mm] and [rad]."""
 
     begin: Point
     end: Point
     axes: tuple[int, int, int]
     centre: tuple[float, float]
-    radius: float  # where it begins
-    last: float  # the radius where it ends
-    angle: float  # where it begins
-    sweep: float  # above 0 counterclockwise
+    radius: float  # at its start
+    last: float  # radius at its end
+    angle: float  # at its start
+    sweep: float  # positive: counterclockwise
 
     @property
     def rise(self) -> float:
@@ -37,7 +37,7 @@ class Arc(NamedTuple):
         return math.hypot(abs(self.sweep) * (self.radius + self.last) / 2, self.rise)
 
     def at(self, share: float) -> Point:
-        """The point at a share of its sweep."""
+        """Returns the point at a share of the sweep, from 0 to 1."""
         if share == 1:
             return self.end
         angle, r = self.angle + share * self.sweep, self.radius + share * (self.last - self.radius)
@@ -59,8 +59,8 @@ def arc_about(
     more_turns: float,
     inches: bool = False,
 ) -> Arc:
-    """The arc from `begin` to `end`, a whole turn where these are the same in the plane, and `more_turns` besides.
-    Raises LineError where its ends are unequally far from the centre."""
+    """Returns the arc from `begin` to `end`, a full turn if these are equal in the plane, plus `more_turns`. Raises
+    LineError if the radii at its ends differ by more than LinuxCNC allows."""
     axes = PLANES[plane]
     first, second, _ = axes
     out = (begin[first] - centre[0], begin[second] - centre[1])
@@ -84,7 +84,8 @@ def arc_about(
 def centre_by_radius(
     begin: Point, end: Point, plane: str, given: float, *, clockwise: bool, inches: bool = False
 ) -> tuple[float, float]:
-    """Of an arc of a radius; below 0: of the one that is more than half a turn. Raises LineError."""
+    """Returns the centre of the arc of a radius `given` [mm]; negative: of the arc of more than half a turn. Raises
+    LineError if the ends are equal, or too far apart for the radius."""
     first, second, _ = PLANES[plane]
     along = (end[first] - begin[first], end[second] - begin[second])
     chord, radius = math.hypot(*along), abs(given)
@@ -99,12 +100,12 @@ def centre_by_radius(
 
 
 class PathBuilder:
-    """Appends elements to a path. Raises LineError where one would lie beyond REACH, or where there are too many."""
+    """Appends elements to a path. Its methods raise LineError for an element beyond REACH, or for too many elements."""
 
     def __init__(self, start: Point, tolerance: float) -> None:
         self.elements: list[Element] = []
         self.here = start
-        self._end = start  # of the last element: moves shorter than SAME add up until they are an element
+        self._end = start  # end of the last element: moves shorter than SAME accumulate until they form an element
         self.tolerance = tolerance
 
     def line(self, end: Point, velocity: float | None) -> None:
@@ -123,7 +124,7 @@ class PathBuilder:
             self.line(arc.end, velocity)
         elif abs(arc.rise) < SAME:
             count = self._room(split_turn(arc.sweep))
-            # Of a flat arc three points do not say well enough where it bends: within SAME it is its chord.
+            # Three points do not define the curvature of a flat arc well enough: within SAME its chord replaces it.
             flat = arc.radius * (1 - math.cos(min(abs(arc.sweep) / count / 2, math.pi / 2))) < SAME
             for i in range(count):
                 end = arc.at((i + 1) / count)
@@ -138,8 +139,8 @@ class PathBuilder:
                 self.line(arc.at((i + 1) / count), velocity)
 
     def bezier(self, control: Sequence[complex]) -> list[complex]:
-        """Returns the ends of its chords [mm] in X and Y; `control`: the control points after the present position.
-        Raises LineError."""
+        """Returns the ends of the chords of a Bezier curve [mm] in X and Y; `control`: its control points after the
+        present position. Appends nothing."""
         x, y, _ = self.here
         points = [complex(x, y), *control]
         if not all(abs(point) <= REACH for point in points):

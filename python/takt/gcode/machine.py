@@ -1,4 +1,4 @@
-"""What a line of G-code does: the modal state of a controller, and the moves that come of the words of a line."""
+"""Executes lines of G-code: the modal state of a controller, and the moves that result from the words of a line."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from takt.gcode.nurbs import Nurbs
 from takt.gcode.offsets import SYSTEMS, Offsets
 from takt.toolpath import Point
 
-INCH = 25.4  # mm
+INCH = 25.4  # [mm]
 Numbers = dict[str, float]
 _PLAIN = frozenset("XYZ")
 _MOVES = frozenset(("G0", "G1", "G2", "G3"))
@@ -27,23 +27,23 @@ _CYCLES = frozenset(f"G{number}" for number in range(70, 90))
 
 @dataclass(frozen=True)
 class Modal:
-    """What holds from one line to the next; M70 keeps it, M72 brings it back (except `motion`)."""
+    """The modal state, kept from line to line; M70 saves it, M72 restores it (except `motion`)."""
 
     motion: str | None = None
     plane: str = "G17"
-    unit: float = 1.0  # mm
+    unit: float = 1.0  # [mm]
     relative: bool = False
     centres_absolute: bool = False
     inverse_time: bool = False
     retract_to_r: bool = False
     diameters: bool = False
-    feed: float | None = None  # mm/s
+    feed: float | None = None  # [mm/s]; None: not given yet
     coordinates: str = "G54"
 
 
 @dataclass(frozen=True)
 class Flow:
-    """What a line says about the order of lines."""
+    """The effect of a line on the order of execution."""
 
     code: str  # M2, M98, M99, M70 to M73
     program: float = 0.0
@@ -61,25 +61,25 @@ class Machine:
     ) -> None:
         self.path, self.offsets, self.modal = path, offsets, Modal()
         self.left_out: Counter[str] = Counter()
-        self._homes: dict[str, Point] = {}  # of G28 and G30, if the program has set them; else the machine's zero
+        self._homes: dict[str, Point] = {}  # of G28 and G30, if set by the program; else the machine's zero
         self._dialect, self._leave_out, self._place = dialect, leave_out, place
         self._letters_left_out = [name for name in leave_out if len(name) == 1]
         self._shift: Point | None = None
-        self._away: LineError | None = None  # the tool is where the program cannot say
+        self._away: LineError | None = None  # error of the next move: the position of the tool is not known
         self._cycle = Cycle()
         self._nurbs: Nurbs | None = None  # between G5.2 and G5.3, or of G6.2
-        self._spline: tuple[float, float] | None = None  # P and Q of the G5 before
+        self._spline: tuple[float, float] | None = None  # P and Q of the preceding G5
         self._feed_number: float | None = None  # of this line, in G93
 
-    # --- What parameters of a program tell ---
+    # --- State read by parameters of a program ---
 
     def local(self) -> list[float]:
-        """Where the tool is in the active coordinates and units of the program."""
+        """Returns the position of the tool in the active coordinate system and unit of the program."""
         shift = self.offsets.shift()
         return [(here - s) / self.modal.unit for here, s in zip(self.path.here, shift, strict=True)]
 
     def end(self) -> None:
-        """What a program must not leave open. Raises LineError."""
+        """Raises LineError if the program ends within a NURBS."""
         if self._nurbs is not None:
             raise LineError("the program ends within a NURBS")
 
@@ -90,7 +90,8 @@ class Machine:
     # --- Lines ---
 
     def run(self, codes: tuple[str, ...], given: Mapping[str, float]) -> Flow | None:
-        """Takes the words of a line. Raises LineError."""
+        """Executes the words of a line. Returns its effect on the order of lines, None if there is none. Raises
+        LineError if a word is not read or its value is invalid."""
         numbers = dict(given)
         numbers.pop("N", None)
         for letter in self._letters_left_out:
@@ -126,8 +127,8 @@ class Machine:
                 self.left_out[letter] += 1
 
     def _codes(self, codes: tuple[str, ...], numbers: Numbers) -> tuple[bool, bool, Flow | None]:
-        """Takes all codes of a line: whether there is a motion among them, whether it is in the machine's coordinates
-        (G53), and what they say about the order of lines."""
+        """Executes all codes of a line. Returns whether one of them commands a motion, whether it is in machine
+        coordinates (G53), and the effect on the order of lines."""
         motions = [code for code in codes if words.GROUP_OF.get(code) == "motion" and code not in self._leave_out]
         rest = []
         for code in codes:
@@ -161,7 +162,7 @@ class Machine:
         for letter in words.words_of(code, self._dialect, has_motion):
             numbers.pop(letter, None)
         if code[0] == "G" and (words.GROUP_OF.get(code) == "motion" or 33 <= float(code[1:]) < 39 or code in _CYCLES):
-            self.modal = replace(self.modal, motion=code)  # lines that rest on it are left out, too
+            self.modal = replace(self.modal, motion=code)  # lines that continue this motion are left out, too
 
     def _state(self, codes: set[str]) -> None:
         modal = self.modal
@@ -220,8 +221,8 @@ class Machine:
         return None
 
     def _g_code(self, code: str, numbers: Numbers, told: bool) -> bool:
-        """Takes a code that does not hold on. Returns whether a motion is told still: it is not if the axes are the
-        code's."""
+        """Executes a code that is not modal. Returns whether the line still commands a motion: not if the axis words
+        belong to this code."""
         if code == "G80":
             self.modal = replace(self.modal, motion=None)
             self._cycle = Cycle()
@@ -265,7 +266,7 @@ class Machine:
     # --- Offsets and machine coordinates ---
 
     def _take_axes(self, numbers: Numbers) -> dict[int, float]:
-        """The words X, Y, Z, in mm by axis."""
+        """Removes the words X, Y, Z, and returns their values [mm] by axis."""
         found = {}
         for axis, letter in enumerate("XYZ"):
             if letter in numbers:
@@ -332,8 +333,9 @@ class Machine:
         return zero
 
     def _reference(self, code: str, numbers: Numbers) -> None:
-        """G28, G30: by a point, if one is given, to a machine position. Before the first move and behind the last
-        one they are left out where that place is unknown: the path begins at its start and ends with its last move."""
+        """G28, G30: moves to a machine position, through a point if one is given. If that position is unknown, they are
+        left out before the first move and after the last one: the path begins at its start and ends with its last move.
+        """
         named = [axis for axis, letter in enumerate("XYZ") if letter in numbers]
         try:
             home = self._homes[code] if code in self._homes else self._machine_zero(code)
@@ -355,7 +357,7 @@ class Machine:
         self._take_axes(numbers)
 
     def _system(self, code: str) -> None:
-        """A line of grbl's that begins with $: homing and jogging lead to where the program cannot say."""
+        """A $ line of grbl: after homing and jogging the position of the tool is not known."""
         if code in ("$H", "$J"):
             where = "where the tool is then is known to the machine only"
             self._be_away(
@@ -402,7 +404,7 @@ class Machine:
 
     def _drill(self, cycle: str, numbers: Numbers) -> None:
         own = words.CYCLES[cycle]
-        if self._dialect == "fanuc" and "K" in numbers:  # as L has it elsewhere
+        if self._dialect == "fanuc" and "K" in numbers:  # L in other dialects
             if "L" in numbers:
                 raise LineError("K and L exclude each other: both are the number of repeats")
             numbers["L"] = numbers.pop("K")
@@ -431,7 +433,7 @@ class Machine:
         return self._velocity(math.dist(self.path.here, target))  # type: ignore[return-value]
 
     def _velocity(self, length: float) -> float | None:
-        """Of a move of so many mm."""
+        """Returns the velocity [mm/s] of a move of this length [mm]; None: no feed was given yet."""
         if not self.modal.inverse_time:
             return self.modal.feed
         if self._feed_number is None:
@@ -466,7 +468,7 @@ class Machine:
         return (x, y, z)
 
     def _from_polar(self, numbers: Numbers, shift: Point) -> None:
-        """@ and ^, distance and angle in deg, to X and Y."""
+        """Replaces @ and ^, distance and angle [deg], by X and Y."""
         if numbers.keys() & {"X", "Y"} or self.modal.plane != "G17":
             raise LineError("@ and ^ exclude X and Y, and hold in the plane of G17")
         local = complex(self.path.here[0] - shift[0], self.path.here[1] - shift[1]) / self.modal.unit
@@ -482,7 +484,7 @@ class Machine:
         numbers["X"], numbers["Y"] = x * (2.0 if self.modal.diameters else 1.0), y
 
     def _move_in_machine(self, numbers: Numbers) -> None:
-        """G53."""
+        """G53: moves in machine coordinates."""
         if self.modal.motion not in ("G0", "G1"):
             raise LineError("G53 holds with G0 and G1 only")
         self._refuse(numbers)
@@ -568,8 +570,8 @@ class Machine:
         self._draw_chords(self.path.bezier(control), 0, 1)
 
     def _nurbs_line(self, motion: str, numbers: Numbers) -> None:
-        """A control point of G5.2 (P: its weight, L: the order) or of G6.2 (R: its weight, K: a knot, P: the order), or
-        the end of them."""
+        """Adds a control point of G5.2 (P: its weight, L: the order) or of G6.2 (R: its weight, K: a knot, P: the
+        order). At the last one, or at G5.3, appends the curve to the path."""
         if self._away:
             raise self._away
         self._refuse(numbers, {"G5.2": "PL", "G5.3": "", "G6.2": "PRKQ"}[motion])
@@ -587,7 +589,7 @@ class Machine:
             self._nurbs = Nurbs(with_knots)
             self._nurbs.set_order(numbers["P"] if with_knots else numbers.get("L", 3.0))
             here = complex(self.path.here[first], self.path.here[second])
-            if not with_knots:  # the first control point is where the tool is
+            if not with_knots:  # the first control point is the position of the tool
                 self._nurbs.add(here, 1.0 if any(given) else numbers.get("P", 1.0))
         nurbs = self._nurbs
         if "L" in numbers:
@@ -605,7 +607,7 @@ class Machine:
             self._draw_chords(nurbs.chords(self.path.tolerance), first, second)
 
     def _draw_chords(self, points: Sequence[complex], first: int, second: int) -> None:
-        """Appends chords that end at these points of the plane of two axes, mm."""
+        """Appends chords that end at these points [mm] in the plane of two axes."""
         here = complex(self.path.here[first], self.path.here[second])
         velocity = self._velocity(sum(abs(b - a) for a, b in pairwise([here, *points])))
         for point in points:

@@ -1,8 +1,8 @@
 """NURBS of G-code: G5.2 to G5.3 (LinuxCNC's manual) and G6.2 (knots in the program), in the active plane.
 
-A rational B-spline of order k through n control points with weights, over n + k knots; the points of a chord-wise
-copy come from de Boor's algorithm in homogeneous coordinates (Piegl, Tiller, The NURBS Book, 4.2). G5.2 gives no knots:
-they are uniform and clamped, so that the curve begins at the first control point and ends at the last one.
+A rational B-spline of order k with n weighted control points and n + k knots. It is approximated by chords, whose ends
+come from de Boor's algorithm in homogeneous coordinates (Piegl, Tiller, The NURBS Book, 4.2). G5.2 gives no knots: they
+are uniform and clamped, so that the curve begins at the first control point and ends at the last one.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ MOST_ORDER = 20
 
 
 class Nurbs:
-    """Collects control points, mm, as lines give them."""
+    """Collects the control points [mm], weights and knots of a curve, line by line."""
 
     def __init__(self, with_knots: bool) -> None:
         self.order, self.with_knots = 3, with_knots
@@ -45,11 +45,12 @@ class Nurbs:
 
     @property
     def is_complete(self) -> bool:
-        """Whether all knots are given."""
+        """True if all knots are given."""
         return len(self._knots) == len(self._points) + self.order
 
     def chords(self, tolerance: float) -> list[complex]:
-        """Points on it, so close that chords between them keep within the tolerance. Raises LineError."""
+        """Returns points of the curve [mm], so dense that the chords between them deviate by at most `tolerance` [mm].
+        Raises LineError if there are too few control points, all knots are equal, or a point is not finite."""
         count = len(self._points)
         if count < self.order:
             raise LineError(f"a NURBS of order {self.order}: expected as many control points at least, found {count}")
@@ -69,7 +70,8 @@ class Nurbs:
         return found
 
     def _chords_of(self, span: int, knots: Array, control: Array, tolerance: float) -> list[complex]:
-        """Twice as many until the curve half-way between two is near enough to their chord."""
+        """Returns the ends of the chords of one knot span. Their number is doubled until the curve half-way between two
+        ends is within the tolerance of their chord."""
         count = 4
         while True:
             at = knots[span] + (knots[span + 1] - knots[span]) * np.linspace(0, 1, 2 * count + 1)

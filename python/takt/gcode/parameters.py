@@ -1,4 +1,4 @@
-"""Numbered and named parameters of RS274/NGC: what a program has set, and what it asks of the controller."""
+"""Numbered and named parameters of RS274/NGC: those that a program sets, and those that read the controller's state."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from takt.gcode.offsets import SYSTEMS
 if TYPE_CHECKING:
     from takt.gcode.machine import Machine
 
-LOCAL = 30  # numbered parameters up to this are those of a sub
+LOCAL = 30  # numbered parameters up to this one are local to a sub
 MOST = 5602
 _AXES = "xyz"
-# Groups of numbers that only the machine knows, by their first and last.
+# Numbers of parameters whose values only the machine knows: first, last, meaning.
 _OF_THE_MACHINE = ((5061, 5070, "the place where a probe was touched"), (5399, 5399, "an input of the machine"),
                    (5401, 5413, "the tool's table"))  # fmt: skip
 
 
 class Parameters:
-    """Values by number or name. `given`: what the user knows of the machine; it is read before all else."""
+    """Values by number or name. `given`: values from the user, which take precedence over those of the machine."""
 
     def __init__(self, machine: Machine, given: Mapping[str, float]) -> None:
         self._machine = machine
@@ -69,7 +69,7 @@ class Parameters:
         (self._globals if name.startswith("_") else self.locals)[name] = value
 
     def enter(self, arguments: list[float]) -> tuple[dict[int, float], dict[str, float]]:
-        """For a call of a sub. Returns what `leave` needs."""
+        """Begins a call of a sub with these arguments. Returns the saved parameters of the caller for `leave`."""
         kept = {n: self._numbers[n] for n in range(1, LOCAL + 1) if n in self._numbers}, self.locals
         for n, value in enumerate(arguments, 1):
             self._numbers[n] = value

@@ -1,7 +1,8 @@
-"""Runs the lines of a program in the order that o-words, M98 and M99 give them.
+"""Executes the lines of a program in the order given by o-words, M98 and M99.
 
 A program is a list of lines and a position in it; o-words move the position along links that were found when the text
-was read, calls keep where to go on. Straight programs are as long as their files; what is repeated is limited.
+was read, calls save the position to return to. The number of lines without repetition is not limited, that of repeated
+lines is.
 """
 
 from __future__ import annotations
@@ -16,22 +17,22 @@ from takt.gcode.parameters import Parameters
 from takt.gcode.source import Block, OWord, Text
 from takt.gcode.words import program_name
 
-MOST_LINES = 1_000_000  # run more often than once
-MOST_CALLS = 10  # in one another, as LinuxCNC
+MOST_LINES = 1_000_000  # executed by repetition
+MOST_CALLS = 10  # nested calls, as in LinuxCNC
 
 
 @dataclass
 class _Frame:
     """A call, or the program itself."""
 
-    text: Text  # of what is called
-    back: tuple[Text, int] | None = None  # where to go on behind it
-    kept: tuple[dict[int, float], dict[str, float]] | None = None  # of an o-word; M98 has no parameters of its own
-    first: int = 0
-    left: int = 0  # so often more
-    repeats: dict[int, int] = field(default_factory=dict)  # by line of a repeat that is in progress
-    modal: Modal | None = None  # of M70 or M73
-    restore: bool = False
+    text: Text  # of the sub or program called
+    back: tuple[Text, int] | None = None  # the line after the call
+    kept: tuple[dict[int, float], dict[str, float]] | None = None  # the caller's parameters; None: M98 saves none
+    first: int = 0  # line at which an M98 call begins
+    left: int = 0  # remaining repetitions of an M98 call
+    repeats: dict[int, int] = field(default_factory=dict)  # by line of an active repeat: remaining repetitions
+    modal: Modal | None = None  # saved by M70 or M73
+    restore: bool = False  # True: restore `modal` on return (M73)
 
 
 class Runner:
@@ -43,13 +44,13 @@ class Runner:
         self._dialect, self._find = dialect, find
         self._frames = [_Frame(main)]
         self._loaded: dict[str, Text] = {}
-        self._begun = False  # a word has been run
+        self._begun = False  # a word has been executed
 
     def place(self) -> str:
         return self._text.place(self._at)
 
     def run(self) -> None:
-        """Raises LineError; its place is that of the line, unless it has one."""
+        """Executes the program. Raises LineError, with the position of the line unless the error has one."""
         try:
             self._run()
             self._machine.end()
@@ -84,7 +85,7 @@ class Runner:
                 self._o_word(line)
 
     def _set(self, settings: list[tuple[str | Value, Value]]) -> None:
-        """All values are found before one is set."""
+        """Sets parameters; all values are evaluated before the first one is set."""
         parameters = self._parameters
         found = [(target, evaluate(value, parameters)) for target, value in settings]
         for target, value in found:
@@ -94,7 +95,7 @@ class Runner:
                 parameters.set_number(evaluate(target, parameters), value)
 
     def _follow(self, flow: Flow) -> bool:
-        """What a line says about the order of lines. True: the program ends."""
+        """Applies the effect of a line on the order of lines. Returns True if the program ends."""
         frame = self._frames[-1]
         if flow.code == "M2":
             return True
@@ -112,7 +113,7 @@ class Runner:
                 self._at = frame.first
             else:
                 self._return(None)
-                self._at -= 1  # the caller of this adds it
+                self._at -= 1  # the caller adds 1
         elif flow.code in ("M70", "M73"):
             frame.modal, frame.restore = self._machine.modal, flow.code == "M73" and len(self._frames) > 1
         elif flow.code == "M71":
@@ -137,7 +138,7 @@ class Runner:
             raise LineError(f"M98: expected a program O{name} in this file, found {kind}")
         if count > 0:
             self._push(_Frame(self._text, (self._text, self._at + 1), None, first, int(count) - 1))
-            self._at = first  # the caller of this adds 1
+            self._at = first  # the caller adds 1
 
     def _push(self, frame: _Frame) -> None:
         if len(self._frames) > MOST_CALLS:
@@ -157,7 +158,7 @@ class Runner:
         self._text, self._at = frame.back
 
     def _o_word(self, line: OWord) -> None:
-        """Moves to the line that comes next."""
+        """Executes an o-word: moves to the next line."""
         text, at, keyword = self._text, self._at, line.keyword
         repeats = self._frames[-1].repeats
         if keyword == "CALL":
@@ -174,7 +175,7 @@ class Runner:
             self._return(self._value(line) if line.arguments else None)
         elif keyword == "IF":
             self._branch(line)
-        elif keyword in ("ELSEIF", "ELSE"):  # behind a branch that was taken
+        elif keyword in ("ELSEIF", "ELSE"):  # after the branch that was taken
             self._at = text.links[-1 - at]
         elif keyword == "WHILE" and text.links[at] < at:  # of do
             self._at = text.links[at] + 1 if self._value(line) else at + 1
@@ -206,7 +207,7 @@ class Runner:
             del repeats[begin]
 
     def _branch(self, line: OWord) -> None:
-        """To the first branch whose condition holds, or behind them."""
+        """Moves to the first branch whose condition is true, to else, or after endif."""
         text, at = self._text, self._at
         while not self._value(line):
             at = text.links[at]
@@ -230,7 +231,8 @@ class Runner:
         self._text, self._at = text, text.subs[name] + 1
 
     def _where(self, name: str) -> Text:
-        """The text with a sub: this one, the program, those called before, a file of its name."""
+        """Returns the text that has a sub. It is searched in this text, the program, the files loaded so far, and the
+        file of its name. Raises LineError if there is none."""
         for text in (self._text, self._frames[0].text, *self._loaded.values()):
             if name in text.subs:
                 return text

@@ -1,4 +1,4 @@
-"""The text of a program: its characters, lines, comments, words, and the order that o-words and programs give them."""
+"""The text of a program: its characters, lines, comments and words, and the links between its o-words."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from takt.gcode.expressions import NUMBER, Reader, Value, Values, evaluate
 _WITHOUT_EXPRESSIONS = ("grbl", "marlin")
 MOST_BYTES = 500_000_000
 _COMMENT = re.compile(r"\([^()]*\)|;.*", re.DOTALL)
-_ENDS = re.compile(r"\r\n|\n|\r")  # of lines; U+2028 and vertical tabs end none
+_ENDS = re.compile(r"\r\n|\n|\r")  # of lines; U+2028 and vertical tabs are not among them
 _BINARY = re.compile(r"[\x00-\x08\x0e-\x10\x15-\x19\x1b-\x1f]")
 _PAPER_TAPE = dict.fromkeys((0x11, 0x12, 0x13, 0x14, 0x1A), " ")  # control characters of serial lines and old files
 _WORD = re.compile(r"([A-Z@^$])([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[-+][0-9]+)?)")
@@ -39,7 +39,8 @@ _KEYWORD = re.compile(
 
 
 def decode(data: bytes) -> str:
-    """Text of a file: UTF-8 with or without a byte order mark, else cp1252. Raises LineError for what is no text."""
+    """Returns the text of a file, UTF-8 with or without a byte order mark, else cp1252. Raises LineError if it is
+    larger than MOST_BYTES or contains control characters of binary files."""
     if len(data) > MOST_BYTES:
         raise LineError(f"is larger than {MOST_BYTES:,} bytes")
     try:
@@ -54,15 +55,15 @@ def decode(data: bytes) -> str:
 
 @dataclass
 class Block:
-    """A line of words and settings of parameters."""
+    """A line of words and assignments to parameters."""
 
     codes: tuple[str, ...]
     numbers: Mapping[str, float]
-    words: list[tuple[str, Value]] | None = None  # where one of them is an expression
+    words: list[tuple[str, Value]] | None = None  # if the line has expressions or assignments
     settings: list[tuple[str | Value, Value]] = field(default_factory=list)
 
     def now(self, values: Values) -> tuple[tuple[str, ...], Mapping[str, float]]:
-        """Codes and numbers with the values of parameters at this moment."""
+        """Returns codes and numbers with the present values of parameters."""
         if self.words is None:
             return self.codes, self.numbers
         return sorted_words([(letter, evaluate(value, values)) for letter, value in self.words])
@@ -72,8 +73,8 @@ class Block:
 class OWord:
     """A line that begins with O."""
 
-    name: str | Value  # a value: o[...] call
-    keyword: str  # "" for a bare number
+    name: str | Value  # a value: of o[...] call
+    keyword: str  # "": a number only, a program
     arguments: list[Value]
 
 
@@ -81,12 +82,12 @@ Line = Block | OWord
 
 
 class Text:
-    """The lines of a file, compiled when they are first run."""
+    """The lines of a file, compiled when they are first executed."""
 
     def __init__(self, text: str, source: str, leave_out: frozenset[str], *, delete_blocks: bool) -> None:
         self.source = source
         self.lines = _ENDS.split(text)
-        self.first = 0  # behind an opening %
+        self.first = 0  # after an opening %
         self.slashes = [i for i, line in enumerate(self.lines) if line.lstrip().startswith("/")]
         if delete_blocks:
             for i in self.slashes:
@@ -95,14 +96,14 @@ class Text:
         self._compiled: list[Line | None] = []
 
     def begin(self, dialect: str) -> None:
-        """Finds what is counted of it, and the order of its lines, once the dialect is known. Raises LineError with its
-        place."""
+        """Cuts the text at its % lines and links its o-words; requires the dialect. Raises LineError with the position
+        of the line."""
         self._dialect = dialect
         self._cut()
         self._compiled = [None] * len(self.lines)
         self.subs: dict[str, int] = {}
         self.programs: dict[str, int] = {}
-        self.links: dict[int, int] = {}  # from o-words to those that belong to them
+        self.links: dict[int, int] = {}  # from an o-word to its counterpart, see _close
         self._link()
 
     def place(self, line: int) -> str:
@@ -112,12 +113,12 @@ class Text:
         found = self._compiled[at]
         if found is None:
             found = self._compile(self.lines[at])
-            if self.links or self.programs:  # else no line is run twice
+            if self.links or self.programs:  # otherwise no line is executed twice
                 self._compiled[at] = found
         return found
 
     def _cut(self) -> None:
-        """Between the first % and the second one; without a first one, up to it."""
+        """Keeps the lines between the first % and the second one. If lines precede the only %, keeps those up to it."""
         marks = [i for i, line in enumerate(self.lines) if line.lstrip().startswith("%")]
         if not marks:
             return
@@ -174,7 +175,8 @@ class Text:
         return _with_expressions(code, self._leave_out)
 
     def _exponents(self, upper: str) -> str:
-        """2.5E-3 is an exponent where no dialect has a word E behind a number."""
+        """Returns the line with exponents as in 2.5E-3 marked by a small e, which only the dialect rs274 has. Raises
+        LineError for an exponent in another dialect, and for one without a sign, which may be the word E."""
         outside = re.sub(r"\[.*\]", "", upper)
         signed = _EXPONENT.search(outside)
         if self._dialect != "rs274":
@@ -187,7 +189,8 @@ class Text:
         return _EXPONENT.sub(r"e\1", upper) if signed else upper
 
     def _marlin(self, upper: str) -> Line | None:
-        """Codes with text behind them; codes left out, which have a line of their own; macros."""
+        """Returns the line if it is a code followed by text, a code that is left out and alone in its line, or a macro;
+        else None."""
         modal = _MARLIN_MODAL.match(upper)
         if modal:
             raise LineError(f"M{modal[1]} beside a motion: Marlin takes one command a line")
@@ -207,10 +210,10 @@ class Text:
         others = _MARLIN_CODE.search(_COMMENT.sub("", upper[command.end() :]))
         return None if others else Block((code,), {})
 
-    # --- The order of lines ---
+    # --- Links between lines ---
 
     def _link(self) -> None:
-        """Pairs o-words. Raises LineError where one is missing."""
+        """Links o-words that belong together. Raises LineError if one has no counterpart."""
         opened: list[tuple[str, str, int, list[int]]] = []  # keyword, name, line, its branches or breaks
         for at in range(self.first, len(self.lines)):
             raw = self.lines[at]
@@ -274,8 +277,8 @@ class Text:
         keyword, _, begin, inside = opened.pop()
         if keyword == "IF":
             for this, following in zip(inside, [*inside[1:], end], strict=True):
-                self.links[this] = following  # where it goes on if the condition does not hold
-                self.links[-1 - this] = end  # and behind a branch that was taken
+                self.links[this] = following  # next line if the condition is false
+                self.links[-1 - this] = end  # next line after a branch that was taken
             return
         self.links[begin], self.links[end] = end, begin
         for at in inside:
@@ -283,7 +286,8 @@ class Text:
 
 
 def sorted_words(found: list[tuple[str, float]]) -> tuple[tuple[str, ...], dict[str, float]]:
-    """Codes, and numbers by their letters. Raises LineError where two exclude each other."""
+    """Returns codes, and numbers by their letters. Raises LineError if two codes exclude each other or a letter is
+    given twice."""
     codes: list[str] = []
     numbers: dict[str, float] = {}
     for letter, number in found:
@@ -305,7 +309,7 @@ def sorted_words(found: list[tuple[str, float]]) -> tuple[tuple[str, ...], dict[
 
 
 def _bare(line: str) -> bool:
-    """Whether it says anything beside comments."""
+    """Returns whether a line has anything besides comments."""
     return bool(_COMMENT.sub("", line).strip(" \t\r\v\f\x1a\x11\x13"))
 
 
@@ -342,8 +346,8 @@ def _o_word(code: str) -> OWord:
 
 
 def _with_flags(line: str, code: str) -> Block | None:
-    """A line of Marlin's with letters without a number: of an M code, whose words say nothing of a path, or of a G code
-    that has such; None: of none of them."""
+    """Returns a line of Marlin in which letters have no number, if it is an M code, whose words do not affect the path,
+    or a G code with such flags; else None."""
     command = _MARLIN_COMMAND.match(line)
     if not command:
         return None
@@ -379,5 +383,5 @@ def _with_expressions(code: str, leave_out: frozenset[str]) -> Block:
             reader.at = begin
             raise reader.unexpected("a letter and a number")
         value = reader.value()
-        found.append((letter, 0.0 if letter in leave_out else value))  # its value need not be known
+        found.append((letter, 0.0 if letter in leave_out else value))  # a word left out is not evaluated
     return Block((), {}, found, settings)

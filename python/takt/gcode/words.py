@@ -1,10 +1,10 @@
-"""Codes of G-code: which exclude each other, whose the other words of a line are, what says nothing about a path."""
+"""Codes of G-code: groups that exclude each other, the words that belong to a code, codes that do not affect a path."""
 
 from __future__ import annotations
 
 import math
 
-# Of each group one may stand in a line.
+# A line may have one code of each group.
 GROUPS = {
     "motion": ("G0", "G1", "G2", "G3", "G5", "G5.1", "G5.2", "G5.3", "G6.2", "G73", "G81", "G82", "G83", "G85", "G89"),
     "plane": ("G17", "G18", "G19"),
@@ -17,19 +17,19 @@ GROUPS = {
     "coordinates": ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"),
 }
 GROUP_OF = {code: group for group, codes in GROUPS.items() for code in codes}
-# Of the words beside axes those that cycles of drilling have.
+# The words of drilling cycles, besides those of axes.
 CYCLES = {"G73": "RLQ", "G81": "RL", "G82": "RLP", "G83": "RLQ", "G85": "RL", "G89": "RLP"}
-# They say how a controller rounds corners, or what a path does not know of: nothing to do.
+# Codes without an effect, with their words: corner rounding of a controller, or functions unknown to a path.
 NOTHING = {"G40": "D", "G49": "", "G61": "", "G61.1": "", "G64": "PQR", "G97": "", "G50": "", "G69": "", "G15": ""}
-# Said to be left out: a tool's length (the path is that of its tip), speeds of spindles, dwells.
-# Of those, some set coordinates in a dialect if axes stand beside them.
+# Those of NOTHING that set coordinates in a dialect if axes are in the same line.
 WITHOUT_AXES = ("G15", "G50", "G69")
+# Reported as left out, with their words: tool length (the path is that of the tip), spindle speeds, dwells.
 LEFT_OUT = {"G43": "", "G96": "", "G4": "P"}
 AXES = "XYZ"
 ENDS = ("M2", "M30", "M98", "M99")
-# Of Marlin's G codes those whose words all have a number.
+# The G codes of Marlin whose words all have a number.
 WITHOUT_FLAGS = {*GROUP_OF, *NOTHING, *LEFT_OUT, "G52", "G53", "G92"}
-# The other words of a line that are a code's own, where it is left out by name.
+# The words of a line that belong to a code and are left out with it, if it is left out by name.
 WORDS_OF = {
     "G10": "LPQRXYZABCIJ",
     "G28": AXES,
@@ -55,7 +55,7 @@ WORDS_OF = {
     "M98": "PLQ",
     "M99": "P",
 }
-# Words that M codes have of their own, beside axes, which are those of a motion in the same line.
+# The words of M codes; axes in the same line belong to a motion.
 M_WORDS = {
     "M0": "", "M1": "", "M3": "$", "M4": "$", "M5": "$", "M6": "", "M7": "", "M8": "", "M9": "", "M19": "RQP$",
     "M48": "P", "M49": "P", "M50": "P", "M51": "P$", "M52": "P", "M53": "P", "M60": "", "M61": "Q", "M62": "P",
@@ -90,17 +90,17 @@ WHY_NOT = {
 
 
 def code_name(letter: str, number: float) -> str:
-    """G01 and G1.0 are G1."""
+    """Returns the name of a code: G1 for G01 and G1.0."""
     return f"{letter}{number:g}"
 
 
 def program_name(number: float) -> str:
-    """O0010 is O10."""
+    """Returns the name of a program without leading zeros: 10 for O0010."""
     return str(int(number)) if math.isfinite(number) and number == int(number) else repr(number)
 
 
 def refused(word: str) -> str:
-    """The sentence, with what to do."""
+    """Returns the error sentence for a word that is not read, with the option that leaves it out."""
     why = f": {WHY_NOT[word]}" if word in WHY_NOT else ""
     return f"{word} is not read{why} ({hint(word)})"
 
@@ -115,8 +115,8 @@ def hint(word: str) -> str:
 
 
 def words_of(code: str, dialect: str, has_motion: bool) -> str:
-    """The letters of the words in a line that are a code's own, if it is left out. Codes that are not known have all of
-    them, except beside a motion."""
+    """Returns the letters of the words that belong to a code and are left out with it. All words of the line belong to
+    an unknown code, none if there is a motion in the line."""
     if code in WORDS_OF:
         return WORDS_OF[code]
     if code in LEFT_OUT:
