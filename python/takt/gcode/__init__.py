@@ -38,7 +38,7 @@ class Options:
     """How to read a program.
 
     dialect: one of DIALECTS; None: recognised from the lines of the program.
-    leave_out: codes and letters that are left out, with the words that belong to them: "M7", "G41", "A".
+    leave_out: codes, letters and macros that are left out, with the words that belong to them: "M7", "G41", "A".
     delete_blocks: lines that begin with / are skipped; False: they are executed.
     offsets: zeros of coordinate systems in machine coordinates [mm], by name ("G54").
     parameters: values by number or name ("5410", "_depth").

@@ -60,7 +60,7 @@ def arc_about(
     inches: bool = False,
 ) -> Arc:
     """Returns the arc from `begin` to `end`, a full turn if these are equal in the plane, plus `more_turns`. Raises
-    LineError if the radii at its ends differ by more than LinuxCNC allows."""
+    LineError if the radii at its ends differ by more than LinuxCNC allows, or its centre is at one of them."""
     axes = PLANES[plane]
     first, second, _ = axes
     out = (begin[first] - centre[0], begin[second] - centre[1])

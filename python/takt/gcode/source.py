@@ -118,7 +118,7 @@ class Text:
         return found
 
     def _cut(self) -> None:
-        """Keeps the lines between the first % and the second one. If lines precede the only %, keeps those up to it."""
+        """Keeps the lines between the first % and the second one; if lines precede the first %, those before it."""
         marks = [i for i, line in enumerate(self.lines) if line.lstrip().startswith("%")]
         if not marks:
             return

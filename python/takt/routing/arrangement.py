@@ -90,7 +90,7 @@ class Task:
         """Returns the final position of a mover: that of its start if it is fixed, else its target, None if any."""
         return self.starts[mover] if mover in self.fixed else self.targets.get(mover)
 
-    # --- what is possible ---
+    # --- possible hops ---
 
     def bounds(self, street: Street, a: Arrangement, without: int = -1) -> tuple[float, float]:
         """Returns the range [mm] available to the row of a street, given the movers in its zones except `without`."""
@@ -252,7 +252,7 @@ class Task:
             crowded = row and not self.fits(street, row, a, aims=True)
             for i in reversed(row):
                 aim = self.aim(i)
-                # A mover without a target ahead of it keeps a mover from a target at the front of the street.
+                # A mover without a target blocks those behind it from targets at the front of the street.
                 leaves |= bool(crowded) and aim is None and most > street.last - self.streets.gap
                 if not leaves and (aim is None or (aim.street == street.index and aim.s > most)):
                     stay.append((i, aim or Place(street.index, street.last)))

@@ -16,13 +16,13 @@ class Loop:
     street: Street
     starts: Mapping[int, float]  # by mover: mm along the loop
     targets: Mapping[int, float]
-    fixed: Mapping[int, float]  # that stay where they are
+    fixed: Mapping[int, float]  # movers that may not be moved
 
 
 def go_round(loop: Loop, streets: Streets, names: Sequence[str]) -> dict[int, float]:
     """Returns the target position [mm] of each mover that moves, counted from its present position on the track: below
     0 or above the length where it crosses the origin. All start at the same time. Movers without a target are displaced
-    where necessary, `fixed` ones never. Raises RoutingError where the gaps do not fit, or the targets are in another
+    where necessary, `fixed` ones never. Raises RoutingError if the gaps do not fit, or the targets are in another
     cyclic order. Requires: at least one target."""
     length, gap = loop.street.length, streets.gap
     if len(loop.starts) * gap > length - SAME:

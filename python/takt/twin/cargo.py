@@ -281,7 +281,8 @@ class Cargo:
         self._wait(product)
 
     def position(self, number: int) -> Array:
-        """Returns the centre of a product's top, (3,) [mm] in the world frame. Raises TaktError if there is none."""
+        """Returns the centre of a product's top, (3,) [mm] in the world frame. Raises TaktError if there is no such
+        product."""
         return np.asarray(self._top(self._numbered(number)) * PER_M)
 
     def camera(self, belt: str, begin: float = -math.inf, end: float = math.inf) -> list[ProductSeen]:

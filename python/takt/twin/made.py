@@ -336,7 +336,8 @@ def _tool(made: Made, number: int, group: Mapping[str, Any], told: Mapping[str, 
 
 
 def _contacts(number: int) -> str:
-    """Returns contact groups with which the parts of a mechanism collide with other mechanisms and obstacles only."""
+    """Returns the contact groups of a mechanism, whose parts collide with other mechanisms, obstacles and products, but
+    not with one another."""
     own = 1 << (number % GROUPS)
     return f'contype="{own}" conaffinity="{((1 << GROUPS) - 1) & ~own | ENVIRONMENT}"'
 
