@@ -1,5 +1,5 @@
-"""Motion checks: each looks at a recording and returns a `Verdict`, never raises because of what the motion
-did. `takt.expect` has the same functions in their asserting form."""
+"""Motion checks: each one judges a recording and returns a `Verdict`. A motion that fails a check never raises; only
+arguments that make no sense do. `takt.expect` has the same functions in their asserting form."""
 
 from takt.checks.conditions import complete, never_both, stays, visits_states
 from takt.checks.limits import continuous, within_limits

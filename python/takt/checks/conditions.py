@@ -1,9 +1,9 @@
-"""Conditions over time: what must always hold, what must never hold together, and which states are visited.
+"""Conditions over time: one that must always hold, two that must never hold together, and the states that are visited.
 
 A condition is a text such as "x.actual_position > 10", "|x.following_error| <= 0.5", "x.state == Standstill",
 "x.in_position", "not x.in_position", or several of them joined by " and ".
 
-Numbers that differ by no more than rounding count as equal (`slack`): 100.00000000000001 is not above 100.
+Numbers that differ only by rounding count as equal (`slack`): 100.00000000000001 is not above 100.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from takt.names import names_in
 from takt.recording import FloatArray, Recording, RecordingError, split_signal
 from takt.verdict import Bound, Interval, Lane, Verdict, number, seconds
 
-# Of a value minus what it is compared with, and of the difference that counts as none.
+# Arguments: value minus the level, and the difference [same unit] that still counts as equal.
 _COMPARE: dict[str, Callable[[Any, float], Any]] = {
     "<=": lambda difference, slack: difference <= slack,
     ">=": lambda difference, slack: difference >= -slack,
@@ -40,19 +40,20 @@ _FLAG = re.compile(r"^(?P<negated>not\s+)?(?P<signal>[^\s|<>=!]+)$")
 
 @dataclass(frozen=True)
 class _Term:
-    """One comparison of a condition, evaluated."""
+    """One evaluated comparison of a condition."""
 
     text: str
     series: Series
     holds: Mask
-    excess: FloatArray | None  # > 0 by how much it does not hold; None where that has no meaning
+    excess: FloatArray | None  # > 0: by how much it is violated; None for states, flags and !=
     lane: Lane
 
 
 @decided
 def stays(recording: Recording, condition: str, *, window: Interval | None = None) -> Verdict:
-    """A condition holds at every sample: stays(rec, "x.state == Standstill", window=(1.0, 2.0)). Numbers that differ by
-    less than a billionth count as equal."""
+    """Passes if a condition holds at every sample: stays(rec, "x.state == Standstill", window=(1.0, 2.0)). window:
+    (from, to) [s]; None: the whole recording. Numbers that differ by less than a billionth (relative) count as
+    equal."""
     terms = _parse(condition)
     check = Check("stays", recording, _components(terms), window)
     evaluated = [_evaluate(check, *term) for term in terms]
@@ -86,8 +87,8 @@ def stays(recording: Recording, condition: str, *, window: Interval | None = Non
 
 @decided
 def never_both(recording: Recording, a: str, b: str, *, window: Interval | None = None) -> Verdict:
-    """Two conditions never hold in the same cycle: never_both(rec, "x.actual_position > 10",
-    "clamp.closed")."""
+    """Passes if two conditions never hold in the same cycle: never_both(rec, "x.actual_position > 10", "clamp.closed").
+    Only cycles that all components of both conditions have are compared."""
     terms_a, terms_b = _parse(a), _parse(b)
     check = Check("never_both", recording, _components([*terms_a, *terms_b]), window)
     all_a, all_b = ([_evaluate(check, *t) for t in terms] for terms in (terms_a, terms_b))
@@ -113,7 +114,8 @@ def visits_states(
     field: str = "state",
     window: Interval | None = None,
 ) -> Verdict:
-    """The states are visited in this order; others may lie between them unless `exactly`."""
+    """Passes if the states are visited in this order. Other states may lie between them, before and after, unless
+    `exactly`. `field` is the signal with the names of states. Raises ValueError if `states` is empty."""
     states = names_in(states, "states", "state")
     if not states:
         raise ValueError("visits_states: states is an empty list, so there is nothing to judge")
@@ -157,8 +159,8 @@ def visits_states(
 
 @decided
 def complete(recording: Recording, component: str, *, step: int | None = None) -> Verdict:
-    """No sample was lost: cycle numbers follow each other evenly (`step` cycles apart, where it is known), from where
-    other components begin to where they end."""
+    """Passes if no sample was lost: cycle numbers are evenly spaced (`step` cycles apart; None: the most frequent
+    spacing), from the beginning of the recording to its end."""
     check = Check("complete", recording, (component,), None, says_missing=False)
     s = check.series(component, "cycle")
     gaps = recording.gaps(component, step)
@@ -181,7 +183,7 @@ def complete(recording: Recording, component: str, *, step: int | None = None) -
 
 
 def _parse(condition: str) -> list[tuple[str, str, str, str, bool]]:
-    """(text, signal, operator, value, absolute) of each term."""
+    """Returns (text, signal, operator, value, absolute) of each term."""
     terms = []
     for part in re.split(r"\s+and\s+", condition.strip()):
         if (m := _COMPARISON.match(part)) and m["bar"] == m["bar2"]:
@@ -223,7 +225,7 @@ def _evaluate(check: Check, text: str, signal: str, op: str, value: str, absolut
 
 
 def _all_hold(check: Check, terms: Sequence[_Term]) -> Series:
-    """Where all terms hold, as a series of 0 and 1 over the cycles that all have."""
+    """Returns a series of 1 where all terms hold and 0 elsewhere, over the cycles that all terms have."""
     result: Series | None = None
     for term in terms:
         s = term.series
@@ -237,7 +239,7 @@ def _all_hold(check: Check, terms: Sequence[_Term]) -> Series:
 
 
 def _without_sides(lane: Lane) -> Lane:
-    """Alone, neither side of a threshold is forbidden."""
+    """Removes the forbidden side of thresholds: a condition of never_both may hold by itself."""
     return replace(lane, bounds=tuple(replace(b, forbidden="none") for b in lane.bounds))
 
 

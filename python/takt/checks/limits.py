@@ -1,4 +1,4 @@
-"""Is a motion within its limits, and is it continuous?"""
+"""Checks whether a motion is within its limits, and whether it is continuous."""
 
 from __future__ import annotations
 
@@ -38,20 +38,19 @@ def within_limits(
     jerk_tolerance: float = 1e-6,
     window: Interval | None = None,
 ) -> Verdict:
-    """Position, velocity, acceleration and jerk stay within limits.
+    """Passes if position, velocity, acceleration and jerk stay within limits.
 
-    position: (lower, upper); the others are largest absolute values. What is not given is taken from the
-        component's `limits`; what is not known there either, and what is infinite, is not checked. Of a planar
-        mover they are the lengths of the vectors of X and Y, in the plane and on tracks; `lateral_acceleration` in
-        curves of tracks, and Z, A, B and C, are held against its own limits. Jerk is not checked of set points from
-        outside.
+    position: (lower, upper); the other limits are largest absolute values. None: the limit is taken from the
+        component's `limits`; a limit that is not known there either, or is infinite, is not checked. For a planar
+        mover, velocity, acceleration and jerk are the magnitudes of the vectors of X and Y, in the plane and on tracks;
+        `lateral_acceleration` in curves of tracks, and Z, A, B and C, are checked against the mover's own limits. Jerk
+        is not checked where set points come from outside. A jerk of 0 is unlimited.
     tolerance: relative to the limit, for rounding.
-    jerk_tolerance: relative. Jerk is not recorded; it is the difference of two accelerations over the time
-        between them, which is the mean jerk of that stretch. The mean of a jerk that keeps its limit keeps it
-        too, also over lost samples, so nothing has to be allowed for sampling. What has to be allowed is the
-        rounding of the numbers that are subtracted (accelerations and times), four units in the last place of
-        the largest; it is added by itself. Where the loop opens there is no jerk: the set point becomes what is
-        measured.
+    jerk_tolerance: relative. Jerk is not recorded; it is the difference of two accelerations over the time between
+        them, which is the mean jerk of that interval. If the jerk keeps its limit, so does its mean, also over lost
+        samples, so sampling needs no allowance. The rounding of the subtracted numbers (accelerations and times) does:
+        four units in the last place of the largest are added automatically. Jerk is not checked where the loop is open
+        or opens: the set point is the measured value there.
     """
     sound("within_limits", tolerance=tolerance, jerk_tolerance=jerk_tolerance)
     check = Check("within_limits", recording, (component,), window)
@@ -98,24 +97,24 @@ def continuous(
     slack: float = 1e-8,
     window: Interval | None = None,
 ) -> Verdict:
-    """No step beyond what the bounds allow in one sample.
+    """Passes if no step exceeds what the bounds allow in one sample.
 
-    step: the largest change of the signal from one sample to the next, alone, for signals that are measured
-        (with noise and quantisation). Without it, bounds follow from the limits, given or known of the
-        component, over the time dt between two samples:
+    step: the largest change of the signal from one sample to the next; it is then the only check, for signals that are
+        measured (with noise and quantisation). None: bounds follow from the limits, given or known of the component,
+        over the time dt between two samples:
 
-    - position changes by at most velocity * dt, and by the mean of its two velocities times dt, give or take
-      jerk * dt³/12 (without a jerk limit: acceleration * dt²/4), the error of the trapezoidal rule;
-    - velocity changes by at most acceleration * dt, and by the mean of its two accelerations times dt, give
-      or take jerk * dt²/4;
+    - position changes by at most velocity * dt, and by the mean of its two velocities times dt, give or take jerk *
+      dt³/12 (without a jerk limit: acceleration * dt²/4), the error of the trapezoidal rule;
+    - velocity changes by at most acceleration * dt, and by the mean of its two accelerations times dt, give or take
+      jerk * dt²/4;
     - acceleration changes by at most jerk * dt.
 
-    So a jump of a micrometre is found in a set point, although the axis could have gone further in that time.
-    Velocities and accelerations that were not recorded are not asked. While its loop is open an axis has no set
-    point of its own (it is where the axis is measured), so a set point is asked only while the loop is closed.
+    So a jump of a micrometre is found in a set point, although the axis could have moved further in that time.
+    Velocities and accelerations that were not recorded are not checked. While its loop is open an axis has no set point
+    of its own (it equals the actual position), so a set point is checked only while the loop is closed.
 
     tolerance: relative to the bound.
-    slack: added to it, in u, u/s and u/s²: the accuracy with which a planned move ends.
+    slack: added to the bound, in u, u/s and u/s²: the accuracy with which a planned move ends.
     """
     sound("continuous", step=step if step is not None else 0.0, tolerance=tolerance, slack=slack)
     check = Check("continuous", recording, (component,), window)
@@ -179,8 +178,8 @@ def continuous(
 
 
 def _set_by_engine(check: Check, component: str, signal: str) -> Mask:
-    """For each pair of neighbouring samples: whether the signal was the engine's to choose. All, where that is not
-    recorded or the loop never was closed."""
+    """Returns, for each pair of neighbouring samples, whether the engine chose the signal. All True if that is not
+    recorded or the loop was never closed."""
     samples = len(check.series(component, signal).values)
     everywhere = np.ones(samples - 1, dtype=np.bool_)
     if not signal.startswith("set_") or "loop_closed" not in check.recording.fields(component):
@@ -198,8 +197,8 @@ def _limits(
     acceleration: float | None,
     jerk: float | None,
 ) -> _Limits:
-    """Given limits, else the component's own; None where infinite. A jerk of 0 means unlimited, as in commands. An own
-    limit of deceleration counts with that of acceleration: the larger of both bounds the absolute value."""
+    """Returns the given limits, else the component's own; None where infinite. A jerk of 0 means unlimited, as in
+    commands. The larger of the component's acceleration and deceleration limits bounds the absolute value."""
     own: dict[str, Any] = dict(recording.info(component).get("limits") or {})
     if own.get("acceleration") is not None and own.get("deceleration") is not None:
         own["acceleration"] = max(own["acceleration"], own["deceleration"])

@@ -1,4 +1,4 @@
-"""Quantities held against their bounds, and the verdict on them."""
+"""Quantities compared with their bounds, and the verdict on them."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ EPS = float(np.finfo(np.float64).eps)
 
 @dataclass(frozen=True)
 class Measured:
-    """One quantity held against its bounds; excess > 0 breaks it."""
+    """One quantity compared with its bounds; an excess > 0 violates them."""
 
     what: str  # "velocity"
     unit: str
     time_s: FloatArray
     values: FloatArray
     excess: FloatArray
-    scale: float  # what excesses of different quantities are compared by
+    scale: float  # excess / scale is comparable between quantities
     bounds: tuple[Bound, ...]
     label: str
     says: str  # "velocity limit of 100 mm/s"
@@ -42,7 +42,8 @@ class Measured:
 
 
 def in_range(what: str, s: Series, lower: float, upper: float, tolerance: float) -> Measured:
-    """Values between two bounds, of which one may be infinite; `tolerance` is relative to the larger one."""
+    """Returns values compared with two bounds, one of which may be infinite; `tolerance` is relative to the larger
+    bound."""
     sides = [limit for limit in (lower, upper) if math.isfinite(limit)]
     scale = max(abs(limit) for limit in sides)
     excess = np.maximum(s.values - upper, lower - s.values)
@@ -59,8 +60,9 @@ def in_range(what: str, s: Series, lower: float, upper: float, tolerance: float)
 
 
 def jerk_against(what: str, s: Series, steps: FloatArray, limit: float, tolerance: float, label: str) -> Measured:
-    """Steps of an acceleration over the times between its samples, against a jerk. What is subtracted was rounded:
-    four units in the last place of the largest are allowed."""
+    """Returns the mean jerk of each interval between samples (steps of the acceleration over the times between them),
+    compared with a jerk limit; `tolerance` is relative. Four units in the last place of the largest subtracted number
+    are added to it, for rounding."""
     dt = np.diff(s.time_s)
     rounding = 4 * EPS * (np.max(np.abs(s.values)) + limit * np.max(np.abs(s.time_s))) / dt
     unit = s.unit.replace("s²", "s³")
@@ -76,7 +78,8 @@ def against(
     margin: float | FloatArray,
     label: str,
 ) -> Measured:
-    """Absolute values against a limit; within the margin above it counts as kept."""
+    """Returns absolute values compared with a limit; an excess of up to `margin` (absolute, in `unit`) counts as
+    kept."""
     levels = np.broadcast_to(np.asarray(limit, dtype=np.float64), values.shape)
     excess = np.abs(values) - levels
     kept = excess <= margin
@@ -92,7 +95,7 @@ def against(
 
 
 def bounded(name: str, limit: float | None) -> float | None:
-    """Returns the limit; None where there is none or it is infinite. Raises ValueError where it is NaN or negative."""
+    """Returns the limit; None if it is None or infinite. Raises ValueError if it is NaN or negative."""
     if limit is not None and not limit >= 0:
         raise ValueError(f"the {name} limit {limit} is not a positive number")
     return None if limit is None or math.isinf(limit) else float(limit)
@@ -106,6 +109,8 @@ def judge(
     broke: str,
     lanes: Sequence[Lane] = (),
 ) -> Verdict:
+    # Returns the verdict on several quantities of one component; requires `found` not to be empty. Reports the one
+    # with the largest relative excess (excess / scale) or, if none is violated, with the smallest relative margin.
     worst = max(found, key=lambda m: (bool(m.broken.any()), float(np.max(m.excess)) / m.scale))
     at = int(np.argmax(worst.excess))
     amount, when = float(worst.excess[at]), float(worst.time_s[at])

@@ -1,4 +1,4 @@
-"""Is a planar mover within what it can do?"""
+"""Checks whether a planar mover is within its limits."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from takt.recording import FloatArray
 from takt.verdict import Verdict
 
 ON_TRACK = ("OnTrack", "CRotationOnTrack")
-CURVATURE = 1e-6  # relative: what rounding makes of directions and curvatures
-SAME = 1e-6  # mm/s: what is faster or slower than its way along the track has set points from outside on top
+CURVATURE = 1e-6  # relative: rounding of directions and curvatures
+SAME = 1e-6  # mm/s: a speed that differs more from that along the track has set points from outside on top
 
 
 def of_mover(
     check: Check, mover: str, given: Mapping[str, float | None], tolerance: float, jerk_tolerance: float
 ) -> Verdict:
-    """X and Y together (the lengths of the vectors), across the track in curves, and each of Z, A, B and C by itself.
-    `given` is for X and Y, instead of the mover's own."""
+    """Returns the verdict on X and Y together (magnitudes of the vectors), the lateral acceleration in curves, and each
+    of Z, A, B and C by itself. `given` holds limits for X and Y that replace the mover's own; None: the mover's own."""
     own = check.recording.info(mover)["limits"]
     limits = dict(own["xy"])
-    # A recording of a mover that decelerates harder than it accelerates: one length is held against both.
+    # For a mover that decelerates harder than it accelerates: one magnitude is compared with the larger limit.
     limits["acceleration"] = max(limits["acceleration"], limits.get("deceleration") or 0.0)
     limits |= {what: limit for what, limit in given.items() if limit is not None}
     in_plane = {what: limit for what in limits if (limit := bounded(what, limits[what])) is not None}
@@ -37,7 +37,7 @@ def of_mover(
     others = []
     for name in "zabc":
         alone = _alone(check, mover, name, own[name], tolerance, jerk_tolerance)
-        # Of what rests all the time there is nothing to say.
+        # A coordinate that never moves is not mentioned.
         if moves := [one for one in alone if one.broken.any() or np.ptp(one.values) > 0]:
             found += moves
             others.append(name.upper())
@@ -50,8 +50,8 @@ def of_mover(
 def _in_plane(
     check: Check, mover: str, limits: Mapping[str, float], tolerance: float, jerk_tolerance: float
 ) -> list[Measured]:
-    """The lengths of the vectors, on tracks, too. What set points from outside add on a track is not recorded by
-    itself: the acceleration there is the one along the track."""
+    """Returns the magnitudes of the vectors of X and Y, on tracks, too. The part that set points from outside add on a
+    track is not recorded separately: the acceleration there is the one along the track."""
     v, a = (_vector(check, mover, what) for what in ("velocity", "acceleration"))
     along = check.series(mover, "track_acceleration")
     added = _added(check, mover)
@@ -77,7 +77,8 @@ def _in_plane(
 
 
 def _across(check: Check, mover: str, limit: float, tolerance: float) -> list[Measured]:
-    """The acceleration across the way, on tracks."""
+    """Returns the acceleration across the direction of motion on tracks; empty if the mover never moves along one by
+    itself."""
     (vx, vy), (ax, ay) = (_vector(check, mover, what) for what in ("velocity", "acceleration"))
     along = check.series(mover, "track_velocity")
     speed = np.hypot(vx, vy)
@@ -93,7 +94,8 @@ def _across(check: Check, mover: str, limit: float, tolerance: float) -> list[Me
 def _alone(
     check: Check, mover: str, name: str, own: Mapping[str, Any], tolerance: float, jerk_tolerance: float
 ) -> list[Measured]:
-    """One coordinate; the window of C holds only while X and Y move, and is there four times: it is not asked."""
+    """Returns one coordinate compared with its limits. The range of C holds only while X and Y move, and exists four
+    times: it is not checked."""
     p, v, a = (check.series(mover, field) for field in (name, f"velocity_{name}", f"acceleration_{name}"))
     most, big = own["maximum"], name.upper()
     found = [
@@ -115,21 +117,21 @@ def _vector(check: Check, mover: str, what: str) -> tuple[FloatArray, FloatArray
 
 
 def _modes(check: Check, mover: str) -> Mask:
-    """Where it goes along a track."""
+    """Returns where the mover moves along a track."""
     mode = check.series(mover, "command_mode").values
     codes = [code for code, name in check.recording.names(mover, "command_mode").items() if name in ON_TRACK]
     return np.isin(mode, codes)
 
 
 def _given(check: Check, mover: str) -> Mask:
-    """Set points come from outside."""
+    """Returns where set points come from outside."""
     return np.asarray(check.series(mover, "external").values > 0)
 
 
 def _added(check: Check, mover: str) -> Mask:
-    """On a track: set points come from outside, or have ended and the mover is not back on the track and at rest yet,
-    also where they ended before the window. What they add there and the motion along the track each keep the limits by
-    themselves."""
+    """Returns where set points from outside add to a motion on a track: while they come, and after their end until the
+    mover is back on the track and at rest, also if they ended before the window. The added motion and the motion along
+    the track each keep the limits separately."""
     table = check.recording[mover]
     given = np.asarray(table["external"] > 0)
     rests = ~given & (np.asarray(table["busy_xyc"]) == 0)
@@ -141,5 +143,6 @@ def _added(check: Check, mover: str) -> Mask:
 
 
 def _pushed(given: Mask) -> Mask:
-    """For each pair of neighbouring samples: set points from outside, whose jerk is not checked."""
+    """Returns, for each pair of neighbouring samples, whether set points come from outside: their jerk is not
+    checked."""
     return given[1:] | given[:-1]

@@ -1,4 +1,4 @@
-"""Do two components move as they should beside each other?"""
+"""Checks whether two components keep in step, or at a distance."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ def in_sync(
     master_signal: str | None = None,
     window: Interval | None = None,
 ) -> Verdict:
-    """slave = ratio · master + offset within `tolerance`, at every cycle that both have.
+    """Passes if slave = ratio · master + offset within `tolerance`, at every cycle that both have.
 
-    On rotary axes turns do not count: the master is followed over its turns, starting from the first value of
-    the window, and the error is taken the short way round the slave's modulus. offset=None takes the offset
-    from the first sample, so that only staying in step is asked. `signal` is the slave's, and the master's
-    unless `master_signal` says otherwise.
+    On rotary axes turns do not count: the master is followed over its turns, starting from the first value of the
+    window, and the error is wrapped to at most half the slave's modulus. offset=None takes the offset from the first
+    sample, so that only staying in step is checked. `signal` is the slave's, and the master's too unless
+    `master_signal` is given.
     """
     sound("in_sync", ratio=ratio, offset=offset or 0.0, tolerance=tolerance)
     check = Check("in_sync", recording, (master, slave), window)
@@ -83,11 +83,11 @@ def keeps_distance(
     tolerance: float = 1e-9,
     window: Interval | None = None,
 ) -> Verdict:
-    """The distance of two components never falls below `minimum`.
+    """Passes if the distance of two components never falls below `minimum`.
 
-    `signal` is one position along a common track, or several ("x", "y") for the straight distance of points.
-    On a closed track of length `modulus` (known where both components have the same) the shorter way round
-    counts. tolerance: relative, for rounding.
+    `signal` is one position along a common track, or several ("x", "y") for the straight-line distance of points. On a
+    closed track of length `modulus` (None: known if both components have the same) the shorter way round counts.
+    tolerance: relative, for rounding.
     """
     sound("keeps_distance", minimum=minimum, tolerance=tolerance)
     if modulus is not None and not 0 < modulus < math.inf:

@@ -1,4 +1,4 @@
-"""How groups keep to paths of their tools."""
+"""Checks whether the tool of a group follows a path."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ def follows_path(
     actual: bool = False,
     window: Interval | None = None,
 ) -> Verdict:
-    """A group goes along all of a path, from its start to its end and in its order, never further than `within` mm
-    beside it.
+    """Passes if a group follows all of a path, from its start to its end and in order, with a deviation of at most
+    `within` [mm].
 
-    path: in the machine coordinate system. actual: what was measured instead of what was commanded."""
+    path: in the machine coordinate system. actual: checks the actual pose instead of the set point. Raises ValueError
+    unless 0 < within < SLACK."""
     if not 0 < within < SLACK:
         raise ValueError(f"follows_path: within is a number of mm above 0 and below {SLACK:g}, not {within}")
     check = Check("follows_path", recording, (group,), window)

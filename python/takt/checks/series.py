@@ -1,4 +1,4 @@
-"""What all checks share: taking columns out of a recording and refusing what cannot be judged."""
+"""The basis of all checks: takes columns from a recording, and rejects data that cannot be judged."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ P = ParamSpec("P")
 Mask = npt.NDArray[np.bool_]
 
 ROUNDING = 1e-9  # relative difference of numbers that count as equal
-NEAR_ZERO = 1e-3  # to numbers smaller than that it is relative to that: 1e-12, in the signal's unit
-LAST_PLACES = 16 * float(np.finfo(np.float64).eps)  # relative: what rounding of two numbers leaves in their difference
+NEAR_ZERO = 1e-3  # numbers below this are compared absolutely, by 1e-12 in the signal's unit
+LAST_PLACES = 16 * float(np.finfo(np.float64).eps)  # relative: error of a difference of two rounded numbers
 
-SHARE_IN_COMMON = 0.9  # of the samples of two components; the rest may have got lost
+SHARE_IN_COMMON = 0.9  # of the samples of two components; the rest may be lost
 
 NOT_NEGATIVE = ("tolerance", "jerk_tolerance", "slack", "step", "within", "hold")
 
@@ -33,7 +33,7 @@ QUANTITIES = ("position", "velocity", "acceleration", "jerk", "error", "torque",
 
 
 class UndecidedError(Exception):
-    """Raised inside a check when the data cannot be judged; carries the failing verdict."""
+    """Raised inside a check if the data cannot be judged; carries the failed verdict."""
 
     def __init__(self, verdict: Verdict) -> None:
         super().__init__(verdict.sentence)
@@ -41,7 +41,7 @@ class UndecidedError(Exception):
 
 
 def decided(check: Callable[P, Verdict]) -> Callable[P, Verdict]:
-    """Turns UndecidedError into the failing verdict it carries."""
+    """Turns UndecidedError into the failed verdict that it carries."""
 
     @functools.wraps(check)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> Verdict:
@@ -54,8 +54,8 @@ def decided(check: Callable[P, Verdict]) -> Callable[P, Verdict]:
 
 
 def sound(name: str, **numbers: float) -> None:
-    """Raises ValueError where an argument of the check `name` is infinite or NaN, or where one that is a width or a
-    duration is negative."""
+    """Raises ValueError if an argument of the check `name` is infinite or NaN, or if a width or duration is
+    negative."""
     for what, value in numbers.items():
         if not math.isfinite(value):
             raise ValueError(f"{name}: {what} is {value}, not a number")
@@ -65,7 +65,7 @@ def sound(name: str, **numbers: float) -> None:
 
 @dataclass(frozen=True)
 class Series:
-    """One column within the window of a check, as numbers that are all finite."""
+    """One column within the window of a check, as finite numbers."""
 
     component: str
     field: str
@@ -90,7 +90,7 @@ class Series:
         return Lane(quantity(self.field), self.unit, (self.trace(),), **more)
 
     def error_to(self, target: float | FloatArray) -> FloatArray:
-        """values - target, the short way round on a rotary axis."""
+        """Returns values - target; on a rotary axis wrapped into [-modulus/2, modulus/2)."""
         return wrap(self.values - target, self.modulus)
 
     def take(self, rows: Array) -> Series:
@@ -106,7 +106,7 @@ class Series:
 
 
 class Check:
-    """One check being made: hands out series that can be judged, and makes the verdict."""
+    """One check in progress: returns series that can be judged, and makes the verdict."""
 
     def __init__(
         self,
@@ -116,7 +116,7 @@ class Check:
         window: Interval | None,
         says_missing: bool = True,
     ) -> None:
-        """`says_missing`: its sentences end with the samples that it had to do without."""
+        """`says_missing`: the sentences of its verdicts end with the samples that are missing."""
         if window is not None and not window[0] <= window[1]:
             raise ValueError(f"{name}: the window {window} does not run forward")
         self.name = name
@@ -126,8 +126,8 @@ class Check:
         self.says_missing = says_missing
 
     def series(self, component: str, field: str) -> Series:
-        """The column in the window. Undecided, so failed, where there is no sample, where the recording does
-        not span the window, and where a value is not a number."""
+        """Returns the column in the window. Undecided, hence failed, if there is no sample, if the recording does not
+        span the window, or if a value is not finite."""
         column = self.recording.column(component, field)
         table = self.recording[component]
         time_s: FloatArray = table["time_s"]
@@ -142,7 +142,7 @@ class Check:
             column.astype(np.float64),
             float(info["modulus"]) if info.get("modulus") and quantity(field) == "position" else None,
         )
-        there = [whole.lane(names=names)] if len(time_s) else []  # what else there is to show
+        there = [whole.lane(names=names)] if len(time_s) else []  # shown if the check gives up
         inside = np.ones(len(time_s), dtype=np.bool_)
         if self.window is not None:
             inside = (time_s >= self.window[0]) & (time_s <= self.window[1])
@@ -181,8 +181,8 @@ class Check:
         return Verdict(self.name, self.components, passed, sentence, when_s, by, unit, place, tuple(lanes))
 
     def together(self, a: Series, b: Series) -> tuple[Series, Series]:
-        """The samples of both that belong to the same cycles. Undecided where these are too few: of the one that was
-        sampled more seldom, nearly all samples must be among them."""
+        """Returns the samples of both that belong to the same cycles. Undecided if these are too few: nearly all
+        samples of the series with the lower rate must be among them."""
         if np.array_equal(a.cycle, b.cycle):
             return a, b
         _, rows_a, rows_b = np.intersect1d(a.cycle, b.cycle, assume_unique=True, return_indices=True)
@@ -199,7 +199,8 @@ class Check:
         return a.take(rows_a), b.take(rows_b)
 
     def _spans(self, component: str, time_s: FloatArray, window: Interval, lanes: Sequence[Lane]) -> None:
-        """A window is covered when at most one usual sample distance is missing at each end."""
+        """Requires the samples to cover the window: up to one and a half usual sample intervals may be missing at each
+        end."""
         slack = 1.5 * float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0
         if time_s[-1] < window[1] - slack:
             self._give_up(
@@ -219,8 +220,8 @@ class Check:
 
 
 def words(field: str) -> str:
-    """ "torque_nm" -> "torque", "set_position" -> "set position": a field's name for people, who see the unit
-    beside it."""
+    """ "torque_nm" -> "torque", "set_position" -> "set position": a field's name for readers, who see the unit beside
+    it."""
     for suffix in ("_nm", "_v", "_s", "_mm", "_deg"):
         field = field.removesuffix(suffix)
     return field.replace("_", " ")
@@ -228,7 +229,7 @@ def words(field: str) -> str:
 
 def quantity(field: str) -> str:
     """ "set_position" -> "position", "set_x_position" -> "x position", "velocity_x" -> "velocity"; the field's own name
-    where it ends in nothing known."""
+    if it does not end in a known quantity."""
     name = words(field)
     if name == "following error":
         return name
@@ -248,27 +249,27 @@ def sibling(position: str, wanted: str) -> str:
 
 
 def wrap(difference: FloatArray, modulus: float | None) -> FloatArray:
-    """The short way round: into [-modulus/2, modulus/2)."""
+    """Returns the difference wrapped into [-modulus/2, modulus/2); unchanged if the modulus is None."""
     if modulus is None:
         return difference
     return np.mod(difference + modulus / 2, modulus) - modulus / 2
 
 
 def unwrapped(series: Series) -> FloatArray:
-    """A rotary position as it would be without the modulus, starting from the value reported first."""
+    """Returns a rotary position without jumps at the modulus, starting from the value reported first."""
     if series.modulus is None:
         return series.values
     return np.unwrap(series.values, period=series.modulus)
 
 
 def slack(level: float) -> float:
-    """What a value may differ from a number and still count as equal to it."""
+    """Returns the difference from a number up to which a value counts as equal to it."""
     return ROUNDING * max(abs(level), NEAR_ZERO)
 
 
 def beyond(difference: FloatArray, tolerance: float, level: float) -> FloatArray:
-    """By how much absolute differences of numbers up to `level` exceed a tolerance; above 0 only where by more than
-    rounding: a billionth of the tolerance, and the last places of the numbers."""
+    """Returns the excess of absolute differences of numbers up to `level` over a tolerance. It is above 0 only if it
+    exceeds rounding: a billionth of the tolerance, and the last places of the numbers."""
     excess = np.abs(difference) - tolerance
     kept = excess <= slack(tolerance) + LAST_PLACES * abs(level)
     excess[kept] = np.minimum(excess[kept], 0)
@@ -276,13 +277,14 @@ def beyond(difference: FloatArray, tolerance: float, level: float) -> FloatArray
 
 
 def runs(mask: Mask) -> list[tuple[int, int]]:
-    """First and last index of each stretch of True."""
+    """Returns the first and last index of each run of True."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(np.int8)))
     return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def extent(time_s: FloatArray, mask: Mask) -> tuple[Interval, str]:
-    """Where a mask holds at first, and a text for "from … to …, n samples", with how often it does so again."""
+    """Returns the interval [s] of the first run of True, and a text "from … to …, n samples" with the number of further
+    runs. Requires at least one True."""
     (first, last), *others = runs(mask)
     place = (float(time_s[first]), float(time_s[last]))
     text = f"at {seconds(place[0])}"
@@ -294,5 +296,5 @@ def extent(time_s: FloatArray, mask: Mask) -> tuple[Interval, str]:
 
 
 def nearest(value: float, unit: str, time_s: float) -> str:
-    """The closest call of a check that passed: when, and the margin that was left."""
+    """Returns the closest call of a passed check as text: time, and the margin that was left."""
     return f"closest call at {seconds(time_s)}, margin {number(value, unit)}"

@@ -1,4 +1,4 @@
-"""Does a motion get where it should, and does it stay there?"""
+"""Checks whether a motion reaches its target, and whether it stays there."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ def reaches(
     start: float | None = None,
     signal: str = "actual_position",
 ) -> Verdict:
-    """A sample within `tolerance` of `position` comes no later than `by` (time_s of the recording), and not
-    before `start`."""
+    """Passes if a sample within `tolerance` of `position` comes no later than `by` [s] (time_s of the recording), and
+    not before `start` [s] (None: the beginning of the recording). Raises ValueError if `by` lies before `start`."""
     sound("reaches", position=position, tolerance=tolerance, by=by)
     whole = recording[component]["time_s"]
     begin = start if start is not None else (float(whole[0]) if len(whole) else by)
     if begin > by:
         if start is not None:
             raise ValueError(f"reaches: by={by} lies before start={start}")
-        begin = by  # the recording starts too late, which the series will say
+        begin = by  # the recording starts too late: `series` reports it
     end = by if not len(whole) or whole[-1] >= by else max(begin, float(whole[-1]))
     check = Check("reaches", recording, (component,), (begin, end))
     s = check.series(component, signal)
@@ -77,9 +77,8 @@ def settles(
     hold: float | None = None,
     signal: str = "actual_position",
 ) -> Verdict:
-    """From `start` (the beginning, unless given) it takes at most `within` seconds until the signal is within
-    `tolerance` of `position` and stays there for `hold` seconds (to the end of the recording, unless
-    given)."""
+    """Passes if the signal is within `tolerance` of `position` at most `within` [s] after `start` [s] (None: the
+    beginning of the recording), and stays there for `hold` [s] (None: to the end of the recording)."""
     sound("settles", position=position, tolerance=tolerance, within=within, hold=hold or 0.0)
     whole = recording[component]["time_s"]
     begin = start if start is not None else (float(whole[0]) if len(whole) else 0.0)
@@ -88,7 +87,7 @@ def settles(
     check = Check("settles", recording, (component,), (begin, end))
     s = check.series(component, signal)
     excess = _beyond(s, position, tolerance)
-    slack = 1e-9 * max(1.0, abs(end))  # times are sums: what misses the deadline by rounding is in time
+    slack = 1e-9 * max(1.0, abs(end))  # times are sums: rounding must not miss the deadline
     stays = [
         (a, b) for a, b in runs(excess <= 0) if hold is None or s.time_s[b] - s.time_s[a] >= _held(s, hold) - slack
     ]
@@ -126,13 +125,13 @@ def settles(
 
 
 def _held(s: Series, hold: float) -> float:
-    """A hold ends with the last sample in it, which lies up to one sample distance before the time is
-    over."""
+    """Returns the time from the first to the last sample of a hold: the last one lies up to one sample interval before
+    the end of the hold."""
     return hold - (float(np.median(np.diff(s.time_s))) if len(s.time_s) > 1 and hold > 0 else 0.0)
 
 
 def _with_aftermath(recording: Recording, s: Series) -> Series:
-    """For the picture: the same with what came after, half as long again."""
+    """Returns the series for the picture, extended by half its length."""
     table = recording[s.component]
     first, last = s.span
     shown = (table["time_s"] >= first) & (table["time_s"] <= last + 0.5 * (last - first))
@@ -148,7 +147,7 @@ def _later(
         return None
     try:
         rest = Check("", recording, (component,), (after, end)).series(component, signal)
-    except UndecidedError:  # the rest only makes the sentence kinder
+    except UndecidedError:  # only adds a hint to the sentence
         return None
     there = np.flatnonzero(_beyond(rest, position, tolerance) <= 0)
     return float(rest.time_s[there[0]]) if len(there) else None
