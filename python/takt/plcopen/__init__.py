@@ -1,4 +1,4 @@
-"""Function blocks with PLCopen's names, inputs and outputs, for those who think in them.
+"""Function blocks with PLCopen's names, inputs and outputs.
 
 A block is an instance that is called once a cycle, usually in a program of the session:
 
@@ -9,15 +9,19 @@ A block is an instance that is called once a cycle, usually in a program of the 
         move(Execute=start, Position=100.0, Velocity=50.0)
         if move.Done: ...
 
-The rules that all blocks keep: an input that is not given keeps its value from the call before. Inputs count on the
-rising edge of Execute. While Execute is true, exactly one of Busy, Done, CommandAborted and Error is, of those that the
-block has. Active is as Busy, but for a buffered command, where it says that the command is in control. Done,
-CommandAborted, Error and the like are cleared with the falling edge of Execute, but are seen in one call at least. A
-new rising edge before the end starts the command again; of the one before nothing more is heard. Velocity,
-acceleration, deceleration and jerk are never negative; the engine refuses them. An input that is None is left to the
-engine: the axis' own limit. Inputs of enumerations take a member or its text; any other value is an error (5) of the
-block, which names the input. InVelocity, InEndVelocity, InGear and InSync tell of the set point now: they fall when it
-no longer has what was commanded.
+Rules that all blocks keep:
+
+- An input that is not given keeps its value from the previous call. Inputs take effect on the rising edge of Execute.
+- While Execute is true, exactly one of Busy, Done, CommandAborted and Error is true, of those that the block has.
+  Active equals Busy; for a buffered command it says that the command is in control.
+- Done, CommandAborted, Error and the like are cleared with the falling edge of Execute, but are shown in at least one
+  call.
+- A new rising edge before the end starts the command again; the block no longer reports the previous command.
+- Velocity, acceleration, deceleration and jerk are never negative; the engine refuses negative ones. An input that is
+  None is left to the engine, which uses the axis' own limit.
+- Inputs of enumerations take a member or its text; any other value is an error (5) of the block, which names the input.
+- InVelocity, InEndVelocity, InGear and InSync refer to the present set point: they fall when it no longer has the
+  commanded value.
 """
 
 from __future__ import annotations
@@ -70,7 +74,7 @@ BLOCKS: tuple[type[FunctionBlock], ...] = tuple(
 
 
 def compliance() -> str:
-    """The compliance statement: what there is of PLCopen's blocks, inputs and outputs, as Markdown."""
+    """Returns the compliance statement as Markdown: the supported blocks, inputs and outputs of PLCopen."""
     return statement.page({block.__name__: block for block in BLOCKS})
 
 

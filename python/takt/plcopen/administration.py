@@ -24,13 +24,13 @@ from takt.plcopen.base import (
 )
 
 OUTPUTS = 32
-AXIS_FAULT = 7  # error of a command: the fault of the axis is still there
-EMERGENCY_STOP = 3100  # error of a command: an emergency stop is on, or nobody has asked for power since
+AXIS_FAULT = 7  # error of a command: the fault of the axis persists
+EMERGENCY_STOP = 3100  # error of a command: an emergency stop is on, or power was not commanded anew since
 
 
 class MC_Reset(ExecuteBlock):  # noqa: N801
-    """Clears the fault of an axis. There is no CommandAborted: a reset that another one supersedes follows the axis. It
-    is Busy while the axis still brakes, then Done when the fault is cleared, and Error when it is not."""
+    """Clears the fault of an axis. It has no CommandAborted: a reset that is superseded by another one follows the
+    state of the axis. It is Busy while the axis still brakes, then Done if the fault is cleared, else Error."""
 
     VERB = "reset"
     Done = Output(False)
@@ -47,18 +47,18 @@ class MC_Reset(ExecuteBlock):  # noqa: N801
 
 
 class MC_Power(FunctionBlock):  # noqa: N801
-    """Keeps power stage and position loop as the level of Enable says, whoever switched them: gives a command whenever
-    the axis is Disabled and Enable true, or the other way round. Status: the loop is closed.
+    """Keeps the power stage and position loop as the level of Enable requests, also after another program has switched
+    them: commands power whenever the axis is Disabled and Enable true, or vice versa. Status: the loop is closed.
 
     A fault that opened the loop is shown by Error until the axis is reset; then the loop is closed again. Enable true
-    on a Disabled axis with a fault leads to ErrorStop. A command that is refused is given again once the axis is in
-    another state; while the command queue is full, in each call. After an emergency stop it shows error 3100 until
-    Enable has risen anew: nothing resumes by itself. One instance an axis: two with different Enable switch it to and
-    fro.
+    on a Disabled axis with a fault leads to ErrorStop. A refused command is repeated once the axis is in another state;
+    while the command queue is full, in each call. After an emergency stop the block shows error 3100 until Enable has
+    risen again: nothing resumes automatically. Use one instance per axis: two with different Enable switch it on and
+    off in turn.
 
-    EnablePositive, EnableNegative: the directions in which the axis may move. Motion in another one is refused with
-    error 3103, and one in progress ends with it, as at a limit switch: the axis brakes into ErrorStop. Both are told to
-    the axis while it is powered, whenever they change."""
+    EnablePositive, EnableNegative: the directions in which the axis may move. Motion in another direction is refused
+    with error 3103, and one in progress ends with it, as at a limit switch: the axis brakes into ErrorStop. Changes of
+    both are commanded while the axis is powered."""
 
     Enable = Input(False)
     EnablePositive = Input(True, "enable_positive")
@@ -72,7 +72,7 @@ class MC_Power(FunctionBlock):  # noqa: N801
     Aborted = Output(False, alias="CommandAborted")
 
     def __init__(self, axis: Axis, **inputs: Any) -> None:
-        self._level: bool | None = None  # Enable in the call before
+        self._level: bool | None = None  # Enable in the previous call
         self._anew = False  # Enable has risen, and the axis has not been on since
         self._feedback: Feedback | None = None  # of the command in progress ...
         self._given: dict[str, Any] = {}  # ... and its arguments
@@ -97,7 +97,7 @@ class MC_Power(FunctionBlock):  # noqa: N801
         self._show_all(enable, state, ended)
 
     def _end(self, enable: bool) -> Feedback | None:
-        """The command that has ended since the call before."""
+        """Returns the command that has ended since the previous call; None if none has."""
         ended = self._feedback
         if ended is None or ended.busy:
             return None
@@ -113,7 +113,7 @@ class MC_Power(FunctionBlock):  # noqa: N801
         return ended
 
     def _is_due(self, enable: bool, state: _commands.PlcState) -> bool:
-        """Whether a command is to be given now."""
+        """Returns whether a command is to be given now."""
         if self._refusal is not None or self._is_held_off(enable):
             return False
         if self._feedback is not None:
@@ -125,7 +125,7 @@ class MC_Power(FunctionBlock):  # noqa: N801
         return disabled and not self.Axis.active_command if enable else not disabled
 
     def _is_held_off(self, enable: bool) -> bool:
-        """An emergency stop has switched the axis off, and nobody has asked for power since."""
+        """Returns whether an emergency stop has switched the axis off, and Enable has not risen since."""
         return enable and not self._anew and self.Axis.emergency_stopped
 
     def _show_all(self, enable: bool, state: _commands.PlcState, ended: Feedback | None) -> None:
@@ -147,7 +147,7 @@ class MC_Power(FunctionBlock):  # noqa: N801
 
 
 class MC_ReadStatus(ReadBlock):  # noqa: N801
-    """The state of the axis, one output for each; Ref: it has its reference."""
+    """Shows the state of the axis, one output per state. Ref: the axis is homed."""
 
     ErrorStop = Output(False)
     Disabled = Output(False)
@@ -165,8 +165,8 @@ class MC_ReadStatus(ReadBlock):  # noqa: N801
 
 
 class MC_ReadAxisError(ReadBlock):  # noqa: N801
-    """The fault of the axis by number; 0: none. Error and ErrorID say that of the axis, too: the block itself has none,
-    and what it shows is valid."""
+    """Shows the fault of the axis as a number; 0: none. Error and ErrorID show the axis' fault, too: the block itself
+    has no errors, and its outputs are valid."""
 
     AxisErrorID = Output(0)
 
@@ -176,13 +176,13 @@ class MC_ReadAxisError(ReadBlock):  # noqa: N801
 
     @property
     def text(self) -> str:
-        """The fault for people, with what the drive says of it; empty without one."""
+        """The fault in words, with that of the drive; empty without one."""
         said = [drive_error_text(self.Axis.drive_error)] if self.Axis.drive_error else []
         return ": ".join([error_text(self.AxisErrorID), *said]) if self.AxisErrorID else ""
 
 
 class MC_ReadActualPosition(ReadBlock):  # noqa: N801
-    """The measured position, in u."""
+    """Shows the actual position [u]."""
 
     Position = Output(0.0)
 
@@ -191,7 +191,7 @@ class MC_ReadActualPosition(ReadBlock):  # noqa: N801
 
 
 class MC_ReadActualVelocity(ReadBlock):  # noqa: N801
-    """The measured velocity, in u/s."""
+    """Shows the actual velocity [u/s]."""
 
     Velocity = Output(0.0)
 
@@ -200,7 +200,7 @@ class MC_ReadActualVelocity(ReadBlock):  # noqa: N801
 
 
 class MC_ReadActualTorque(ReadBlock):  # noqa: N801
-    """The torque in Nm as the drive reports it; the force in N on linear motors."""
+    """Shows the torque [Nm] that the drive reports; the force [N] on linear motors."""
 
     Torque = Output(0.0)
 
@@ -209,7 +209,8 @@ class MC_ReadActualTorque(ReadBlock):  # noqa: N801
 
 
 class MC_ReadMotionState(ReadBlock):  # noqa: N801
-    """How the axis moves, by its set point (Source SET_VALUE) or as measured since the call before."""
+    """Shows how the axis moves: by its set point (Source SET_VALUE), or by the actual velocity and its change since the
+    previous call."""
 
     Source = Input(_commands.MasterSource.SET_VALUE)
     ConstantVelocity = Output(False)
@@ -219,7 +220,7 @@ class MC_ReadMotionState(ReadBlock):  # noqa: N801
     DirectionNegative = Output(False)
 
     def __init__(self, subject: Axis, **inputs: Any) -> None:
-        self._before: tuple[int, float, float] = (0, 0.0, 0.0)  # cycle, measured velocity and acceleration till then
+        self._before: tuple[int, float, float] = (0, 0.0, 0.0)  # cycle, actual velocity and acceleration until then
         super().__init__(subject, **inputs)
 
     def _read(self) -> None:
@@ -238,8 +239,8 @@ class MC_ReadMotionState(ReadBlock):  # noqa: N801
         )
 
     def _measured_acceleration(self) -> float:
-        """From the measured velocities of the call before and of now. Less than a hundredth of the largest acceleration
-        of the axis is none: encoders count in steps."""
+        """Returns the acceleration [u/s²] from the actual velocities of the previous call and of now. Below a hundredth
+        of the axis' acceleration limit it is 0: encoders count in steps."""
         cycle, velocity, acceleration = self._before
         now = self.Axis.session.cycle
         if now != cycle:
@@ -251,7 +252,7 @@ class MC_ReadMotionState(ReadBlock):  # noqa: N801
 
 
 class MC_ReadAxisInfo(ReadBlock):  # noqa: N801
-    """The inputs of the axis and what it is ready for."""
+    """Shows the inputs of the axis and its readiness."""
 
     HomeAbsSwitch = Output(False)
     LimitSwitchPos = Output(False)
@@ -266,7 +267,7 @@ class MC_ReadAxisInfo(ReadBlock):  # noqa: N801
     def _read(self) -> None:
         axis = self.Axis
         simulated = not math.isnan(axis.true_position)  # a servo in the engine
-        heard = axis.drive_heard and (simulated or axis.session.cycle > 0)  # before the first cycle there was nothing
+        heard = axis.drive_heard and (simulated or axis.session.cycle > 0)  # nothing is received before the first cycle
         self._show(
             HomeAbsSwitch=axis.reference,
             LimitSwitchPos=axis.limit_positive,
@@ -281,7 +282,7 @@ class MC_ReadAxisInfo(ReadBlock):  # noqa: N801
 
 
 class GT_SInfo(ReadBlock):  # noqa: N801
-    """The input signals of the axis."""
+    """Shows the input signals of the axis."""
 
     LIMpos = Output(False)
     LIMneg = Output(False)
@@ -294,7 +295,7 @@ class GT_SInfo(ReadBlock):  # noqa: N801
 
 
 class GT_Show(ReadBlock):  # noqa: N801
-    """What the position loop works with: where the axis should be (the model) and is, and what is put out."""
+    """Shows the values of the position loop: set point (the model), actual value, and output."""
 
     ModelPosition = Output(0.0)
     Position = Output(0.0)
@@ -318,7 +319,7 @@ class GT_Show(ReadBlock):  # noqa: N801
 
 
 class MC_ReadDigitalInput(ReadBlock):  # noqa: N801
-    """An input of the axis. InputNumber: 1 LIM+, 2 LIM-, 3 REF, 4 TP."""
+    """Shows an input of the axis. InputNumber: 1 LIM+, 2 LIM-, 3 REF, 4 TP; any other is error 5."""
 
     InputNumber = Input(1)
     Value = Output(False)
@@ -335,8 +336,8 @@ class MC_ReadDigitalInput(ReadBlock):  # noqa: N801
 
 
 class MC_ReadDigitalOutput(ReadBlock):  # noqa: N801
-    """A digital output of the axis, which MC_WriteDigitalOutput or a track of MC_DigitalCamSwitch switches.
-    OutputNumber: from 1 to 32."""
+    """Shows a digital output of the axis, which MC_WriteDigitalOutput or a track of MC_DigitalCamSwitch switches.
+    OutputNumber: from 1 to 32; any other is error 5."""
 
     OutputNumber = Input(1)
     Value = Output(False)
@@ -351,8 +352,8 @@ class MC_ReadDigitalOutput(ReadBlock):  # noqa: N801
 
 
 class MC_WriteDigitalOutput(SettingBlock):  # noqa: N801
-    """Switches a digital output of the axis. OutputNumber: from 1 to 32. Value False leaves on what a track of
-    MC_DigitalCamSwitch switches on."""
+    """Switches a digital output of the axis. OutputNumber: from 1 to 32. Value False does not switch off an output that
+    a track of MC_DigitalCamSwitch switches on."""
 
     VERB = "write_output"
     OutputNumber = Input(1, "number")
@@ -361,9 +362,9 @@ class MC_WriteDigitalOutput(SettingBlock):  # noqa: N801
 
 
 class GT_EStop(ExecuteBlock):  # noqa: N801
-    """All drives of the machine off and all brakes on at once; faults are cleared, every axis is Disabled, and stays so
-    as long as Execute is true, whatever asks for power (error 3100). Done: they all are. Nothing resumes when Execute
-    falls. Enable is another name of Execute."""
+    """Switches all drives of the machine off and applies all brakes at once. Faults are cleared; every axis becomes
+    Disabled and stays Disabled as long as Execute is true: commands for power are refused (error 3100). Done: all axes
+    are Disabled. Nothing resumes when Execute falls. Enable is another name of Execute."""
 
     VERB = "emergency_stop"
     Enable = Input(False, alias="Execute")
@@ -385,7 +386,7 @@ class GT_EStop(ExecuteBlock):  # noqa: N801
             self._show(Done=False)
         if self.Execute:
             return
-        for feedback in [f for f in self._holding if f.ticket or f.final]:  # over LCM its ticket is not known at once
+        for feedback in [f for f in self._holding if f.ticket or f.final]:  # over LCM the ticket is not known at once
             if feedback.ticket:
                 feedback.release()
             self._holding.remove(feedback)

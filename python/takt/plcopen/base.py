@@ -1,4 +1,4 @@
-"""What all function blocks are made of: inputs and outputs, edges of Execute, levels of Enable."""
+"""Basis of all function blocks: inputs and outputs, edges of Execute, levels of Enable."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ PARAMETER = 5  # error of a command: an input is out of its range
 ENDINGS = {FeedbackState.DONE: "Done", FeedbackState.ABORTED: "CommandAborted", FeedbackState.ERROR: "Error"}
 
 T = TypeVar("T")
-AnyAxis = Axis  # where a member is called Axis
+AnyAxis = Axis  # for classes with a member called Axis
 
 
 class Input(Generic[T]):
-    """An input of a block; `argument` is its name among the command's arguments, where it is one. `alias` is another
-    name of the same input. Where `initial` is a member of an enumeration, the text of a member stands for it; any other
-    value is kept as it is, and refused: by the command that has it as an argument, else by the block."""
+    """An input of a block. `argument` is its name among the command's arguments ("": it is none). `alias` is the input
+    that this is another name of. If `initial` is a member of an enumeration, the text of a member may be assigned as
+    well; any other value is kept, and refused: by the command that has it as an argument, else by the block."""
 
     def __init__(self, initial: T, argument: str = "", *, alias: str = "") -> None:
         self.initial = initial
@@ -48,7 +48,7 @@ class Input(Generic[T]):
 
 
 class Output(Generic[T]):
-    """An output of a block; only the block itself sets it. `alias` is another name of the same output."""
+    """An output of a block; only the block itself sets it. `alias` is the output that this is another name of."""
 
     def __init__(self, initial: T, alias: str = "") -> None:
         self.initial = initial
@@ -73,7 +73,7 @@ class Output(Generic[T]):
 
 
 class AxisName:
-    """Another name of the axis: where it follows others, PLCopen calls it Slave."""
+    """Another name of the axis: PLCopen calls it Slave in couplings."""
 
     @overload
     def __get__(self, block: None, owner: type) -> AxisName: ...
@@ -87,13 +87,13 @@ class AxisName:
 
 
 class FunctionBlock:
-    """What all blocks have: the component that they command or show, inputs, outputs."""
+    """Base of all blocks: the component that they command or show, inputs and outputs."""
 
-    SUBJECT: ClassVar[str] = "Axis"  # what the component is called ...
-    AXES: ClassVar[frozenset[str]] = frozenset({"Axis"})  # ... with other names of it
+    SUBJECT: ClassVar[str] = "Axis"  # name of the component ...
+    AXES: ClassVar[frozenset[str]] = frozenset({"Axis"})  # ... and its other names
     INPUTS: ClassVar[Mapping[str, Input[Any]]] = {}
     OUTPUTS: ClassVar[Mapping[str, Output[Any]]] = {}
-    CHOICES: ClassVar[Mapping[str, type[Enum]]] = {}  # inputs that are enumerations and no arguments of a command
+    CHOICES: ClassVar[Mapping[str, type[Enum]]] = {}  # inputs that are enumerations and not arguments of a command
 
     Error = Output(False)
     ErrorID = Output(0)
@@ -121,7 +121,8 @@ class FunctionBlock:
         return subject
 
     def __call__(self, **inputs: Any) -> Any:
-        """One call of the block, with new values of some inputs. Returns the block, its outputs up to date."""
+        """Executes the block once, with new values of some inputs. Returns the block with its outputs updated. Raises
+        TypeError if it has no such input."""
         self._assign(inputs)
         self._outputs = {}
         self._scan()
@@ -147,11 +148,12 @@ class FunctionBlock:
         return f"{type(self).__name__} has no input '{name}' (it has {', '.join(self.INPUTS)})"
 
     def _arguments(self) -> dict[str, Any]:
-        """The inputs that are arguments of the command."""
+        """Returns the inputs that are arguments of the command, by the argument's name."""
         return {i.argument: getattr(self, n) for n, i in self.INPUTS.items() if i.argument}
 
     def _wrong_choice(self) -> str:
-        """Which input of CHOICES has a value that is no member of its enumeration; empty: none has."""
+        """Returns the error of the first input of CHOICES whose value is not a member of its enumeration; empty if all
+        are valid."""
         for name, kind in self.CHOICES.items():
             value = getattr(self, name)
             if not isinstance(value, kind):
@@ -173,8 +175,9 @@ class FunctionBlock:
 
 
 def member_of(usual: Any, value: Any) -> Any:
-    """The member of the enumeration of `usual` for which `value` stands: its text, for a buffer mode also its number, 0
-    aborting to 5 blending_high (PLCopen's mcAborting ...). Returns `value` itself where there is none."""
+    """Returns the member of the enumeration of `usual` that `value` denotes: by its text, for a buffer mode also by its
+    number, 0 aborting to 5 blending_high (PLCopen's mcAborting ...). Returns `value` unchanged if it denotes none, or
+    `usual` is not a member of an enumeration."""
     if not isinstance(usual, Enum):
         return value
     members: list[Enum] = list(type(usual))
@@ -184,13 +187,14 @@ def member_of(usual: Any, value: Any) -> Any:
 
 
 def in_control(feedback: Feedback, arguments: Mapping[str, Any]) -> bool:
-    """Active of a command in progress; one that does not wait for others is as soon as it is given."""
+    """Returns the output Active for a command in progress; with buffer mode aborting it is true as soon as the command
+    is given."""
     return feedback.active or arguments["buffer_mode"] == _commands.BufferMode.ABORTING
 
 
 def found_no_room(feedback: Feedback | None) -> bool:
-    """Whether a command was refused because the command queue is full: blocks that follow the level of Enable give it
-    again in their next call."""
+    """Returns whether a command was refused because the command queue is full: blocks that follow the level of Enable
+    repeat it in their next call."""
     return feedback is not None and feedback.error_id == QUEUE_FULL
 
 
@@ -203,11 +207,11 @@ class ExecuteBlock(FunctionBlock):
     Busy = Output(False)
 
     def __init__(self, subject: Component, **inputs: Any) -> None:
-        self._edge = False  # Execute in the call before
+        self._edge = False  # Execute in the previous call
         self._given: dict[str, Any] = {}  # the arguments of the command
         self._feedback: Feedback | None = None
-        self._wrong = ""  # why no command was given: an input has a value that it cannot have
-        self._ending: tuple[str, int] | None = None  # of the command: the output that says so, the error's number
+        self._wrong = ""  # why no command was given: an input has an invalid value
+        self._ending: tuple[str, int] | None = None  # of the command: the output that shows it, the error number
         self._seen: set[str] = set()  # outputs that were shown for this command
         super().__init__(subject, **inputs)
 
@@ -234,10 +238,10 @@ class ExecuteBlock(FunctionBlock):
         return self._subject.session.command(self._subject.name, self.VERB, self._given)
 
     def _fall(self) -> None:
-        """The falling edge of Execute. The command goes on all the same."""
+        """Handles the falling edge of Execute. The command continues nevertheless."""
 
     def _hold(self) -> None:
-        """Execute is still true."""
+        """Handles a call in which Execute stays true."""
 
     def _follow(self, feedback: Feedback) -> None:
         self._ending = self._ending or self._end(feedback)
@@ -248,7 +252,7 @@ class ExecuteBlock(FunctionBlock):
             self._show_error(error_id, feedback.sentence) if name == "Error" else self._show(**{name: True})
 
     def _end(self, feedback: Feedback) -> tuple[str, int] | None:
-        """How the command ended; None: it has not."""
+        """Returns the output that shows how the command ended, and the error number; None while it is in progress."""
         return (ENDINGS[feedback.state], feedback.error_id) if feedback.final else None
 
     def _run(self, feedback: Feedback) -> None:
@@ -256,20 +260,21 @@ class ExecuteBlock(FunctionBlock):
         self._show(Busy=True)
 
     def _is_due(self, name: str) -> bool:
-        """Whether an output that Execute clears is to be shown: while Execute is true, and in one call at least."""
+        """Returns whether an output that Execute clears is to be shown: while Execute is true, and in at least one
+        call."""
         due = self._edge or name not in self._seen
         self._seen.add(name)
         return due
 
 
 class SettingBlock(ExecuteBlock):
-    """A block whose command takes no control of what it is given to: done at once, or refused."""
+    """A block whose command does not take control of its component: done at once, or refused."""
 
     Done = Output(False)
 
 
 class MotionBlock(ExecuteBlock):
-    """A block whose command moves something: others can abort it, and it can wait for others."""
+    """A block whose command is a motion: other commands can abort it, and it can wait for others (BufferMode)."""
 
     BufferMode = Input(_commands.BufferMode.ABORTING, "buffer_mode")
     Active = Output(False)
@@ -282,11 +287,11 @@ class MotionBlock(ExecuteBlock):
 
 
 class ChangedBlock(ExecuteBlock):
-    """A motion whose inputs may change while Execute is true: with ContinuousUpdate true at the rising edge each change
-    is commanded, once the command is in control, and the motion goes on from where it is. A change that is refused is
-    an error of the block; the motion goes on as it did."""
+    """A motion whose inputs may change while Execute is true. If ContinuousUpdate was true at the rising edge, each
+    change is commanded once the command is in control, and the motion continues from its present state. A refused
+    change is an error of the block; the motion continues unchanged."""
 
-    AT_ONCE: ClassVar[dict[str, Any]] = {}  # arguments of a change, whatever the inputs say
+    AT_ONCE: ClassVar[dict[str, Any]] = {}  # arguments of a change, which replace those of the inputs
 
     ContinuousUpdate = Input(False)
 
@@ -317,12 +322,12 @@ class ChangedBlock(ExecuteBlock):
         return feedback.busy
 
     def _changed(self, wanted: dict[str, Any]) -> tuple[str, dict[str, Any]]:
-        """The command that changes the one in control (`self._given`) into what is wanted."""
+        """Returns verb and arguments of the command that changes the one in control (`self._given`) into `wanted`."""
         return self.VERB, wanted
 
 
 class UpdatedBlock(MotionBlock, ChangedBlock):
-    """Such a motion that may wait for others: it changes once it is in control."""
+    """A ChangedBlock whose command may wait for others: changes are commanded only once it is in control."""
 
     AT_ONCE: ClassVar[dict[str, Any]] = {"buffer_mode": _commands.BufferMode.ABORTING}
 
@@ -330,11 +335,11 @@ class UpdatedBlock(MotionBlock, ChangedBlock):
         return in_control(feedback, self._given)
 
     def _changed(self, wanted: dict[str, Any]) -> tuple[str, dict[str, Any]]:
-        return self.VERB, wanted | {"update": True}  # takes nothing from what another program has given since
+        return self.VERB, wanted | {"update": True}  # does not abort commands that another program has given since
 
 
 class ReadBlock(FunctionBlock):
-    """A block that shows something as long as Enable is true."""
+    """A block that shows values as long as Enable is true."""
 
     Enable = Input(False)
     Valid = Output(False)

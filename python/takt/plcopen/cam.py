@@ -14,20 +14,21 @@ from takt.plcopen.coupling import CouplingBlock
 
 @dataclass(frozen=True)
 class SelectedCam:
-    """A cam of the machine and how it is to be laid over the axes: what MC_CamTableSelect gives and MC_CamIn takes."""
+    """A cam of the machine and how it is applied to the axes: an output of MC_CamTableSelect and an input of
+    MC_CamIn."""
 
     cam: str
-    periodic: bool | None = None  # None: as the cam says
+    periodic: bool | None = None  # None: if the cam is cyclic
     master_absolute: bool = True
     slave_absolute: bool = True
 
 
 class MC_CamTableSelect(SettingBlock):  # noqa: N801
-    """Selects the cam of the machine whose name is CamTable, of its file or made at run time. CamTableID is for
-    MC_CamIn, and stays what it is until another cam is selected. An error if the machine has no such cam.
+    """Selects the cam of the machine with the name CamTable, from its file or made at run time. CamTableID is for
+    MC_CamIn, and keeps its value until another cam is selected. An error if the machine has no such cam.
 
-    ExecutionMode: immediately; delayed: when the command in control of Slave is over; queued: when all commands given
-    to it before are. A cam that runs over and over counts as over at its next end."""
+    ExecutionMode: immediately; delayed: when the command in control of Slave has ended; queued: when all commands given
+    to Slave before have ended. A periodic cam counts as ended at its next end."""
 
     VERB = "cam_table_select"
     Master = Input[Axis | str]("")
@@ -48,7 +49,8 @@ class MC_CamTableSelect(SettingBlock):  # noqa: N801
         return None if feedback.done and self._waits(feedback) else super()._end(feedback)
 
     def _waits(self, feedback: Feedback) -> bool:
-        """Whether commands given before this one are still in control, or wait."""
+        """Returns whether commands given before this one are still in control or waiting, as far as ExecutionMode
+        requires it."""
         axis = self.Axis
         mode = self._mode
         if mode is _commands.ExecutionMode.IMMEDIATELY:
@@ -76,9 +78,9 @@ class MC_CamTableSelect(SettingBlock):  # noqa: N801
 
 
 class MC_CamIn(CouplingBlock, UpdatedBlock):  # noqa: N801
-    """Follows the cam of CamTableID, which MC_CamTableSelect gives; a plain name of a cam is one, too. x is Master's
-    position times MasterScaling plus MasterOffset, the axis' place y(x) times SlaveScaling plus SlaveOffset.
-    EndOfProfile: the end of the cam was passed since the call before, while this command was in control; also in the
+    """Follows the cam of CamTableID, which is an output of MC_CamTableSelect or the name of a cam. x is Master's
+    position times MasterScaling plus MasterOffset, the axis' position y(x) times SlaveScaling plus SlaveOffset.
+    EndOfProfile: the end of the cam was passed since the previous call, while this command was in control; also in the
     call in which the next command has taken over."""
 
     VERB = "cam_in"
@@ -107,7 +109,7 @@ class MC_CamIn(CouplingBlock, UpdatedBlock):  # noqa: N801
         return super()._arguments() | laid | {"cam": table.cam, "periodic": table.periodic}
 
     def __init__(self, axis: Axis, **inputs: Any) -> None:
-        self._ends: int | None = None  # profile_ends in the call before; None: the command was not in control then
+        self._ends: int | None = None  # profile_ends in the previous call; None: the command was not in control then
         super().__init__(axis, **inputs)
 
     def _command(self) -> Feedback:
@@ -129,7 +131,8 @@ class MC_CamIn(CouplingBlock, UpdatedBlock):  # noqa: N801
 
 class MC_CamAdd(SettingBlock):  # noqa: N801
     """Superimposes the cam of CamTableID on that of MC_CamIn, over the same master: SlaveScaling times y(x) plus
-    SlaveOffset is added to the slave's position, by SlaveAbsolute as it is, else without a step. Up to three cams."""
+    SlaveOffset is added to the slave's position. SlaveAbsolute: added as it is; else less its present value, without a
+    step. Up to three cams."""
 
     VERB = "cam_add"
     Slave = AxisName()
@@ -148,7 +151,7 @@ class MC_CamAdd(SettingBlock):  # noqa: N801
 
 
 class MC_CamRemove(SettingBlock):  # noqa: N801
-    """Removes a superimposed cam; the slave goes to the position without it, within the limits of MC_CamIn."""
+    """Removes a superimposed cam; the slave moves to the position without it, within the limits of MC_CamIn."""
 
     VERB = "cam_remove"
     Slave = AxisName()
@@ -160,7 +163,7 @@ class MC_CamRemove(SettingBlock):  # noqa: N801
 
 
 class MC_CamOut(ExecuteBlock):  # noqa: N801
-    """Leaves the cam; the axis goes on with the velocity it has."""
+    """Leaves the cam; the axis continues with its present velocity."""
 
     VERB = "cam_out"
     Slave = AxisName()

@@ -12,8 +12,8 @@ from takt.plcopen.base import FunctionBlock, Input, Output, found_no_room
 
 class MC_DigitalCamSwitch(FunctionBlock):  # noqa: N801
     """Switches outputs by the position of the axis as long as Enable is true. Switches is the name of a list in the
-    machine file, which holds the options of its tracks too; Outputs has a bit for each track. Inputs count when they
-    change. While the command queue is full the command is given again in each call."""
+    machine file, which also holds the options of its tracks; Outputs has a bit for each track. Inputs take effect when
+    they change. While the command queue is full the command is repeated in each call."""
 
     Enable = Input(False)
     Switches = Input("", "switches")
@@ -24,7 +24,7 @@ class MC_DigitalCamSwitch(FunctionBlock):  # noqa: N801
     Outputs = Output(0)
 
     def __init__(self, axis: Axis, **inputs: Any) -> None:
-        self._given: dict[str, Any] | None = None  # arguments of the last command; None: it switches off
+        self._given: dict[str, Any] | None = None  # arguments of the last command; None: switched off
         self._feedback: Feedback | None = None  # of the last command
         self._switching: list[tuple[Feedback, str]] = []  # commands that have not ended, with their lists of switches
         super().__init__(axis, **inputs)
@@ -46,7 +46,8 @@ class MC_DigitalCamSwitch(FunctionBlock):  # noqa: N801
             self._show(Busy=True, InOperation=works, Outputs=self.Axis.cam_outputs if works else 0)
 
     def _give(self, wanted: dict[str, Any] | None) -> Feedback | None:
-        """Gives the command; to switch off, only if one that switches has not ended."""
+        """Gives the command and returns its feedback. To switch off, only if a command that switches has not ended;
+        else None."""
         if wanted is not None:
             feedback = self.Axis.session.command(self.Axis.name, "digital_cam_switch", wanted)
             self._switching.append((feedback, wanted["switches"]))

@@ -1,4 +1,4 @@
-"""Blocks that tie an axis to one or two masters. Master is an axis or its name."""
+"""Blocks that couple an axis to one or two masters. Master is an axis or its name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ def axis_name(axis: Axis | str) -> str:
 
 
 class CouplingBlock(MotionBlock):
-    """A block whose axis, the slave, follows others. Never done: one output is true while it is in step."""
+    """A block whose axis, the slave, follows masters. Never done: the output IN_STEP is true while the slave is in
+    step."""
 
     IN_STEP = "InGear"
     Slave = AxisName()
@@ -30,8 +31,8 @@ class CouplingBlock(MotionBlock):
 
 
 class MC_GearIn(CouplingBlock, UpdatedBlock):  # noqa: N801
-    """Follows the velocity of Master times RatioNumerator / RatioDenominator, from InGear on its place, too. InGear
-    falls where the axis cannot."""
+    """Follows the velocity of Master times RatioNumerator / RatioDenominator; from InGear on, its position, too. InGear
+    falls while the limits of the axis prevent it."""
 
     VERB = "gear_in"
     Master = Input[Axis | str]("", "master")
@@ -47,7 +48,7 @@ class MC_GearIn(CouplingBlock, UpdatedBlock):  # noqa: N801
 
 class MC_GearInPos(CouplingBlock):  # noqa: N801
     """Follows the position of Master times the ratio, in step from MasterSyncPosition and SlaveSyncPosition on.
-    StartSync: getting into step has begun."""
+    StartSync: synchronization is in progress."""
 
     VERB = "gear_in_pos"
     IN_STEP = "InSync"
@@ -73,7 +74,7 @@ class MC_GearInPos(CouplingBlock):  # noqa: N801
 
 
 class MC_GearOut(ExecuteBlock):  # noqa: N801
-    """Lets go of the master; the axis goes on with the velocity it has."""
+    """Releases the axis from its master; the axis continues with its present velocity."""
 
     VERB = "gear_out"
     Slave = AxisName()
@@ -81,8 +82,8 @@ class MC_GearOut(ExecuteBlock):  # noqa: N801
 
 
 class PhasingBlock(ExecuteBlock):
-    """Shifts what the axis takes for its master's position. A newer shift takes over from this one. The axis has its
-    master already: Master is not looked at."""
+    """Shifts the master position that the axis follows. A newer shift supersedes this one. The axis is coupled to its
+    master already: Master is not evaluated."""
 
     Master = Input[Axis | str]("")
     Slave = AxisName()
@@ -96,7 +97,7 @@ class PhasingBlock(ExecuteBlock):
     CommandAborted = Output(False)
     Aborted = Output(False, alias="CommandAborted")
 
-    SHIFT: ClassVar[str]  # the output that says how far it is
+    SHIFT: ClassVar[str]  # the output that shows the shift so far
 
     def _follow(self, feedback: Feedback) -> None:
         super()._follow(feedback)
@@ -111,7 +112,8 @@ class PhasingBlock(ExecuteBlock):
 
 
 class MC_PhasingAbsolute(PhasingBlock):  # noqa: N801
-    """Shifts the phase to an amount. AbsolutePhaseShift: what it is now, or was at last."""
+    """Shifts the phase to an amount. AbsolutePhaseShift: the present phase shift; after the end of the command, the
+    last one."""
 
     VERB = "phasing_absolute"
     SHIFT = "AbsolutePhaseShift"
@@ -119,7 +121,8 @@ class MC_PhasingAbsolute(PhasingBlock):  # noqa: N801
 
 
 class MC_PhasingRelative(PhasingBlock):  # noqa: N801
-    """Shifts the phase by an amount. CoveredPhaseShift: how much of that was added so far, or at last."""
+    """Shifts the phase by an amount. CoveredPhaseShift: the part added so far; after the end of the command, the last
+    one."""
 
     VERB = "phasing_relative"
     SHIFT = "CoveredPhaseShift"
@@ -127,7 +130,7 @@ class MC_PhasingRelative(PhasingBlock):  # noqa: N801
 
 
 class MC_Phasing(MC_PhasingAbsolute):  # noqa: N801
-    """The GT-775x's name of MC_PhasingAbsolute."""
+    """MC_PhasingAbsolute under its name in the GT-775x."""
 
 
 class MC_CombineAxes(CouplingBlock, UpdatedBlock):  # noqa: N801

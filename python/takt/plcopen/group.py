@@ -1,8 +1,8 @@
 """Blocks for groups of axes (PLCopen Part 4).
 
-Position, Distance, AuxPoint and EndPoint are what CoordSystem says: a1, a2 ... of the axes with ACS, else X, Y, Z in mm
-and A, B, C in degrees of the tool. They are given as a sequence in this order, which may be shorter, with None for what
-stays; or by name, {"x": 10, "a4": 90}, which is how auxiliary axes are given together with the tool.
+CoordSystem determines what Position, Distance, AuxPoint and EndPoint hold: a1, a2 ... of the axes with ACS, else X, Y,
+Z [mm] and A, B, C [deg] of the tool. They are given as a sequence in this order, which may be shorter, with None for
+unchanged values; or by name, {"x": 10, "a4": 90}, to give auxiliary axes together with the tool.
 """
 
 from __future__ import annotations
@@ -34,15 +34,16 @@ Numbers = Sequence[float | None] | Mapping[str, float]
 AxisOrName = Axis | str
 
 # Errors of commands.
-NO_MEMBER = 1003  # there is no such member
+NO_MEMBER = 1003  # no such member
 STATE = 3005  # not legal in this state
 AXES = tuple(f"a{place}" for place in range(1, 9))
-# The tool goes along with an object, or gets into step with it or out of it.
+# The tool is in step with an object, or synchronizes or desynchronizes with it.
 RIDING = frozenset(_commands.TrackState) - {_commands.TrackState.NONE, _commands.TrackState.WAITING}
 
 
 def by_name(numbers: Numbers, system: _commands.CoordinateSystem) -> dict[str, float]:
-    """Arguments of a command from what is given for a position."""
+    """Returns the arguments of a command for a position; None values are left out. Raises TypeError if there are more
+    numbers than the system has."""
     if isinstance(numbers, Mapping):
         return dict(numbers)
     names = AXES if system is _commands.CoordinateSystem.ACS else POSE
@@ -52,7 +53,7 @@ def by_name(numbers: Numbers, system: _commands.CoordinateSystem) -> dict[str, f
 
 
 class GroupBlock(FunctionBlock):
-    """What blocks for groups have in common."""
+    """Base of blocks for groups."""
 
     SUBJECT: ClassVar[str] = "AxesGroup"
     AxesGroup: Group
@@ -63,11 +64,11 @@ class GroupBlock(FunctionBlock):
 
 
 class GroupSetting(GroupBlock, SettingBlock):
-    """A block whose command moves nothing."""
+    """A block whose command causes no motion."""
 
 
 def with_numbers(arguments: Mapping[str, Any], numbers: Numbers) -> dict[str, Any]:
-    """The arguments of a command with those of a position."""
+    """Returns the arguments of a command with those of a position added."""
     return {**arguments, **by_name(numbers, arguments["coordinate_system"])}
 
 
@@ -75,7 +76,7 @@ def with_numbers(arguments: Mapping[str, Any], numbers: Numbers) -> dict[str, An
 
 
 class MC_AddAxisToGroup(GroupSetting):  # noqa: N801
-    """Takes an axis into a group at the place IdentInGroup. Axis may be its name."""
+    """Adds an axis to a group at position IdentInGroup. Axis may be its name."""
 
     VERB = "add_axis"
     Axis = Input[AxisOrName]("", "axis")  # type: ignore[assignment]
@@ -86,20 +87,20 @@ class MC_AddAxisToGroup(GroupSetting):  # noqa: N801
 
 
 class MC_RemoveAxisFromGroup(GroupSetting):  # noqa: N801
-    """Takes the axis at the place IdentInGroup out of a group."""
+    """Removes the axis at position IdentInGroup from a group."""
 
     VERB = "remove_axis"
     IdentInGroup = Input(1, "ident")
 
 
 class MC_UngroupAllAxes(GroupSetting):  # noqa: N801
-    """Takes all axes out of a group; it is disabled then."""
+    """Removes all axes from a group, which becomes disabled."""
 
     VERB = "ungroup_all_axes"
 
 
 class MC_GroupReadConfiguration(GroupBlock, ReadBlock):  # noqa: N801
-    """Which axis is at the place IdentInGroup; an Error where there is none. Axis is an output."""
+    """Shows the axis at position IdentInGroup; an Error if there is no such axis. Axis is an output."""
 
     IdentInGroup = Input(1)
     Axis = Output["Axis | None"](None)  # type: ignore[assignment]
@@ -114,13 +115,13 @@ class MC_GroupReadConfiguration(GroupBlock, ReadBlock):  # noqa: N801
 
 
 class MC_GroupEnable(GroupSetting):  # noqa: N801
-    """From GroupDisabled to GroupStandby."""
+    """Switches from GroupDisabled to GroupStandby."""
 
     VERB = "enable"
 
 
 class MC_GroupDisable(GroupSetting):  # noqa: N801
-    """To GroupDisabled; the axes take commands of their own again."""
+    """Switches to GroupDisabled; the axes then accept commands of their own again."""
 
     VERB = "disable"
 
@@ -140,7 +141,7 @@ class MC_GroupReset(GroupBlock, ExecuteBlock):  # noqa: N801
 
 
 class GT_GroupPower(GroupBlock, ExecuteBlock):  # noqa: N801
-    """Switches the drives of all members on, or with On false off."""
+    """Switches the drives of all members on, or off if On is false."""
 
     VERB = "power"
     On = Input(True, "enable")
@@ -149,9 +150,10 @@ class GT_GroupPower(GroupBlock, ExecuteBlock):  # noqa: N801
 
 
 class MC_GroupReadStatus(GroupBlock, ReadBlock):  # noqa: N801
-    """The state of a group, one output for each; how the speed along its path changes; whether it stands and has
-    nothing to do. SynchronizedMotion: the tool goes along with what moves, gets into step with it or out of it; or its
-    path follows a master. DiscreteMotion: a move is in control, also one on what moves, or the tool comes to rest."""
+    """Shows the state of a group, one output per state; how the speed along its path changes; and InPosition: whether
+    it is at rest without a command. SynchronizedMotion: the tool tracks an object, or synchronizes or desynchronizes
+    with it; or its path follows a master. DiscreteMotion: a move is in control, also one relative to a tracked object,
+    or the tool comes to rest."""
 
     GroupMoving = Output(False)
     GroupHoming = Output(False)
@@ -177,7 +179,7 @@ class MC_GroupReadStatus(GroupBlock, ReadBlock):  # noqa: N801
 
 
 class MC_GroupReadError(GroupBlock, ReadBlock):  # noqa: N801
-    """Why a group is in GroupErrorStop, by number; 0: it is not. Error and ErrorID say that, too."""
+    """Shows why a group is in GroupErrorStop, as a number; 0: it is not. Error and ErrorID show it, too."""
 
     GroupErrorID = Output(0)
 
@@ -187,16 +189,16 @@ class MC_GroupReadError(GroupBlock, ReadBlock):  # noqa: N801
 
     @property
     def text(self) -> str:
-        """The error for people; empty without one."""
+        """The error in words; empty without one."""
         return error_text(self.GroupErrorID) if self.GroupErrorID else ""
 
 
-# --- where it is ---
+# --- positions and motion ---
 
 
 def system_frame(group: Group, system: _commands.CoordinateSystem, pcs: int) -> Array | None:
-    """Where a coordinate system is in the machine coordinate system; None: there is none of this number, or it is
-    that of the axes."""
+    """Returns the pose of a coordinate system in the machine coordinate system as a matrix; None if there is none with
+    this number, or it is that of the axes."""
     if system is _commands.CoordinateSystem.MCS:
         return pose_to_matrix([0.0] * len(POSE))
     if system is _commands.CoordinateSystem.WCS:
@@ -207,12 +209,12 @@ def system_frame(group: Group, system: _commands.CoordinateSystem, pcs: int) -> 
 
 
 def seen_from(frame: Array, pose: Sequence[float]) -> tuple[float, ...]:
-    """A pose in the machine coordinate system, seen from a coordinate system that is there."""
+    """Returns a pose, given in the machine coordinate system, in the coordinate system `frame`."""
     return tuple(map(float, matrix_to_pose(np.linalg.inv(frame) @ pose_to_matrix(pose))))
 
 
 class GroupReadBlock(GroupBlock, ReadBlock):
-    """A block that shows numbers of a group, seen from CoordSystem."""
+    """A block that shows values of a group in CoordSystem."""
 
     CoordSystem = Input(_commands.CoordinateSystem.ACS)
     Pcs = Input(1)
@@ -235,7 +237,8 @@ class GroupReadBlock(GroupBlock, ReadBlock):
 
 
 class MC_GroupReadActualPosition(GroupReadBlock):  # noqa: N801
-    """Where a group is as measured: each axis with ACS; X, Y, Z, A, B, C of the tool with MCS, WCS and PCS."""
+    """Shows the actual position of a group: of each axis with ACS; X, Y, Z, A, B, C of the tool with MCS, WCS and
+    PCS."""
 
     Position = Output[tuple[float, ...]](())
 
@@ -247,7 +250,7 @@ class MC_GroupReadActualPosition(GroupReadBlock):  # noqa: N801
 
 
 class MC_GroupReadActualVelocity(GroupReadBlock):  # noqa: N801
-    """How fast a group is as measured: each axis with ACS; else PathVelocity, the speed of the tool."""
+    """Shows the actual velocity of a group: of each axis with ACS; else PathVelocity, the speed of the tool [mm/s]."""
 
     Velocity = Output[tuple[float, ...]](())
     PathVelocity = Output(0.0)
@@ -260,8 +263,8 @@ class MC_GroupReadActualVelocity(GroupReadBlock):  # noqa: N801
 
 
 class MC_GroupReadActualAcceleration(GroupReadBlock):  # noqa: N801
-    """How a group accelerates, as it is told to: nothing measures it. Each axis with ACS; else PathAcceleration, that
-    of the tool."""
+    """Shows the acceleration set point of a group (it is not measured): of each axis with ACS; else PathAcceleration,
+    that of the tool [mm/s²]."""
 
     Acceleration = Output[tuple[float, ...]](())
     PathAcceleration = Output(0.0)
@@ -274,7 +277,7 @@ class MC_GroupReadActualAcceleration(GroupReadBlock):  # noqa: N801
 
 
 class MC_GroupSetPosition(GroupSetting):  # noqa: N801
-    """Gives where a group stands other numbers."""
+    """Assigns new numbers to the present position of a group, without motion."""
 
     VERB = "define_position"
     Position = Input[Numbers](())
@@ -286,7 +289,7 @@ class MC_GroupSetPosition(GroupSetting):  # noqa: N801
 
 
 class MC_GroupSetOverride(GroupBlock, FunctionBlock):  # noqa: N801
-    """As long as Enable is true, the factors are in force, also when they change; afterwards they stay."""
+    """Applies the factors, and their changes, as long as Enable is true; afterwards the last ones stay in force."""
 
     Enable = Input(False)
     VelFactor = Input(1.0, "velocity_factor")
@@ -318,14 +321,14 @@ class MC_GroupSetOverride(GroupBlock, FunctionBlock):  # noqa: N801
 
 
 class MC_SetKinTransform(GroupSetting):  # noqa: N801
-    """Switches the kinematics of the machine file on or off; KinTransform is which: true or false."""
+    """Switches the kinematics of the machine file on (KinTransform true) or off (false)."""
 
     VERB = "set_kin_transform"
     KinTransform = Input(True, "enable")
 
 
 class MC_ReadKinTransform(GroupBlock, ReadBlock):  # noqa: N801
-    """Whether there are kinematics that are switched on."""
+    """Shows whether the group has kinematics that are switched on."""
 
     KinTransform = Output(False)
 
@@ -334,7 +337,8 @@ class MC_ReadKinTransform(GroupBlock, ReadBlock):  # noqa: N801
 
 
 class MC_SetCartesianTransform(GroupSetting):  # noqa: N801
-    """Says where product coordinate system Pcs is in the machine coordinate system: mm, and degrees about X, Y, Z."""
+    """Sets the pose of product coordinate system Pcs in the machine coordinate system: mm, and degrees about X, Y,
+    Z."""
 
     VERB = "set_cartesian_transform"
     TransX = Input(0.0, "x")
@@ -347,7 +351,7 @@ class MC_SetCartesianTransform(GroupSetting):  # noqa: N801
 
 
 class MC_SetCoordinateTransform(GroupSetting):  # noqa: N801
-    """Says where product coordinate system Pcs is in another one: CoordTransform is X, Y, Z, A, B, C."""
+    """Sets the pose of product coordinate system Pcs in another system: CoordTransform is X, Y, Z, A, B, C."""
 
     VERB = "set_coordinate_transform"
     CoordTransform = Input[Numbers](())
@@ -360,7 +364,7 @@ class MC_SetCoordinateTransform(GroupSetting):  # noqa: N801
 
 
 class MC_ReadCoordinateTransform(GroupBlock, ReadBlock):  # noqa: N801
-    """Where product coordinate system Pcs is now in another one: X, Y, Z, A, B, C."""
+    """Shows the present pose of product coordinate system Pcs in another system: X, Y, Z, A, B, C."""
 
     Pcs = Input(1)
     Reference = Input(_commands.CoordinateSystem.MCS)
@@ -374,7 +378,7 @@ class MC_ReadCoordinateTransform(GroupBlock, ReadBlock):  # noqa: N801
             self._show(Valid=False)
             return self._show_error(PARAMETER)
         pose: tuple[float, ...] = group.product_system(self.Pcs)
-        # In the machine coordinate system as it was given, not another pose of the same frame.
+        # In the machine coordinate system the pose as it was given, not other angles of the same frame.
         return self._found(pose if self.Reference is _commands.CoordinateSystem.MCS else seen_from(reference, pose))
 
     def _found(self, pose: tuple[float, ...]) -> None:
@@ -382,7 +386,7 @@ class MC_ReadCoordinateTransform(GroupBlock, ReadBlock):  # noqa: N801
 
 
 class MC_ReadCartesianTransform(MC_ReadCoordinateTransform):  # noqa: N801
-    """The same, number by number."""
+    """Shows the same pose, also as one output per number."""
 
     TransX = Output(0.0)
     TransY = Output(0.0)

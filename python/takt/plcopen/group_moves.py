@@ -1,5 +1,5 @@
-"""Blocks that move groups of axes along paths, or let others follow them (PLCopen Part 4). How positions are given
-stands in `group`."""
+"""Blocks that move groups of axes along paths, or couple other axes to them (PLCopen Part 4). `group` explains how
+positions are given."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PATH_UNKNOWN = 3026  # error of a command: no such path
 
 
 class GroupName(AxisName):
-    """Another name of the group: where an axis follows it, PLCopen calls it Master."""
+    """Another name of the group: PLCopen calls it Master if an axis follows it."""
 
     def __get__(self, block: FunctionBlock | None, owner: type) -> Any:
         return self if block is None else getattr(block, block.SUBJECT)
@@ -36,7 +36,7 @@ class GroupMotionBlock(GroupBlock, ExecuteBlock):
 
 
 class GroupMove(GroupBlock, MotionBlock):
-    """A move that others can abort and that can wait for others."""
+    """A move that other commands can abort and that can wait for others."""
 
     CoordSystem = Input(_commands.CoordinateSystem.MCS, "coordinate_system")
     Pcs = Input(1, "pcs")
@@ -58,7 +58,7 @@ class PathMove(GroupMove):
 
 
 class MC_GroupHome(GroupMotionBlock):  # noqa: N801
-    """Every axis looks for its reference as the machine file says."""
+    """Homes every axis according to the machine file."""
 
     VERB = "home"
 
@@ -80,7 +80,7 @@ class MC_GroupStop(GroupMotionBlock):  # noqa: N801
 
 
 class MC_GroupHalt(GroupMotionBlock):  # noqa: N801
-    """Brakes to standstill on the path; another move may take over on the way."""
+    """Brakes to standstill on the path; another move may take over before it is at rest."""
 
     VERB = "halt"
     Deceleration = Input[float | None](None, "deceleration")
@@ -88,7 +88,7 @@ class MC_GroupHalt(GroupMotionBlock):  # noqa: N801
 
 
 class MC_GroupInterrupt(GroupMotionBlock):  # noqa: N801
-    """Brakes to standstill on the path, which MC_GroupContinue goes on with."""
+    """Brakes to standstill on the path, to be continued by MC_GroupContinue."""
 
     VERB = "interrupt"
     Deceleration = Input[float | None](None, "deceleration")
@@ -96,13 +96,13 @@ class MC_GroupInterrupt(GroupMotionBlock):  # noqa: N801
 
 
 class MC_GroupContinue(GroupMotionBlock):  # noqa: N801
-    """Goes on with the path that was interrupted."""
+    """Continues the interrupted path."""
 
     VERB = "continue_path"
 
 
 class MC_MoveLinearAbsolute(PathMove):  # noqa: N801
-    """Moves straight to Position."""
+    """Moves in a straight line to Position."""
 
     VERB = "move_linear_absolute"
     Position = Input[Numbers](())
@@ -112,7 +112,7 @@ class MC_MoveLinearAbsolute(PathMove):  # noqa: N801
 
 
 class MC_MoveLinearRelative(PathMove):  # noqa: N801
-    """Moves straight on by Distance."""
+    """Moves in a straight line by Distance."""
 
     VERB = "move_linear_relative"
     Distance = Input[Numbers](())
@@ -122,14 +122,14 @@ class MC_MoveLinearRelative(PathMove):  # noqa: N801
 
 
 def three(argument: str, what: str, numbers: Sequence[float]) -> dict[str, float]:
-    """The arguments of a command from X, Y and Z. Raises TypeError for another number of them."""
+    """Returns the arguments of a command for X, Y and Z. Raises TypeError unless there are three numbers."""
     if len(numbers) != len("xyz"):
         raise TypeError(f"{what} has 3 numbers, X, Y and Z in mm, found {len(numbers)}: {list(numbers)}")
     return {f"{argument}_{name}": number for name, number in zip("xyz", numbers, strict=True)}
 
 
 class MC_MoveCircularAbsolute(PathMove):  # noqa: N801
-    """Moves along a circle or a helix to EndPoint. AuxPoint is X, Y, Z of what CircMode says."""
+    """Moves along a circle or a helix to EndPoint. AuxPoint is X, Y, Z [mm] of the point that CircMode defines."""
 
     VERB = "move_circular_absolute"
     CircMode = Input(_commands.CircMode.BORDER, "circ_mode")
@@ -145,13 +145,13 @@ class MC_MoveCircularAbsolute(PathMove):  # noqa: N801
 
 
 class MC_MoveCircularRelative(MC_MoveCircularAbsolute):  # noqa: N801
-    """Moves along a circle or a helix; EndPoint and AuxPoint count from where it begins."""
+    """Moves along a circle or a helix; EndPoint and AuxPoint are relative to its start."""
 
     VERB = "move_circular_relative"
 
 
 class MC_MoveDirectAbsolute(GroupMove):  # noqa: N801
-    """Moves each axis by itself to where Position is; all arrive together."""
+    """Moves each axis by itself to Position; all arrive together."""
 
     VERB = "move_direct_absolute"
     Position = Input[Numbers](())
@@ -179,8 +179,8 @@ class MC_MoveDirectRelative(GroupMove):  # noqa: N801
 
 
 class MC_PathSelect(GroupBlock, FunctionBlock):  # noqa: N801
-    """Takes the path PathDescription of the machine file for MC_MovePath: PathData is its name. Done in the same call;
-    an Error where the machine has no such path."""
+    """Selects the path PathDescription of the machine file for MC_MovePath: PathData is its name. Done in the same
+    call; an Error if the machine has no such path."""
 
     Execute = Input(False)
     PathDescription = Input("")
@@ -198,18 +198,18 @@ class MC_PathSelect(GroupBlock, FunctionBlock):  # noqa: N801
 
 
 class MC_MovePath(PathMove):  # noqa: N801
-    """Moves along the path that MC_PathSelect gives as PathData."""
+    """Moves along the path PathData, an output of MC_PathSelect."""
 
     VERB = "move_path"
     PathData = Input("", "path")
 
 
-# --- with others ---
+# --- couplings with other axes ---
 
 
 class MC_SyncAxisToGroup(GroupBlock, ExecuteBlock):  # noqa: N801
-    """Lets Slave, which is no member, follow the way along the path: RatioNumerator of its unit per RatioDenominator
-    mm. Never done: InSync is true while its set point is where the path has it. Slave may be its name."""
+    """Couples Slave, which is not a member, to the arc length along the path: RatioNumerator of its unit per
+    RatioDenominator mm. Never done: InSync is true while its set point matches the path. Slave may be its name."""
 
     VERB = "sync_axis"
     Master = GroupName()
@@ -230,8 +230,8 @@ class MC_SyncAxisToGroup(GroupBlock, ExecuteBlock):  # noqa: N801
 
 
 class MC_MovePathSynchronized(GroupBlock, ExecuteBlock):  # noqa: N801
-    """Moves along the path PathData as Master moves: Ratio mm of it per unit of the master. InSync: it is in step.
-    Master is an axis or its name."""
+    """Moves along the path PathData as Master moves: Ratio mm of path per unit of the master. InSync: the group is in
+    step. Master is an axis or its name."""
 
     VERB = "move_path_synchronized"
     PathData = Input("", "path")

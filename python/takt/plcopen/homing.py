@@ -1,4 +1,4 @@
-"""Blocks that find the reference of an axis (PLCopen Part 5)."""
+"""Blocks that home an axis (PLCopen Part 5)."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ class HomingBlock(MotionBlock):
 
 
 class MC_Home(HomingBlock):  # noqa: N801
-    """Finds the reference as the section `homing` of the axis says, and ends homing. Position: what it is called."""
+    """Homes the axis according to its section `homing`, and ends homing. Position: the position assigned to the
+    reference."""
 
     VERB = "home"
     Position = Input(0.0, "position")
 
 
 class SearchBlock(HomingBlock):
-    """A step that searches. TimeLimit in s and DistanceLimit in u end it with errors 1 and 2; 0: no limit. TorqueLimit
-    in Nm (N on linear motors): what the drive may use meanwhile; None: as much as ever."""
+    """A step that searches. TimeLimit [s] and DistanceLimit [u] end it with errors 1 and 2; 0: no limit. TorqueLimit
+    [Nm] (N on linear motors): limit of the drive meanwhile; None: that of the axis."""
 
     Velocity = Input(0.0, "velocity")
     Acceleration = Input[float | None](None, "acceleration")
@@ -34,7 +35,8 @@ class SearchBlock(HomingBlock):
 
 
 class MC_StepAbsSwitch(SearchBlock):  # noqa: N801
-    """Searches the reference switch and returns to where it was found. The axis stays in Homing for the next step."""
+    """Searches the reference switch and returns to the position of the edge. The axis stays in Homing for the next
+    step."""
 
     VERB = "step_abs_switch"
     Direction = Input(_commands.HomingDirection.SWITCH_NEGATIVE, "direction")
@@ -43,7 +45,7 @@ class MC_StepAbsSwitch(SearchBlock):  # noqa: N801
 
 
 class MC_StepLimitSwitch(SearchBlock):  # noqa: N801
-    """Searches a limit switch and returns to where it was found. The axis stays in Homing for the next step."""
+    """Searches a limit switch and returns to the position of the edge. The axis stays in Homing for the next step."""
 
     VERB = "step_limit_switch"
     Direction = Input(_commands.HomingDirection.NEGATIVE, "direction")
@@ -53,7 +55,7 @@ class MC_StepLimitSwitch(SearchBlock):  # noqa: N801
 
 
 class MC_StepBlock(SearchBlock):  # noqa: N801
-    """Searches an end stop, where the axis hardly moves and lags behind by DevRef. Ends homing."""
+    """Searches an end stop: the axis hardly moves and its following error reaches DevRef. Ends homing."""
 
     VERB = "step_block"
     Direction = Input(_commands.HomingDirection.NEGATIVE, "direction")
@@ -78,7 +80,7 @@ class MC_StepDistanceCoded(SearchBlock):  # noqa: N801
 
 
 class MC_StepDirect(HomingBlock):  # noqa: N801
-    """Where the axis stands is SetPosition. Ends homing."""
+    """Assigns SetPosition to the present position. Ends homing."""
 
     VERB = "step_direct"
     SetPosition = Input(0.0, "set_position")
@@ -91,7 +93,7 @@ class MC_StepAbsolute(HomingBlock):  # noqa: N801
 
 
 class MC_FinishHoming(HomingBlock):  # noqa: N801
-    """Moves off by Distance and ends homing."""
+    """Moves by Distance and ends homing."""
 
     VERB = "finish_homing"
     Distance = Input(0.0, "distance")
@@ -102,7 +104,7 @@ class MC_FinishHoming(HomingBlock):  # noqa: N801
 
 
 class FlyingBlock(ExecuteBlock):
-    """A reference taken while another motion goes on."""
+    """A reference taken during another motion."""
 
     SetPosition = Input(0.0, "set_position")
     TimeLimit = Input(0.0, "time_limit")
@@ -120,20 +122,20 @@ class FlyingBlock(ExecuteBlock):
 
 
 class MC_StepRefFlyingSwitch(FlyingBlock):  # noqa: N801
-    """Takes the reference from the reference switch in passing."""
+    """Takes the reference from the reference switch during motion."""
 
     VERB = "step_ref_flying_switch"
     SwitchMode = Input(_commands.SwitchMode.EDGE_ON, "switch_mode")
 
 
 class MC_StepRefFlyingRefPulse(FlyingBlock):  # noqa: N801
-    """Takes the reference from the index pulse of the encoder in passing."""
+    """Takes the reference from the index pulse of the encoder during motion."""
 
     VERB = "step_ref_flying_ref_pulse"
 
 
 class MC_AbortPassiveHoming(ExecuteBlock):  # noqa: N801
-    """Gives up a reference that is to be taken in passing; nothing else changes."""
+    """Cancels a reference that is to be taken during motion; nothing else changes."""
 
     VERB = "abort_passive_homing"
     Done = Output(False)
@@ -141,24 +143,24 @@ class MC_AbortPassiveHoming(ExecuteBlock):  # noqa: N801
 
 
 class MC_StepAbsoluteSwitch(MC_StepAbsSwitch):  # noqa: N801
-    """The name of MC_StepAbsSwitch in version 2 of PLCopen's Part 5."""
+    """MC_StepAbsSwitch under its name in version 2 of PLCopen's Part 5."""
 
 
 class MC_StepReferencePulse(MC_StepRefPulse):  # noqa: N801
-    """The name of MC_StepRefPulse in version 2 of PLCopen's Part 5."""
+    """MC_StepRefPulse under its name in version 2 of PLCopen's Part 5."""
 
 
 class MC_HomeDirect(MC_StepDirect):  # noqa: N801
-    """The name of MC_StepDirect in version 2 of PLCopen's Part 5."""
+    """MC_StepDirect under its name in version 2 of PLCopen's Part 5."""
 
 
 class MC_HomeAbsolute(MC_StepAbsolute):  # noqa: N801
-    """The name of MC_StepAbsolute in version 2 of PLCopen's Part 5."""
+    """MC_StepAbsolute under its name in version 2 of PLCopen's Part 5."""
 
 
 class MC_StepReferenceFlyingSwitch(MC_StepRefFlyingSwitch):  # noqa: N801
-    """The name of MC_StepRefFlyingSwitch in version 2 of PLCopen's Part 5."""
+    """MC_StepRefFlyingSwitch under its name in version 2 of PLCopen's Part 5."""
 
 
 class MC_StepReferenceFlyingRefPulse(MC_StepRefFlyingRefPulse):  # noqa: N801
-    """The name of MC_StepRefFlyingRefPulse in version 2 of PLCopen's Part 5."""
+    """MC_StepRefFlyingRefPulse under its name in version 2 of PLCopen's Part 5."""

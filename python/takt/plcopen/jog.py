@@ -1,4 +1,4 @@
-"""The block for moving by hand."""
+"""Function block for jogging."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from takt.plcopen.base import FunctionBlock, Input
 
 
 class GT_Jog(FunctionBlock):  # noqa: N801
-    """Moves as long as JogPos or JogNeg is held, while Enable is true. The direction pressed first wins; both must be
-    let go before the next jog, so a key that is held while Enable becomes true does nothing. Velocities and ramps count
-    when a key is pressed or let go; a jog that cannot go on with them ends."""
+    """Moves as long as JogPos or JogNeg is true and Enable is true. The direction pressed first wins; both must be
+    released before the next jog, so a key that is held while Enable becomes true has no effect. Velocities and ramps
+    take effect when a key is pressed or released; a jog that cannot continue with them ends."""
 
     Enable = Input(False)
     JogPos = Input(False)
@@ -23,11 +23,11 @@ class GT_Jog(FunctionBlock):  # noqa: N801
     JogJerk = Input[float | None](None, "jerk")
 
     def __init__(self, axis: Axis, **inputs: Any) -> None:
-        self._keys = (False, False)  # that counted in the call before
-        self._up = True  # both keys were, Enable or not
+        self._keys = (False, False)  # in effect in the previous call
+        self._up = True  # both keys were released in the previous call, whether Enable was true or not
         self._feedback: Feedback | None = None
-        self._changed: list[Feedback] = []  # jogs before that one, which end when it is accepted
-        self._seen = True  # the error of that one, if any
+        self._changed: list[Feedback] = []  # earlier jogs, which end when the last one is accepted
+        self._seen = True  # the error of the last jog was shown, if it has one
         super().__init__(axis, **inputs)
 
     def _scan(self) -> None:
@@ -60,4 +60,4 @@ class GT_Jog(FunctionBlock):  # noqa: N801
 
 
 class MC_Jog(GT_Jog):  # noqa: N801
-    """The same by PLCopen's name."""
+    """GT_Jog under PLCopen's name."""

@@ -1,4 +1,4 @@
-"""Blocks that move an axis by itself."""
+"""Blocks that move a single axis."""
 
 from __future__ import annotations
 
@@ -41,15 +41,15 @@ class MC_MoveRelative(UpdatedBlock):  # noqa: N801
 
 
 class MC_MoveAdditive(MC_MoveRelative):  # noqa: N801
-    """Moves by a distance from where the move in progress was to end."""
+    """Moves by a distance from the end position of the move in progress."""
 
     VERB = "move_additive"
 
 
 def has_velocity(axis: Axis, velocity: float) -> bool:
-    """Whether the set point of an axis whose command has reached `velocity` [u/s] has it now, as the override in force
-    scales it, up to the largest velocity of the axis. What is on top of the motion is published together with it: then
-    the axis only must not be held."""
+    """Returns whether the set point of an axis whose command has reached `velocity` [u/s] has it now, scaled by the
+    override in force, up to the largest velocity of the axis. A superimposed motion is published together with it: then
+    the axis only must not be held by the override."""
     factor = axis.override_factor
     if axis.superimposed:
         return factor > 0 or velocity == 0
@@ -59,8 +59,8 @@ def has_velocity(axis: Axis, velocity: float) -> bool:
 
 
 class MC_MoveVelocity(UpdatedBlock):  # noqa: N801
-    """Moves on and on. Never done: InVelocity is true while the set point has the velocity, as the override in force
-    scales it."""
+    """Moves endlessly. Never done: InVelocity is true while the set point has the velocity, scaled by the override in
+    force."""
 
     VERB = "move_velocity"
     Velocity = Input(0.0, "velocity")
@@ -77,7 +77,7 @@ class MC_MoveVelocity(UpdatedBlock):  # noqa: N801
 
 
 class MC_Halt(MotionBlock):  # noqa: N801
-    """Brakes to standstill; another command may take over on the way."""
+    """Brakes to standstill; another command may take over before it is at rest."""
 
     VERB = "halt"
     Deceleration = Input[float | None](None, "deceleration")
@@ -86,9 +86,9 @@ class MC_Halt(MotionBlock):  # noqa: N801
 
 
 class MC_Stop(MotionBlock):  # noqa: N801
-    """Brakes to standstill. The axis stays in Stopping, and takes no other motion, as long as Execute is true,
-    through power off, faults and emergency stops, too. All stops of an axis are done when it stands, whichever of them
-    brakes."""
+    """Brakes to standstill. The axis stays in Stopping and accepts no other motion as long as Execute is true, also
+    through power off, faults and emergency stops. All stops of an axis are done when it is at rest, whichever of them
+    brakes it."""
 
     VERB = "stop"
     Deceleration = Input[float | None](None, "deceleration")
@@ -104,8 +104,8 @@ class MC_Stop(MotionBlock):  # noqa: N801
 
 
 class MC_MoveContinuousAbsolute(UpdatedBlock):  # noqa: N801
-    """Moves to a position and goes on from there with EndVelocity. Never done: InEndVelocity is true once it is
-    there, while the set point has that velocity, as the override in force scales it."""
+    """Moves to a position and continues from there with EndVelocity. Never done: InEndVelocity is true once the axis is
+    there, while the set point has that velocity, scaled by the override in force."""
 
     VERB = "move_continuous_absolute"
     Position = Input(0.0, "position")
@@ -124,8 +124,8 @@ class MC_MoveContinuousAbsolute(UpdatedBlock):  # noqa: N801
 
 
 class MC_MoveContinuousRelative(UpdatedBlock):  # noqa: N801
-    """Moves by a distance and goes on from there with EndVelocity. Never done: InEndVelocity is true once it is
-    there, while the set point has that velocity, as the override in force scales it."""
+    """Moves by a distance and continues from there with EndVelocity. Never done: InEndVelocity is true once the axis is
+    there, while the set point has that velocity, scaled by the override in force."""
 
     VERB = "move_continuous_relative"
     Distance = Input(0.0, "distance")
@@ -143,11 +143,11 @@ class MC_MoveContinuousRelative(UpdatedBlock):  # noqa: N801
 
 
 class MC_MoveContinue(MC_MoveContinuousAbsolute):  # noqa: N801
-    """The GT-775x's name of MC_MoveContinuousAbsolute."""
+    """MC_MoveContinuousAbsolute under its name in the GT-775x."""
 
 
 class MC_Inch(ExecuteBlock):  # noqa: N801
-    """Moves a standing axis by one increment on each rising edge of Execute."""
+    """Moves an axis from rest by one increment on each rising edge of Execute; refused while the axis moves."""
 
     VERB = "inch"
     Distance = Input(0.0, "distance")

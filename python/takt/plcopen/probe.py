@@ -11,7 +11,7 @@ from takt.plcopen.base import ExecuteBlock, Input, Output
 
 class MC_TouchProbe(ExecuteBlock):  # noqa: N801
     """Captures the position of the axis at the next edge of its touch probe. TriggerInput is the edge; each axis has
-    one probe. Up to eight blocks wait for it at once, each for its edge and window."""
+    one probe. Up to eight blocks wait at once, each for its own edge and window."""
 
     VERB = "arm_probe"
     TriggerInput = Input(_commands.ProbeEdge.RISING, "edge")
@@ -24,7 +24,7 @@ class MC_TouchProbe(ExecuteBlock):  # noqa: N801
 
     def _command(self) -> Feedback:
         if self._feedback is not None and not self._feedback.final:
-            self._feedback.release()  # a new edge of this block takes over from its last one
+            self._feedback.release()  # a new edge of Execute supersedes the last command of this block
         return super()._command()
 
     def _follow(self, feedback: Feedback) -> None:
@@ -34,8 +34,8 @@ class MC_TouchProbe(ExecuteBlock):  # noqa: N801
 
 
 class MC_AbortTrigger(ExecuteBlock):  # noqa: N801
-    """Ends the blocks that wait for the touch probe of the axis, as aborted. TriggerInput: only those that wait for
-    this edge; None: all."""
+    """Aborts the blocks that wait for the touch probe of the axis. TriggerInput: only those that wait for this edge;
+    None: all."""
 
     VERB = "abort_trigger"
     TriggerInput = Input[_commands.ProbeEdge | None](None, "edge")
@@ -43,9 +43,9 @@ class MC_AbortTrigger(ExecuteBlock):  # noqa: N801
 
 
 class GT_Touch(ExecuteBlock):  # noqa: N801
-    """Waits for the touch probe, then ends the motion in progress, stops and goes to where the probe was touched.
-    Active says that it does so. With Mode SLOW it slows down whatever moves while the probe is on instead, no longer
-    than Execute is true, and is never done."""
+    """Waits for the touch probe, then aborts the motion in progress, stops and returns to the position captured at the
+    probe's edge; Active meanwhile. With Mode SLOW it instead slows down any motion while the probe is on, at most as
+    long as Execute is true, and is never done."""
 
     VERB = "touch"
     Mode = Input(_commands.TouchMode.CAPTURE, "mode")

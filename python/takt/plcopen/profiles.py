@@ -1,4 +1,4 @@
-"""Blocks that follow tables over time. The tables are cams of the machine, by their names; x is the time in s."""
+"""Blocks that follow tables over time. The tables are cams of the machine, given by name; x is the time [s]."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class MC_PositionProfile(UpdatedBlock):  # noqa: N801
 
 
 class MC_VelocityProfile(UpdatedBlock):  # noqa: N801
-    """Follows velocities over time, and goes on with the last."""
+    """Follows velocities over time, and continues with the last one."""
 
     VERB = "velocity_profile"
     TimeVelocity = Input("", "profile")
@@ -29,7 +29,7 @@ class MC_VelocityProfile(UpdatedBlock):  # noqa: N801
 
 
 class MC_AccelerationProfile(UpdatedBlock):  # noqa: N801
-    """Follows accelerations over time, and goes on with the velocity that they lead to."""
+    """Follows accelerations over time, and continues with the resulting velocity."""
 
     VERB = "acceleration_profile"
     TimeAcceleration = Input("", "profile")

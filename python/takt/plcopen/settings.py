@@ -1,4 +1,4 @@
-"""Blocks that change and show what an axis works with."""
+"""Blocks that change and show the settings of an axis."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ YES_OR_NO = (4, 5, 6)  # parameters: EnableLimitPos, EnableLimitNeg, EnablePosLa
 
 
 class GT_SetConstant(SettingBlock):  # noqa: N801
-    """The constants of the position loop and the SW limits; an input that is None leaves what there is."""
+    """Sets the constants of the position loop and the SW limits; an input that is None leaves its value unchanged."""
 
     VERB = "set_constants"
     Kp = Input[float | None](None, "kp")
@@ -26,7 +26,7 @@ class GT_SetConstant(SettingBlock):  # noqa: N801
 
 
 class GT_SWLim(SettingBlock):  # noqa: N801
-    """The SW limits: where they are and whether they hold."""
+    """Sets the SW limits and whether they are enabled; None leaves a limit unchanged."""
 
     VERB = "set_soft_limits"
     EnablePos = Input(True, "enable_upper")
@@ -36,14 +36,14 @@ class GT_SWLim(SettingBlock):  # noqa: N801
 
 
 class GT_Analog(SettingBlock):  # noqa: N801
-    """Puts a voltage out, -10 to 10 V, while the axis is Disabled."""
+    """Outputs a voltage, -10 to 10 V, while the axis is Disabled."""
 
     VERB = "direct_output"
     Voltage = Input(0.0, "voltage")
 
 
 class GT_Pulse(SettingBlock):  # noqa: N801
-    """Puts a voltage out for Duration s while the axis is Disabled, and 0 V after it."""
+    """Outputs a voltage for Duration [s] while the axis is Disabled, and 0 V after it."""
 
     VERB = "pulse_output"
     Voltage = Input(0.0, "voltage")
@@ -53,7 +53,7 @@ class GT_Pulse(SettingBlock):  # noqa: N801
 
 
 class MC_SetPosition(SettingBlock):  # noqa: N801
-    """Calls where the axis is by another number; nothing moves."""
+    """Assigns Position to the present position of the axis, or adds it (Relative), without motion."""
 
     VERB = "define_position"
     Position = Input(0.0, "position")
@@ -61,8 +61,8 @@ class MC_SetPosition(SettingBlock):  # noqa: N801
 
 
 class MC_SetOverride(FunctionBlock):  # noqa: N801
-    """Keeps the factors of the override as they are at the inputs as long as Enable is true; false, the last ones stay.
-    Enabled: they are those of the axis. VelFactor 0 holds the axis in its state until it is more."""
+    """Keeps the override factors of the axis at those of the inputs as long as Enable is true; afterwards the last ones
+    stay in force. Enabled: they are in force. VelFactor 0 holds the axis in its state until it is above 0."""
 
     Enable = Input(False)
     VelFactor = Input(1.0, "velocity_factor")
@@ -99,7 +99,7 @@ class MC_WriteParameter(SettingBlock):  # noqa: N801
 
 
 class MC_WriteBoolParameter(SettingBlock):  # noqa: N801
-    """Sets a parameter that is a yes or no: 4, 5 and 6. Any other one is error 5."""
+    """Sets a boolean parameter: 4, 5 or 6. Any other number is error 5."""
 
     VERB = "write_parameter"
     ParameterNumber = Input(0, "number")
@@ -111,8 +111,8 @@ class MC_WriteBoolParameter(SettingBlock):  # noqa: N801
 
 
 class MC_ReadParameter(FunctionBlock):  # noqa: N801
-    """A parameter by PLCopen's number, asked for again and again as long as Enable is true. Value is valid from the
-    first answer on, one or more cycles after Enable or after a change of ParameterNumber."""
+    """Shows a parameter by PLCopen's number, read repeatedly as long as Enable is true. Value is valid from the first
+    answer on, one or more cycles after Enable or after a change of ParameterNumber."""
 
     Enable = Input(False)
     ParameterNumber = Input(0, "number")
@@ -121,7 +121,7 @@ class MC_ReadParameter(FunctionBlock):  # noqa: N801
     Value: Output[Any] = Output(0.0)
 
     def __init__(self, axis: Axis, **inputs: Any) -> None:
-        self._given: dict[str, Any] | None = None  # arguments of the question
+        self._given: dict[str, Any] | None = None  # arguments of the request
         self._asked: Feedback | None = None
         self._answer: Feedback | None = None
         super().__init__(axis, **inputs)
@@ -136,7 +136,7 @@ class MC_ReadParameter(FunctionBlock):  # noqa: N801
         self._take_answer()
         if self._asked is None:
             self._asked = self.Axis.session.command(self.Axis.name, "read_parameter", wanted)
-            self._take_answer()  # what cannot be is refused at once
+            self._take_answer()  # an invalid request is refused at once
         if self._answer is not None and self._answer.error:
             self._show_error(self._answer.error_id, self._answer.sentence)
             return
@@ -153,7 +153,7 @@ class MC_ReadParameter(FunctionBlock):  # noqa: N801
 
 
 class MC_ReadBoolParameter(MC_ReadParameter):  # noqa: N801
-    """A parameter that is a yes or no."""
+    """Shows a boolean parameter."""
 
     Value: Output[Any] = Output(False)
 

@@ -1,4 +1,4 @@
-"""What takt.plcopen has of the standard: the tables in spec/, and the compliance statement made from them."""
+"""Compares takt.plcopen with the standard: the tables in spec/, and the compliance statement made from them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import yaml
 from takt.plcopen.base import FunctionBlock
 
 TABLES = ("plcopen_part1.yaml", "plcopen_part4.yaml", "gt775x.yaml", "conveyor_tracking.yaml")
-# What the standard's types are here. Enumerations are those of takt; references are what the block's text says.
+# Python types of the standard's types. Enumerations are those of takt; the block's doc string explains references.
 TYPES = {"BOOL": "bool", "REAL": "float", "TIME": "float, in s", "AXIS_REF": "Axis, or its name for a master"}
 TYPES |= {"AXES_GROUP_REF": "Group", "LREAL": "float", "Yt_TrackOptions": "TrackOptions"}
 TYPES |= dict.fromkeys(("ARRAY", "VECTOR"), "sequence of float, or a mapping of names to float")
@@ -23,31 +23,31 @@ Blocks = Mapping[str, type[FunctionBlock]]
 
 @dataclass(frozen=True)
 class Pin:
-    """An input or output as a table has it."""
+    """An input or output as listed in a table."""
 
     name: str
-    level: str  # "B", "E" or "V": basic, extended, vendor's own
+    level: str  # "B", "E" or "V": basic, extended, vendor's own; "V" if the table gives none
     type: str
     kind: str  # "in_out", "inputs" or "outputs"
 
     @property
     def required(self) -> bool:
-        """A block that is there has it."""
+        """A block that is implemented must have it: basic, or level V."""
         return self.level != "E"
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A block as a table has it."""
+    """A block as listed in a table."""
 
     name: str
     section: str
     pins: tuple[Pin, ...]
-    reason: str  # why there is no such block on purpose; empty: there is to be one
-    without: Mapping[str, str]  # the same for inputs and outputs
+    reason: str  # why the block is deliberately not implemented; empty: it is, or will be
+    without: Mapping[str, str]  # by pin: why it is not implemented
 
     def missing(self, block: type[FunctionBlock]) -> tuple[Pin, ...]:
-        """What of it a block has not, under this name or an alias."""
+        """Returns the listed pins that a block has neither under this name nor as an alias."""
         there = names(block)
         return tuple(pin for pin in self.pins if pin.name not in there)
 
@@ -61,12 +61,12 @@ class Table:
 
 
 def names(block: type[FunctionBlock]) -> set[str]:
-    """All names of a block's axis, inputs and outputs, aliases too."""
+    """Returns all names of a block's axis, inputs and outputs, including aliases."""
     return {*block.AXES, *block.INPUTS, *block.OUTPUTS}
 
 
 def tables() -> tuple[Table, ...]:
-    """The tables in spec/."""
+    """Returns the tables in spec/."""
     folder = resources.files("takt") / "spec"
     return tuple(_table(yaml.safe_load((folder / name).read_text("utf-8"))) for name in TABLES)
 
@@ -89,7 +89,7 @@ def _pin(name: str, text: str, kind: str) -> Pin:
 
 
 def page(blocks: Blocks) -> str:
-    """The compliance statement."""
+    """Returns the compliance statement as Markdown. **Bold** names are required (basic, or level V)."""
     return "\n".join(_page(blocks)) + "\n"
 
 

@@ -1,4 +1,4 @@
-"""Blocks of motions on top of other motions."""
+"""Blocks of motions superimposed on other motions."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from takt.plcopen.base import ChangedBlock, ExecuteBlock, Input, Output
 
 
 class SuperimposedBlock(ExecuteBlock):
-    """A block whose command is on top of the motion in progress, which knows nothing of it. A newer one takes over."""
+    """A block whose command is superimposed on the motion in progress, which is not affected. A newer superimposed
+    command supersedes it."""
 
     Deceleration = Input[float | None](None, "deceleration")
     Jerk = Input[float | None](None, "jerk")
@@ -19,8 +20,8 @@ class SuperimposedBlock(ExecuteBlock):
 
 
 class MC_MoveSuperimposed(SuperimposedBlock, ChangedBlock):  # noqa: N801
-    """Moves by Distance on top of the motion in progress, with VelocityDiff more than that has. CoveredDistance: how
-    much of it was added so far, or at last."""
+    """Moves by Distance on top of the motion in progress, with at most VelocityDiff in addition to its velocity.
+    CoveredDistance: the part of Distance added so far; after the end of the command, the last one."""
 
     VERB = "move_superimposed"
     Distance = Input(0.0, "distance")
@@ -43,6 +44,6 @@ class MC_MoveSuperimposed(SuperimposedBlock, ChangedBlock):  # noqa: N801
 
 
 class MC_HaltSuperimposed(SuperimposedBlock):  # noqa: N801
-    """Brakes what was put on top of the motion in progress, which goes on."""
+    """Brakes the superimposed motion; the motion in progress continues."""
 
     VERB = "halt_superimposed"

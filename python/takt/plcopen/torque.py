@@ -10,8 +10,8 @@ from takt.plcopen.base import Input, Output, UpdatedBlock
 
 
 class MC_TorqueControl(UpdatedBlock):  # noqa: N801
-    """Drives with a torque, within Velocity, Acceleration, Deceleration and Jerk. Never done: InTorque says that the
-    set point of the torque is what was asked for. Direction NEGATIVE turns the torque round."""
+    """Drives with a torque, within Velocity, Acceleration, Deceleration and Jerk. Never done: InTorque is true while
+    the torque set point has the commanded value. Direction NEGATIVE reverses the torque."""
 
     VERB = "torque_control"
     Torque = Input(0.0, "torque")

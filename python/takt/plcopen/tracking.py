@@ -1,8 +1,7 @@
-"""Blocks that let the tool of a group go along with what moves (PLCopen Part 4). How positions are given stands in
-`group`.
+"""Blocks that let the tool of a group track a moving object (PLCopen Part 4). `group` explains how positions are given.
 
 MC_TrackConveyorBelt moves the tool by itself, without any other command. InSync says that the tool is in step with the
-object; its speed is that of the object only where no move runs on top.
+object; its speed equals that of the object only while no move is superimposed.
 """
 
 from __future__ import annotations
@@ -23,8 +22,8 @@ ComponentOrName = Component | str
 
 @dataclass(frozen=True)
 class SyncDistances:
-    """Over how much of the belt's way the tool gets into step, or out of it, and how far it goes meanwhile; mm. 0: as
-    the limits allow."""
+    """Travel of the belt over which the tool synchronizes or desynchronizes (ConveyorDistance), and travel of the tool
+    meanwhile (TCPDistance) [mm]. 0: as the limits allow."""
 
     ConveyorDistance: float = 0.0
     TCPDistance: float = 0.0
@@ -32,24 +31,24 @@ class SyncDistances:
 
 @dataclass(frozen=True)
 class TrackOptions:
-    """How the tool gets into step and out of it."""
+    """How the tool synchronizes and desynchronizes."""
 
     SyncIn: SyncDistances = field(default_factory=SyncDistances)
     SyncOut: SyncDistances = field(default_factory=SyncDistances)
 
 
 def name_of(component: ComponentOrName) -> str:
-    """What commands call a component by."""
+    """Returns the name of a component in commands."""
     return component if isinstance(component, str) else component.name
 
 
 def tool_numbers(numbers: Numbers) -> Mapping[str, float]:
-    """X, Y, Z, A, B, C by name."""
+    """Returns X, Y, Z, A, B, C by name."""
     return by_name(numbers, _commands.CoordinateSystem.MCS)
 
 
 class TrackingBlock(GroupBlock, ExecuteBlock):
-    """A block that lets the tool go along with an object. Done when the object has left where it may be tracked."""
+    """A block that lets the tool track an object. Done when the object has left the range of tracking."""
 
     Pcs = Input(1, "pcs")
     InitialObjectPosition = Input[Numbers](())
@@ -71,10 +70,10 @@ class TrackingBlock(GroupBlock, ExecuteBlock):
 
 
 class MC_TrackConveyorBelt(TrackingBlock):  # noqa: N801
-    """Takes the tool along with an object on ConveyorBelt, which was at InitialObjectPosition of the belt when the
-    belt's axis was at RecordedPosition (None: it is now), as long as the belt has come between StartDistance and
-    EndDistance (None: for good) since. Pcs becomes the object's coordinate system. ConveyorBeltOrigin (None: that of
-    the machine file) is seen from the machine coordinate system. ConveyorBelt may be its name."""
+    """Lets the tool track an object on ConveyorBelt, which was at InitialObjectPosition of the belt when the belt's
+    axis was at RecordedPosition (None: now), while the travel of the belt since then is between StartDistance and
+    EndDistance (None: without end). Pcs becomes the object's coordinate system. ConveyorBeltOrigin (None: that of the
+    machine file) is given in the machine coordinate system. ConveyorBelt may be its name."""
 
     VERB = "track_conveyor_belt"
     ConveyorBelt = Input[ComponentOrName]("")
@@ -95,8 +94,8 @@ class MC_TrackConveyorBelt(TrackingBlock):  # noqa: N801
 
 
 class MC_TrackRotaryTable(TrackingBlock):  # noqa: N801
-    """The same on RotaryTable, from StartAngle to EndAngle in the sense in which it turns, in deg. SyncInAngle and
-    SyncOutAngle: so much of its turn the tool takes to get into step and out of it; 0: as the limits allow."""
+    """The same on RotaryTable, from StartAngle to EndAngle in the direction in which it turns [deg]. SyncInAngle and
+    SyncOutAngle: turn of the table over which the tool synchronizes and desynchronizes; 0: as the limits allow."""
 
     VERB = "track_rotary_table"
     RotaryTable = Input[ComponentOrName]("")
@@ -110,8 +109,8 @@ class MC_TrackRotaryTable(TrackingBlock):  # noqa: N801
 
 
 class MC_SetDynCoordTransform(GroupSetting):  # noqa: N801
-    """Lets product coordinate system Pcs of the group go along with MasterAxesGroup: the tool of another group, or a
-    belt, a table or a pose; also by name. CoordTransform is where it is on that, of a belt when its axis was at
+    """Attaches product coordinate system Pcs of the group to MasterAxesGroup: the tool of another group, a belt, a
+    table or a pose; also by name. CoordTransform is its pose relative to that, for a belt when its axis was at
     RecordedPosition (None: now)."""
 
     VERB = "set_dyn_coord_transform"
