@@ -1,6 +1,7 @@
-"""One drive of CiA 402 as the axis that it moves: set points become its words, its words what was measured (AX-87).
+"""One drive of CiA 402 as the drive of an axis: converts set points into its words, and its words into actual values
+(AX-87).
 
-It knows no bus; that hands over the words of a cycle and says when the drive is not heard.
+It is independent of the bus, which passes the words of each cycle and reports when the drive is not heard.
 """
 
 from __future__ import annotations
@@ -20,24 +21,27 @@ MODES = {
     drive.CYCLIC_VELOCITY: Mode.CYCLIC_VELOCITY,
     drive.CYCLIC_TORQUE: Mode.CYCLIC_TORQUE,
 }
-AXIS_MODES = {"cyclic_position": Mode.CYCLIC_POSITION, "cyclic_velocity": Mode.CYCLIC_VELOCITY}  # of a machine file
+AXIS_MODES = {
+    "cyclic_position": Mode.CYCLIC_POSITION,
+    "cyclic_velocity": Mode.CYCLIC_VELOCITY,
+}  # names in a machine file
 FOLLOWING = 0x8611
-CODE_WITHIN_S = 0.2  # after the fault itself the error code is expected to have come
+CODE_WITHIN_S = 0.2  # time after a fault in which its error code is expected
 MANY_RESETS = 3
 RESTING_CYCLES = 3
-BRAKES_WITHIN_S = 2.0  # a drive whose homing is broken off
-LOST = 4  # times the largest step: a jump of the position, as the engine judges it
-JUMP = 1.5  # times the largest step of the axis: a drive that counts from its reference now
+BRAKES_WITHIN_S = 2.0  # time for a drive to brake after its homing was broken off
+LOST = 4  # times the largest step: jump of the position, by the engine's criterion
+JUMP = 1.5  # times the largest step of the axis: the drive now counts from its reference
 
 
 def set_point_mode(mode: Mode) -> int:
-    """Of a set point for a drive in this mode."""
+    """Returns the mode of a set point for a drive in this mode."""
     return drive.CYCLIC_VELOCITY if mode is Mode.CYCLIC_VELOCITY else drive.CYCLIC_POSITION
 
 
 @dataclass
 class Words:
-    """What goes to a drive in a cycle, as its objects hold it."""
+    """The values that are sent to a drive in a cycle, as in its objects."""
 
     control: int = 0
     mode: int = Mode.NONE
@@ -50,26 +54,26 @@ class Words:
 
 @dataclass
 class Heard:
-    """What a drive says in a cycle, as its objects hold it."""
+    """The values that a drive sends in a cycle, as in its objects."""
 
     status: int
     position: int
     torque: int = 0
     inputs: int = 0
-    mode: int = Mode.NONE  # that it is in; looked at while it homes
+    mode: int = Mode.NONE  # present mode; read while it homes
     probe: tuple[int | None, int | None] = (None, None)  # positions latched at a rising and at a falling edge
 
 
 class DriveAxis:
     """The drive of one axis.
 
-    called: "node 3", as sentences name it.
-    inputs: bits of the digital inputs by what they are (limit_negative ...); -1: none.
-    modes: that the drive has; a set point in another one switches it off.
-    homing: that the drive carries out by itself before it is ready for the first time.
-    largest_step: increments that the axis moves in a cycle at the most; looked at with `homing`.
-    limit_senses: by the name of a limit switch which way of the increments the axis leaves its range there, and whether
-        its wire is inverted.
+    called: its name in messages, such as "node 3".
+    inputs: bit number of each digital input by its name (limit_negative ...); -1: not connected.
+    modes: supported by the drive; a set point in another mode switches it off.
+    homing: carried out by the drive itself before it is ready for the first time; None: none.
+    largest_step: largest motion of the axis in a cycle [increments]; used with `homing`.
+    limit_senses: by the name of a limit switch, the sign of the increments towards it, and whether its input is
+        inverted.
     """
 
     def __init__(
@@ -93,24 +97,24 @@ class DriveAxis:
         self._homing, self._probe = homing, probe
         self._period_s, self._largest_step = period_s, largest_step
         self._limit_senses = {name: sense for name, sense in (limit_senses or {}).items() if name in self._inputs}
-        self._brakes_since_s: float | None = None  # its homing was broken off, and it may be in motion
+        self._brakes_since_s: float | None = None  # when its homing was broken off; None: it does not brake for that
         self._resting = 0  # cycles
-        self._absorbed = 0  # increments by which the drive's position has jumped when it was homed
-        self._reference: int | None = None  # increments without those jumps: where the drive counts 0
-        self._off_first = False  # the reference is lost: no homing before the axis has been switched off
+        self._absorbed = 0  # increments: jumps of the drive's position at its homing
+        self._reference: int | None = None  # increments without those jumps: position at which the drive counts 0
+        self._off_first = False  # the reference is lost: homing only after the axis was switched off
         self._index_pulses = 0
-        self._cycles = 0  # of the engine, since something was heard
-        self._asked = 0  # so often since then: on a computer that is late less than once a cycle
+        self._cycles = 0  # cycles of the engine since the last words of the drive
+        self._asked = 0  # calls of `words` since then: fewer than cycles on a computer that is late
         self.mode = 0  # as last heard
         self._counter = Unwrapped()
         self._reset = FaultReset()
         self.status = 0
         self.position = 0  # increments, as last heard
-        self.error_code = 0  # of the last fault, 0: not told yet
-        self._base = 0  # counts, a multiple of 2^32: by which it counts further than the engine does
-        self._counts: int | None = None  # as last measured, over all wraps
-        self._target: int | None = None  # position that the drive was told last, while it followed one
-        self._lag: int | None = None  # increments: of the drive behind it at the begin of the last fault
+        self.error_code = 0  # of the last fault; 0: not received yet
+        self._base = 0  # counts, a multiple of 2^32: offset from the engine's counter
+        self._counts: int | None = None  # last actual position, unwrapped
+        self._target: int | None = None  # last set point of the position; None: it follows none
+        self._lag: int | None = None  # increments: following error at the beginning of the last fault
         self._fault_since_s: float | None = None
         self._told_of_fault = self._told_of_resets = self._told_of_mode = False
 
@@ -129,11 +133,11 @@ class DriveAxis:
 
     @property
     def _homes(self) -> bool:
-        """It has no reference yet."""
+        """The drive is to home and has no reference yet."""
         return self._homing is not None and self._reference is None
 
     def words(self, told: drive.SetPoint, now_s: float, *, stop: bool = False) -> Words:
-        """What the drive is to hear.
+        """Returns the words for the drive in this cycle.
 
         stop: the engine is lost, so the drive brakes by itself along its quick stop ramp."""
         mode = MODES.get(told.mode, Mode.NONE)
@@ -149,7 +153,7 @@ class DriveAxis:
         words = Words(self._control(enable, now_s, stop), int(mode), torque_limit=self._limit(told))
         words.probe = self._probe.function if self._probe is not None else 0
         follows = self.state is State.OPERATION_ENABLED and enable and mode is Mode.CYCLIC_POSITION
-        if self._counts is not None and not follows:  # the engine tells the measured position
+        if self._counts is not None and not follows:  # the engine sends the actual position
             self._base = round((self._counts - told.position_counts) / WORD) * WORD
         words.position = self.position  # so that the drive does not jump when it is switched on, or to csp
         self._target = None
@@ -165,8 +169,7 @@ class DriveAxis:
         return words
 
     def _breaks_off(self, enable: bool, now_s: float) -> bool:
-        """The drive homes, or has done so until now, and is to be off: along its quick stop ramp it comes to rest
-        first."""
+        """Returns whether a homing was broken off and the drive must first come to rest along its quick stop ramp."""
         if self._homing is not None and self._homing.moves and not enable and self._brakes_since_s is None:
             self._brakes_since_s, self._resting = now_s, 0
         if self._brakes_since_s is None:
@@ -177,7 +180,7 @@ class DriveAxis:
         return self._brakes_since_s is not None
 
     def _home(self, words: Words, enable: bool, now_s: float) -> None:
-        """Has the drive find its reference, and go back to the mode of the axis."""
+        """Sets the words with which the drive homes, and then returns to the mode of the axis."""
         homing = self._homing
         assert homing is not None
         if homing.homed:
@@ -218,7 +221,7 @@ class DriveAxis:
         return 0 if command is None else CONTROL_WORDS[command]
 
     def restarted(self) -> None:
-        """The drive has started anew: its counter, and what was said of it, are of no worth any more."""
+        """Discards the position counter and the reference: the drive has restarted."""
         self._counter = Unwrapped()
         self._told_of_mode = False
         self._absorbed, self._reference = 0, None
@@ -229,7 +232,7 @@ class DriveAxis:
             self._probe.forget()
 
     def measured(self, heard: Heard, now_s: float) -> drive.Measured:
-        """What the words of a drive say."""
+        """Returns the actual values for the words of a drive."""
         before = self._counter.total
         total = self._counter.take(heard.position)
         step = 0 if before is None else total - before
@@ -281,7 +284,7 @@ class DriveAxis:
         self._say(f"{self.axis}: {self.called}: homing in the drive by method {homing.method}: {homing.failed}")
 
     def _tell_reference(self, at: int, found: drive.Measured) -> None:
-        """The reference of the drive is an index pulse that is seen in each cycle."""
+        """Passes the reference of the drive to the engine, as an index pulse that occurs in each cycle."""
         if self._homing is None or not self._homing.homed:
             return
         if self._reference is None and self.state is State.OPERATION_ENABLED and self.mode != Mode.HOMING:
@@ -291,7 +294,7 @@ class DriveAxis:
             found.index_counts = self.scaling.counts(self._reference)
             if (
                 abs(found.counts - found.index_counts) < 1 << 31
-            ):  # further away the engine would take it for another one
+            ):  # beyond that the engine would take it for another pulse
                 self._index_pulses += 1
             found.index_pulses = self._index_pulses
 

@@ -1,4 +1,4 @@
-"""A CAN bus by the packages python-can and canopen: opened by its name, read where somebody waits for it."""
+"""A CAN bus by the packages python-can and canopen: opened by its name, read while a caller waits for it."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ KIND: Final = "canopen"
 DEFAULT_INTERFACE: Final = "socketcan"
 ECHOES: Final = ("udp_multicast",)  # return own messages, too
 ECHO_WITHIN_S: Final = 1.0
-WITHOUT_BIT_RATE: Final = ("virtual", "udp_multicast")  # no wire, so no bit rate either
+WITHOUT_BIT_RATE: Final = ("virtual", "udp_multicast")  # no wire, so no bit rate
 MISSING: Final = "CANopen needs the packages canopen and python-can: pip install 'takt-motion[canopen]'"
 
 
 def packages(missing: str = MISSING) -> tuple[Any, Any]:
-    """The modules can and canopen; TaktError says how to get them."""
+    """Returns the modules can and canopen. Raises TaktError that says how to install them."""
     try:
         import can
         import canopen
     except ImportError:
         raise TaktError(missing) from None
-    for name in ("can", "canopen"):  # what they report is said here; whoever wants theirs sets a handler of logging
+    for name in ("can", "canopen"):  # takt reports errors itself; set a handler of logging to see theirs
         logger = logging.getLogger(name)
         if not logger.handlers:
             logger.addHandler(logging.NullHandler())
@@ -39,7 +39,7 @@ def packages(missing: str = MISSING) -> tuple[Any, Any]:
 
 @dataclass(frozen=True)
 class BusName:
-    """ "canopen:INTERFACE:CHANNEL?OPTION=VALUE", interface and channel as python-can names them."""
+    """ "canopen:INTERFACE:CHANNEL?OPTION=VALUE", with interface and channel as named by python-can."""
 
     text: str
     interface: str
@@ -52,7 +52,8 @@ class BusName:
 
 
 def parse(text: str) -> BusName:
-    """The bus of this name; without an interface it is one of Linux (socketcan)."""
+    """Returns the bus of this name; without an interface it is socketcan of Linux. Raises TaktError if the name is
+    invalid."""
     can, _ = packages()
     kind, _, rest = text.partition(":")
     if kind != KIND or not rest:
@@ -76,7 +77,7 @@ def parse(text: str) -> BusName:
 
 
 def open_bus(name: BusName, bitrate: int | None) -> Any:
-    """python-can's bus; TaktError says in one line why not."""
+    """Returns python-can's bus. Raises TaktError with the reason in one line."""
     can, _ = packages()
     options = dict(name.options)
     if bitrate and name.has_wire and name.interface != DEFAULT_INTERFACE:  # a socketcan interface has its own
@@ -95,7 +96,7 @@ def _hint(name: BusName) -> str:
 
 
 class _Echoes:
-    """Removes own messages that an interface returns; without it they look like those of another master."""
+    """Removes own messages that an interface returns; otherwise they would look like those of another master."""
 
     def __init__(self, bus: Any) -> None:
         self._send = bus.send
@@ -122,19 +123,20 @@ class _Echoes:
 
 
 class CanLink:
-    """A bus and canopen's network on it. Messages are taken in by `pump`, or by a thread of `background`."""
+    """A bus and canopen's network on it. `pump`, or the thread of `background`, receives messages."""
 
     def __init__(self, name: BusName, bitrate: int | None = None, *, network: Any = None) -> None:
         _, canopen = packages()
         self.name = name
         self.bus = open_bus(name, bitrate)
         self._echoes = _Echoes(self.bus) if name.interface in ECHOES else None
-        self.network = canopen.Network() if network is None else network  # an empty one is false
+        self.network = canopen.Network() if network is None else network  # an empty network is false
         self.network.bus = self.bus
         self.malformed = 0  # frames that could not be read
 
     def pump(self, timeout_s: float = 0.0) -> bool:
-        """Takes in one message, waiting so long for it at most: whether there was one."""
+        """Receives one message, waiting at most `timeout_s`. Returns whether there was one. Raises TaktError if the
+        interface cannot receive."""
         try:
             message = self.bus.recv(timeout_s)
         except Exception as error:  # the adapter was unplugged, the interface switched off
@@ -149,28 +151,28 @@ class CanLink:
             self.network.notify(message.arbitration_id, message.data, message.timestamp)
         except TaktError:
             raise
-        except Exception:  # frames that are too short, or no answers to anything: whoever is on the wire may send them
+        except Exception:  # frames that are too short, or answers without a request: any node may send them
             self.malformed += 1
         return True
 
     def drain(self, most: int = 1000) -> None:
-        """Takes in what has come."""
+        """Receives pending messages, at most `most`."""
         while most and self.pump():
             most -= 1
 
     def wait(self, seconds: float) -> None:
-        """Takes in what comes for so long."""
+        """Receives messages for this time [s]."""
         end_s = time.monotonic() + seconds
         while (left_s := end_s - time.monotonic()) > 0:
             self.pump(left_s)
 
     @contextlib.contextmanager
     def background(self) -> Iterator[None]:
-        """Messages are taken in by a thread meanwhile, so that answers to SDOs come in."""
+        """Receives messages in a thread while the context is open, so that answers to SDOs arrive."""
         ended = threading.Event()
 
         def take() -> None:
-            with contextlib.suppress(TaktError):  # whoever waits for an answer says that there is none
+            with contextlib.suppress(TaktError):  # the caller that waits for an answer reports its absence
                 while not ended.is_set():
                     self.pump(0.02)
 
@@ -183,7 +185,7 @@ class CanLink:
             thread.join()
 
     def send(self, can_id: int, data: bytes) -> None:
-        """TaktError if the interface takes nothing."""
+        """Sends a message. Raises TaktError if the interface does not accept it."""
         try:
             self.network.send_message(can_id, data)
         except Exception as error:
@@ -207,19 +209,19 @@ QUESTIONS: Final = 3  # without an answer
 
 
 class Sdo(Objects):
-    """Objects of one node. Someone else has to take in messages meanwhile (`CanLink.background`)."""
+    """Objects of one node. Messages must be received meanwhile by another thread (`CanLink.background`)."""
 
     def __init__(self, link: CanLink, node: int, timeout_s: float = 0.3) -> None:
         can, canopen = packages()
         self._can, self._canopen = can, canopen
         self._remote = canopen.RemoteNode(node, canopen.ObjectDictionary())
-        link.network.add_node(self._remote)  # instead of one that there was
+        link.network.add_node(self._remote)  # replaces an earlier one
         self._remote.sdo.RESPONSE_TIMEOUT = timeout_s
         self.node = node
         self.called = f"node {node}"
 
     def patience(self, timeout_s: float) -> Sdo:
-        """Answers may take so long."""
+        """Sets the longest time [s] to wait for an answer. Returns self."""
         self._remote.sdo.RESPONSE_TIMEOUT = timeout_s
         return self
 
@@ -230,7 +232,7 @@ class Sdo(Objects):
         self._asked(what, lambda: self._remote.sdo.download(index, subindex, data))
 
     def _asked(self, what: str, question: Callable[[], Any]) -> Any:
-        """The answer; without one the question is put again, as a frame may get lost."""
+        """Returns the answer; repeats the request if there is none, as a frame may get lost. Raises SdoError."""
         for _ in range(QUESTIONS):
             try:
                 return question()
@@ -238,12 +240,12 @@ class Sdo(Objects):
                 raise SdoError(f"{what}: {abort_text(error.code)}", error.code) from None
             except self._canopen.SdoCommunicationError:
                 pass
-            except self._can.CanError as error:  # a buffer full of frames that no node acknowledges
+            except self._can.CanError as error:  # the buffer is full of frames that no node acknowledges
                 raise SdoError(f"{what}: {' '.join(str(error).split())}") from None
         raise SdoError(f"{what}: no answer")
 
 
-# --- what CANopen fixes ---
+# --- constants of CANopen ---
 
 NMT_COMMAND: Final = 0x000
 SYNC: Final = 0x080
@@ -263,6 +265,7 @@ NMT_STATES: Final = {0: "starting", 4: "stopped", 5: "operational", 127: "pre-op
 
 
 def frame_bits(data_bytes: int) -> int:
-    """The longest that a frame with 11 bits of identifier can be on the wire, stuffing and pause included."""
+    """Returns the largest number of bits of a frame with an 11-bit identifier on the wire, including stuffing and
+    pause."""
     stuffed = 34 + 8 * data_bytes
     return stuffed + (stuffed - 1) // 4 + 13

@@ -1,7 +1,8 @@
-"""Drives of CiA 402 on a CANopen bus, for an engine: start-up, process data in step with SYNC, what is lost and back.
+"""Drives of CiA 402 on a CANopen bus, for an engine: start-up, process data in step with SYNC, loss and return of
+nodes.
 
-A cycle: one message to each drive with its control word and set point, then SYNC, at which the drives take these over
-and send what they measured at that very moment.
+A cycle: one message to each drive with its control word and set point, then SYNC, at which the drives apply these and
+send the actual values of that moment.
 """
 
 from __future__ import annotations
@@ -49,21 +50,21 @@ from takt.errors import TaktError
 
 OPERATIONAL: Final = 5
 HEARTBEATS_MISSING: Final = 3
-LISTENED_S: Final = 0.1  # for another master, which sends SYNC in each of its cycles
-AGAIN_S: Final = 1.0  # from a set-up that failed to the next one
-STARTS_WITHIN_S: Final = 0.5  # until a node says that it is operational
-INPUTS_AGAIN_MS: Final = 100  # inputs come when they change, and that often, as one message may be lost
-BUSY: Final = 0.8  # of the bit rate
+LISTENED_S: Final = 0.1  # time to listen for another master, which sends SYNC in each of its cycles
+AGAIN_S: Final = 1.0  # from a failed set-up to the next one
+STARTS_WITHIN_S: Final = 0.5  # until a node reports that it is operational
+INPUTS_AGAIN_MS: Final = 100  # inputs are sent on change, and repeated at this interval, as a message may be lost
+BUSY: Final = 0.8  # share of the bit rate
 NOT_MAPPED: Final = 1 << 31
 
 _TAKEN: Final = struct.Struct("<HiH")  # RPDO1: control word, target, max torque
 _MEASURED: Final = struct.Struct("<Hih")  # TPDO1: status word, position, torque
-_MORE: Final = struct.Struct("<IH")  # TPDO2: digital inputs, error code, and where it homes its mode
+_MORE: Final = struct.Struct("<IH")  # TPDO2: digital inputs, error code, and with homing the mode
 _LATCHED: Final = struct.Struct("<Hi")  # TPDO3, TPDO4: touch probe status, position at a rising, falling edge
 
 
 class _Node:
-    """One drive, and what is known of it."""
+    """One drive, and its present state."""
 
     def __init__(self, described: Mapping[str, Any], axis: Mapping[str, Any]) -> None:
         self.described, self.axis_described = described, axis
@@ -72,14 +73,14 @@ class _Node:
         self.mode = AXIS_MODES[axis["drive"]["mode"]]
         self.drive: DriveAxis | None = None
         self.emulated = False
-        self.torque = False  # it has cst
-        self.rare: Sequence[od.Object] = ()  # what is sent in RPDO2, when it changes
+        self.torque = False  # it supports cst
+        self.rare: Sequence[od.Object] = ()  # objects of RPDO2, which is sent when they change
         self.sent_rare = b""
         self.mode_display = 0
         number = described["probe_latch"]
         self.latch = ProbeLatch(number) if number else None  # reads the status
-        self.stored: list[int | None] = [0, 0]  # at a rising and at a falling edge; something until it is heard
-        self.fresh = False  # TPDO1 has come since the last SYNC
+        self.stored: list[int | None] = [0, 0]  # at a rising and at a falling edge; not None until the first message
+        self.fresh = False  # TPDO1 was received since the last SYNC
         self.data = (0, 0, 0)
         self.inputs = 0
         self.heard_s = 0.0
@@ -87,7 +88,7 @@ class _Node:
         self.started_s = 0.0
         self.lost = False
         self.setting_up: threading.Thread | None = None
-        self.again_s = math.inf  # when it is to be set up again
+        self.again_s = math.inf  # time of the next set-up
 
     @property
     def called(self) -> str:
@@ -101,7 +102,7 @@ class _Node:
 class CanopenBus(FieldBus):
     """The drives of one bus of a machine file.
 
-    Raises TaktError where something is not as the machine file says."""
+    Raises TaktError if the bus does not match the machine file."""
 
     rhythm = "SYNC"
 
@@ -138,7 +139,7 @@ class CanopenBus(FieldBus):
     # --- before motion ---
 
     def load(self, bitrate: int) -> float:
-        """Share of the bit rate that the messages of a cycle take at the most."""
+        """Returns the largest share of the bit rate [bit/s] that the messages of a cycle use."""
         bits = frame_bits(0) + len(self._nodes) * (frame_bits(_TAKEN.size) + frame_bits(_MEASURED.size))
         return bits / bitrate / self.period_s
 
@@ -172,7 +173,7 @@ class CanopenBus(FieldBus):
             self._start_node(node)
 
     def _listen(self) -> None:
-        """Nobody else may be master here: raises TaktError at the start; one that comes later is said."""
+        """Detects another master. Raises TaktError at the start; later it is only reported."""
         own = int(self.described["node"])
         heard: list[str] = []
         network = self._link.network
@@ -203,7 +204,8 @@ class CanopenBus(FieldBus):
         network.subscribe(HEARTBEAT + node.id, lambda _id, data, _s: self._on_heartbeat(node, data))
 
     def _find(self) -> None:
-        """Every drive answers within its time, else none moves."""
+        """Waits for every drive, each for its own time. Raises TaktError if one does not answer; then no drive
+        moves."""
         begin_s = time.monotonic()
         missing = list(self._nodes)
         while missing:
@@ -231,7 +233,7 @@ class CanopenBus(FieldBus):
         )
 
     def _set_up(self, node: _Node, sdo: Sdo) -> None:
-        """Everything that a drive is told before it is operational. Raises TaktError."""
+        """Writes all settings of a drive before it becomes operational. Raises TaktError."""
         try:
             self._check(node, sdo)
             self._write_objects(node, sdo)
@@ -304,7 +306,7 @@ class CanopenBus(FieldBus):
         target = od.TARGET_POSITION if node.mode is Mode.CYCLIC_POSITION else od.TARGET_VELOCITY
         _map_one(sdo, 0x1400, RPDO1 + node.id, 1, (od.CONTROL_WORD, target, od.MAX_TORQUE))
         if node.rare:
-            # At SYNC, too: the mode must not change before the set point that belongs to it.
+            # At SYNC, too: the mode must not change before its set point.
             _map_one(sdo, 0x1401, RPDO2 + node.id, 1, node.rare)
         _map_one(sdo, 0x1800, TPDO1 + node.id, 1, (od.STATUS_WORD, od.POSITION, od.TORQUE))
         mode = [od.MODE_DISPLAY] if node.described.get("homing") else []
@@ -317,7 +319,7 @@ class CanopenBus(FieldBus):
                 sdo.try_to_write(index, 5, INPUTS_AGAIN_MS, 16)
             del others[2:]
         for index, first in others:
-            with contextlib.suppress(SdoError):  # most have no more
+            with contextlib.suppress(SdoError):  # most drives have no more
                 if not sdo.read(index, 1) & NOT_MAPPED:
                     sdo.write(index, 1, NOT_MAPPED | first + node.id, 32)
 
@@ -327,7 +329,7 @@ class CanopenBus(FieldBus):
         node.heard_s = node.started_s = time.monotonic()
         self._link.send(NMT_COMMAND, bytes((START, node.id)))
 
-    # --- what comes in ---
+    # --- received messages ---
 
     def _on_measured(self, node: _Node, data: bytes) -> None:
         if len(data) >= _MEASURED.size:
@@ -367,7 +369,8 @@ class CanopenBus(FieldBus):
             self._say(f"{node.named} is heard again")
 
     def _again(self, node: _Node) -> None:
-        """Sets a drive up that has started anew, beside the cycle; where that fails, once more after a while."""
+        """Sets up a restarted drive in a thread beside the cycle; after a failure it is repeated once AGAIN_S has
+        passed."""
         node.operational = node.fresh = False
         node.again_s = math.inf
 
@@ -391,7 +394,7 @@ class CanopenBus(FieldBus):
                 self._again(node)
 
     def _watch(self, now_s: float) -> None:
-        """Own signs of life, and those of the drives; in real time."""
+        """Sends the own heartbeat and supervises those of the drives; in real time."""
         if now_s - self._own_beat_s >= self._heartbeat_s:
             self._own_beat_s = now_s
             self._link.send(HEARTBEAT + int(self.described["node"]), bytes((OPERATIONAL,)))
@@ -485,7 +488,7 @@ class CanopenBus(FieldBus):
     # --- the end ---
 
     def close(self, within_s: float = 2.0) -> None:
-        """Brakes what moves along the quick stop ramps, switches off, and leaves the bus."""
+        """Brakes moving drives along their quick stop ramps, switches off, and leaves the bus."""
         end_s = time.monotonic() + within_s
         with contextlib.suppress(TaktError):
             if not self._simulated:
@@ -501,7 +504,7 @@ class CanopenBus(FieldBus):
 
 
 def _map_one(sdo: Sdo, index: int, cob_id: int, transmission: int, entries: Sequence[od.Object]) -> None:
-    """Has a message carry these objects: switched off, mapped, and on again, as CiA 301 wants it."""
+    """Maps these objects into a message: disabled, mapped, and enabled again, as CiA 301 requires."""
     mapping = index + 0x200
     sdo.write(index, 1, NOT_MAPPED | cob_id, 32)
     sdo.write(index, 2, transmission, 8)
@@ -513,7 +516,8 @@ def _map_one(sdo: Sdo, index: int, cob_id: int, transmission: int, entries: Sequ
 
 
 def nodes_on(link: CanLink, wait_s: float = 0.5) -> list[int]:
-    """Nodes that answer a question for their device type. Messages must be taken in meanwhile."""
+    """Returns the nodes that answer a request for their device type within about `wait_s`. Messages must be received
+    meanwhile."""
     found: set[int] = set()
     for node in range(1, 128):
         link.network.subscribe(0x580 + node, lambda can_id, _data, _s: found.add(can_id - 0x580))

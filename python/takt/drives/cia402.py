@@ -1,6 +1,7 @@
-"""CiA 402 (IEC 61800-7-201): the power state machine of a drive, from both ends, and the modes of operation.
+"""CiA 402 (IEC 61800-7-201): the power state machine of a drive, on the master's and on the drive's side, and the modes
+of operation.
 
-Nothing here knows a bus: control and status words come in and go out as numbers.
+Independent of the bus: control and status words are plain numbers.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from typing import Final
 
 
 class State(enum.Enum):
-    """Of a drive's power stage."""
+    """State of a drive's power stage."""
 
     NOT_READY_TO_SWITCH_ON = "not ready to switch on"
     SWITCH_ON_DISABLED = "switch on disabled"
@@ -24,7 +25,7 @@ class State(enum.Enum):
 
 
 class Command(enum.Enum):
-    """What a control word asks for."""
+    """The command in a control word."""
 
     SHUTDOWN = "shutdown"
     SWITCH_ON = "switch on"  # in OPERATION_ENABLED: disable operation
@@ -35,7 +36,7 @@ class Command(enum.Enum):
 
 
 class Mode(enum.IntEnum):
-    """Of operation (0x6060, 0x6061)."""
+    """Mode of operation (0x6060, 0x6061)."""
 
     NONE = 0
     PROFILE_POSITION = 1
@@ -64,14 +65,14 @@ MODE_NAMES: Final = {
 
 
 def supported_modes(word: int) -> list[str]:
-    """Names of the modes in the object "supported drive modes" (0x6502)."""
+    """Returns the names of the modes in the object "supported drive modes" (0x6502)."""
     return [name for mode, name in MODE_NAMES.items() if mode and word >> (mode - 1) & 1]
 
 
 # Control word (0x6040).
 SWITCH_ON_BIT: Final = 1 << 0
 ENABLE_VOLTAGE_BIT: Final = 1 << 1
-NOT_QUICK_STOP_BIT: Final = 1 << 2  # low asks for a quick stop
+NOT_QUICK_STOP_BIT: Final = 1 << 2  # low commands a quick stop
 ENABLE_OPERATION_BIT: Final = 1 << 3
 HOMING_START_BIT: Final = 1 << 4
 FAULT_RESET_BIT: Final = 1 << 7
@@ -86,7 +87,7 @@ CONTROL_WORDS: Final = {
     Command.FAULT_RESET: 0x0080,
 }
 
-# Status word (0x6041): which bits tell the state, and how they are in it.
+# Status word (0x6041): mask and value of the bits that encode each state.
 STATE_BITS: Final = {
     State.NOT_READY_TO_SWITCH_ON: (0x4F, 0x00),
     State.SWITCH_ON_DISABLED: (0x4F, 0x40),
@@ -99,7 +100,7 @@ STATE_BITS: Final = {
 }
 VOLTAGE_ENABLED_BIT: Final = 1 << 4
 WARNING_BIT: Final = 1 << 7
-REMOTE_BIT: Final = 1 << 9  # the control word is obeyed
+REMOTE_BIT: Final = 1 << 9  # the control word is in effect
 TARGET_REACHED_BIT: Final = 1 << 10
 INTERNAL_LIMIT_BIT: Final = 1 << 11
 FOLLOWS_BIT: Final = 1 << 12  # csp, csv, cst: the set point is followed; homing: attained
@@ -107,7 +108,7 @@ FOLLOWING_ERROR_BIT: Final = 1 << 13  # csp; homing: error
 
 
 def state_of(status_word: int) -> State | None:
-    """The state that a status word tells; None: its bits are those of no state."""
+    """Returns the state in a status word; None if its bits match no state."""
     for state, (mask, value) in STATE_BITS.items():
         if status_word & mask == value:
             return state
@@ -115,8 +116,8 @@ def state_of(status_word: int) -> State | None:
 
 
 def command_of(control_word: int, before: int) -> Command:
-    """What a control word asks for, given the one before it (the reset is an edge). With the reset bit high and no edge
-    the other bits count, as the standard leaves it open and drives do."""
+    """Returns the command in a control word, given the previous one (the reset is an edge). With the reset bit high and
+    no edge the other bits count, as the standard leaves it open and drives do."""
     if control_word & ~before & FAULT_RESET_BIT:
         return Command.FAULT_RESET
     if not control_word & ENABLE_VOLTAGE_BIT:
@@ -128,8 +129,8 @@ def command_of(control_word: int, before: int) -> Command:
     return Command.ENABLE_OPERATION if control_word & ENABLE_OPERATION_BIT else Command.SWITCH_ON
 
 
-# By state and command: the number of the transition in the standard, and where it leads. What is not here changes
-# nothing. Transitions 0, 1, 13 and 14 are the drive's own.
+# By state and command: number of the transition in the standard, and new state. Other commands have no effect.
+# Transitions 0, 1, 13 and 14 are the drive's own.
 TRANSITIONS: Final[dict[tuple[State, Command], tuple[int, State]]] = {
     (State.SWITCH_ON_DISABLED, Command.SHUTDOWN): (2, State.READY_TO_SWITCH_ON),
     (State.READY_TO_SWITCH_ON, Command.SWITCH_ON): (3, State.SWITCHED_ON),
@@ -153,24 +154,24 @@ STAYS_AFTER_QUICK_STOP: Final = range(5, 9)  # option codes (0x605A) with which 
 
 
 def after(state: State, command: Command, quick_stop_option: int = 2) -> State:
-    """The state after one command."""
+    """Returns the state after one command."""
     if (state, command) == (State.QUICK_STOP_ACTIVE, Command.ENABLE_OPERATION):
         if quick_stop_option not in STAYS_AFTER_QUICK_STOP:
-            return state  # transition 16 exists only where the quick stop does not end by itself
+            return state  # transition 16 exists only if the quick stop does not end by itself
     elif command is Command.FAULT_RESET and state is not State.FAULT:
         return state
     return TRANSITIONS.get((state, command), (0, state))[1]
 
 
-# --- a master's end ---
+# --- the master's side ---
 
 _ORDER: Final = (State.SWITCH_ON_DISABLED, State.READY_TO_SWITCH_ON, State.SWITCHED_ON, State.OPERATION_ENABLED)
-_UP: Final = {  # to the next one of that order
+_UP: Final = {  # to the next state of that order
     State.SWITCH_ON_DISABLED: Command.SHUTDOWN,
     State.READY_TO_SWITCH_ON: Command.SWITCH_ON,
     State.SWITCHED_ON: Command.ENABLE_OPERATION,
 }
-_HOLD: Final = {  # a state, which is also how it is reached from those above it
+_HOLD: Final = {  # the command that holds a state also reaches it from the higher states
     State.SWITCH_ON_DISABLED: Command.DISABLE_VOLTAGE,
     State.READY_TO_SWITCH_ON: Command.SHUTDOWN,
     State.SWITCHED_ON: Command.SWITCH_ON,
@@ -180,10 +181,10 @@ _HOLD: Final = {  # a state, which is also how it is reached from those above it
 
 
 def command_towards(wanted: State, now: State) -> Command | None:
-    """The next command on the shortest way to a state, or the one that holds it; None: nothing but time (or, in FAULT,
-    a reset) helps.
+    """Returns the next command on the shortest path to a state, or the one that holds it; None if only time (or, in
+    FAULT, a reset) helps.
 
-    wanted: one that can be asked for: FAULT, for one, cannot."""
+    wanted: a state that can be commanded. Raises ValueError for others, such as FAULT."""
     if wanted not in _HOLD:
         raise ValueError(f"a drive cannot be commanded into {wanted.value}")
     if now not in _HOLD:
@@ -197,7 +198,7 @@ def command_towards(wanted: State, now: State) -> Command | None:
 
 @dataclass
 class FaultReset:
-    """Acknowledges a fault by rising edges, with pauses that get longer while it does not help."""
+    """Acknowledges a fault by rising edges, with growing pauses while it persists."""
 
     pauses_s: tuple[float, ...] = (0.0, 0.5, 2.0, 5.0)
     edge_s: float = 0.02  # how long the bit stays high
@@ -206,10 +207,10 @@ class FaultReset:
     _high_until_s: float = -1.0
 
     def word(self, now_s: float) -> int:
-        """The control word while the drive is in FAULT and may be reset."""
+        """Returns the control word while the drive is in FAULT and may be reset."""
         if now_s < self._high_until_s:
             return CONTROL_WORDS[Command.FAULT_RESET]
-        if self._high_until_s >= 0:  # low again, so that the next one is an edge
+        if self._high_until_s >= 0:  # low, so that the next reset is an edge
             self._high_until_s = -1.0
             return 0
         if self.tries == 0 and self._next_s == 0.0:
@@ -222,18 +223,18 @@ class FaultReset:
         return CONTROL_WORDS[Command.FAULT_RESET]
 
     def forget(self) -> None:
-        """The fault is gone for good."""
+        """Starts over: the fault was reset."""
         self.tries, self._next_s, self._high_until_s = 0, 0.0, -1.0
 
 
-# --- a drive's end ---
+# --- the drive's side ---
 
 
 @dataclass
 class PowerStateMachine:
-    """The power state machine as a drive has it.
+    """The power state machine on the drive's side.
 
-    quick_stop_option: 0x605A; 5 to 8 stay in QUICK_STOP_ACTIVE once the drive rests.
+    quick_stop_option: 0x605A; 5 to 8 stay in QUICK_STOP_ACTIVE once the drive is at rest.
     """
 
     state: State = State.NOT_READY_TO_SWITCH_ON
@@ -242,15 +243,15 @@ class PowerStateMachine:
     _before: int = 0
 
     def started(self) -> None:
-        """The drive has looked at itself: transition 1."""
+        """Ends the self-test of the drive: transition 1."""
         if self.state is State.NOT_READY_TO_SWITCH_ON:
             self.state = State.SWITCH_ON_DISABLED
 
     def control(self, control_word: int, *, may_enable: bool = True, fault_gone: bool = True) -> State:
-        """Obeys a control word; one transition at most.
+        """Executes a control word, at most one transition. Returns the new state.
 
-        may_enable: the power stage is up, so that transition 4 may be made.
-        fault_gone: the reason of the fault is no more, so that transition 15 may be made.
+        may_enable: the power stage is ready, so transition 4 is allowed.
+        fault_gone: the cause of the fault is removed, so transition 15 is allowed.
         """
         command = command_of(control_word, self._before)
         self._before = control_word
@@ -265,20 +266,20 @@ class PowerStateMachine:
         return self.state
 
     def fault(self, code: int) -> None:
-        """Something is wrong: transition 13. A fault that there is already stays the one that is told."""
+        """Enters the fault reaction: transition 13. An earlier fault keeps its error code."""
         if self.state not in (State.FAULT_REACTION_ACTIVE, State.FAULT):
             self.state = State.FAULT_REACTION_ACTIVE
             self.error_code = code
 
     def rests(self) -> None:
-        """The drive has come to rest: ends a quick stop (transition 12) and a fault reaction (14)."""
+        """Call at rest: ends a quick stop (transition 12) and a fault reaction (14)."""
         if self.state is State.FAULT_REACTION_ACTIVE:
             self.state = State.FAULT
         elif self.state is State.QUICK_STOP_ACTIVE and self.quick_stop_option not in STAYS_AFTER_QUICK_STOP:
             self.state = State.SWITCH_ON_DISABLED
 
     def status_word(self, more: int = 0) -> int:
-        """The status word, with these bits beside those of the state."""
+        """Returns the status word of the state, with the bits of `more` added."""
         word = STATE_BITS[self.state][1]
         if self.state in (State.SWITCHED_ON, State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE):
             word |= VOLTAGE_ENABLED_BIT

@@ -1,5 +1,5 @@
-"""The objects of an emulated EtherCAT drive, read and written through its mailbox (CoE, ETG.1000.6): SDO expedited, in
-one message, and in segments."""
+"""The objects of an emulated EtherCAT drive, read and written through its mailbox (CoE, ETG.1000.6): SDO expedited,
+normal (in one message), and segmented."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ NO_SUBINDEX: Final = 0x0609_0011
 
 
 class AbortError(Exception):
-    """A transfer ends with this code."""
+    """Aborts a transfer with this code."""
 
     def __init__(self, code: int) -> None:
         super().__init__(f"0x{code:08X}")
@@ -33,7 +33,7 @@ class AbortError(Exception):
 
 @dataclass
 class Entry:
-    """A subindex. write: None where it can only be read; it raises AbortError with what it does not like."""
+    """A subindex. write: None if it is read-only; raises AbortError for an invalid value."""
 
     read: Callable[[], bytes]
     write: Callable[[bytes], None] | None = None
@@ -42,7 +42,7 @@ class Entry:
 class SdoServer:
     """Answers requests for the objects of a dictionary.
 
-    mailbox_bytes: of a whole message."""
+    mailbox_bytes: size of a whole message."""
 
     def __init__(self, entries: dict[tuple[int, int], Entry], mailbox_bytes: int) -> None:
         self.entries, self._most = entries, mailbox_bytes - _HEADER_BYTES
@@ -50,15 +50,15 @@ class SdoServer:
 
     def _begin(self) -> None:
         self._key = (0, 0)
-        self._sending: bytes | None = None  # what is left of an upload
-        self._taking: bytearray | None = None  # what has come of a download
+        self._sending: bytes | None = None  # remainder of an upload
+        self._taking: bytearray | None = None  # received part of a download
         self._expected = 0
         self._toggle = 0
 
     def answer(self, kind: int, message: bytes) -> list[tuple[int, bytes]]:
-        """Of a mailbox: kinds and data."""
+        """Returns the replies to a mailbox message, as (mailbox type, data)."""
         if kind != COE:
-            return [(MAILBOX_ERROR, struct.pack("<HH", 1, 2))]  # no such protocol here
+            return [(MAILBOX_ERROR, struct.pack("<HH", 1, 2))]  # unsupported protocol
         if len(message) < 10:
             return [(MAILBOX_ERROR, struct.pack("<HH", 1, 8))]  # too short
         service = int.from_bytes(message[:2], "little") >> 12
@@ -81,7 +81,7 @@ class SdoServer:
 
     def _carry_out(self, body: bytes) -> bytes:
         command = body[0] >> 5
-        if command == 4:  # the other end gives up
+        if command == 4:  # the master aborts
             self._begin()
             return b""
         if command == 0:

@@ -1,4 +1,4 @@
-"""`takt drives`: what is on a field bus, its drives as the process of an engine, and drives without metal."""
+"""`takt drives`: scan a field bus, run its drives as the drive process of an engine, and emulate drives."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def _say(sentence: str) -> None:
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 def drives() -> None:
-    """Drives of metal on a field bus (CiA 402): look, run them for an engine, emulate them."""
+    """Real drives on a field bus (CiA 402): scan, run them for an engine, emulate them."""
 
 
 @drives.command()
@@ -74,7 +74,7 @@ def _scan_ethercat(bus: str) -> int:
 
 
 def _line_of_slave(wire: Wire, slave: Any, position: int) -> str:
-    """Also for those without objects, such as couplers."""
+    """Returns the line of a slave, also of one without objects, such as a coupler."""
     alias = wire.alias(slave)
     sdo = wire.sdo(slave, position)
     sdo.called += f" (alias {alias})" if alias else ""
@@ -123,7 +123,7 @@ def _error(sdo: Objects) -> str:
 @click.option("--node", "number", type=click.IntRange(1, 127), help="CANopen: address of the drive.")
 @click.option("--position", type=click.IntRange(1, 65535), help="EtherCAT: place of the drive, from 1.")
 def info(bus: str, bitrate: int, number: int | None, position: int | None) -> int:
-    """Say all that a drive tells of itself: maker, modes, state, scaling, process data."""
+    """Print all that a drive reports of itself: maker, modes, state, scaling, process data."""
     if is_ethercat(bus):
         return _info_ethercat(bus, position)
     if number is None or position is not None:
@@ -189,7 +189,7 @@ def _facts(sdo: Objects) -> Iterator[tuple[str, str]]:
 @click.argument("file", type=FILE)
 @click.option("--product", metavar="NUMBER", help="ESI with several drives: which one, as 0x10.")
 def device_file(file: Path, product: str | None) -> int:
-    """Say what the maker's file (EDS, ESI) tells of a drive: maker, and which objects of CiA 402 it has."""
+    """Print the contents of the maker's file (EDS, ESI) of a drive: maker, and which objects of CiA 402 it has."""
     try:
         number = None if product is None else int(product, 0)
     except ValueError:
@@ -208,7 +208,7 @@ def device_file(file: Path, product: str | None) -> int:
 
 @contextmanager
 def until_signal(stop: Callable[[], None]) -> Iterator[None]:
-    """SIGINT and SIGTERM call `stop` meanwhile."""
+    """Calls `stop` on SIGINT and SIGTERM while the context is open."""
     before = [signal.signal(number, lambda *_: stop()) for number in (signal.SIGINT, signal.SIGTERM)]
     try:
         yield
@@ -288,7 +288,8 @@ def emulate(machine: Path | None, bus: str | None, nodes: int) -> int:
 def _emulate_ethercat(
     bus: Mapping[str, Any], described: Mapping[str, Any], text: bytes, file_name: str, *, own: bool
 ) -> int:
-    """own: the bus names this end of the wire, else that of the master, as in a machine file."""
+    """Emulates the slaves of a bus. own: the bus names this end of the wire; else that of the master, as in a machine
+    file."""
     name = parse_ethercat(bus["bus"])
     name = name if own else other_end(name)
     ring = other_end(bus["ring"]) if bus.get("ring") else None
@@ -302,7 +303,7 @@ def _emulate_ethercat(
 
 
 def standing_alone(bus: str, nodes: int) -> tuple[bytes, str, Mapping[str, Any]]:
-    """A machine with so many drives on this bus."""
+    """Returns text, file name and description of a machine with this number of drives on a bus."""
     import json
 
     from takt import _core

@@ -1,5 +1,5 @@
-"""`takt demo real_drives`: the six axes with emulated drives on a field bus, each part a process of its own: EtherCAT
-where a pair of Ethernet interfaces can be made, else CANopen over UDP."""
+"""`takt demo real_drives`: the six axes with emulated drives on a field bus, each part in its own process: EtherCAT if
+a pair of Ethernet interfaces can be made, else CANopen over UDP."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from takt.drives.ethercat_link import ethernet_socket, package
 from takt.errors import TaktError
 
 NAME: Final = "real_drives"
-OF: Final = "six_axes"  # whose scenario it is
-ENDS: Final = ("ec0", "ec1")  # of the wire in ethercat.yaml
+OF: Final = "six_axes"  # demo whose scenario it uses
+ENDS: Final = ("ec0", "ec1")  # ends of the wire in ethercat.yaml
 READY_WITHIN_S: Final = 120.0  # busy hosts take their time
 
 
 @contextlib.contextmanager
 def machine_file(folder: Path, say: Callable[[str], None]) -> Iterator[Path]:
-    """The machine file whose bus can be had here; its wire is there meanwhile."""
+    """Yields the machine file whose bus is available on this host; its wire exists while the context is open."""
     made = False
     try:
         try:
@@ -43,7 +43,7 @@ def machine_file(folder: Path, say: Callable[[str], None]) -> Iterator[Path]:
 
 
 def _make_wire() -> bool:
-    """False: it is there already."""
+    """Makes the pair of interfaces. Returns False if it exists already."""
     known = {name for _, name in socket.if_nameindex()}
     if known.issuperset(ENDS):
         return False
@@ -65,7 +65,8 @@ def _ip(*arguments: str) -> None:
 
 @contextlib.contextmanager
 def processes(machine: Path, url: str, directory: Path, say: Callable[[str], None]) -> Iterator[None]:
-    """The drives and the process between them and the engine; what they say goes into files of the directory."""
+    """Runs the emulated drives and the drive process of the engine; their output is written to files of the
+    directory."""
     with (
         _process("emulate", [str(machine)], directory, "emulated drives"),
         _process("run", [str(machine), "--url", url], directory, "ready: "),

@@ -1,4 +1,4 @@
-"""What the maker's file says of a drive: EDS (CiA 306) for CANopen, ESI (ETG.2000) for EtherCAT. A machine file is
+"""Reads the device file of a drive's maker: EDS (CiA 306) for CANopen, ESI (ETG.2000) for EtherCAT. A machine file is
 checked against it before any bus is opened (AX-87)."""
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from takt.drives.probe import latches
 from takt.errors import TaktError
 
 LARGEST_BYTES: Final = 64 << 20
-MOST_SHOWN: Final = 160  # characters of what others say of a file
+MOST_SHOWN: Final = 160  # characters of a quotation from a file
 DOMAIN, VAR, ARRAY, RECORD = 2, 7, 8, 9  # kinds of objects (CiA 301)
-# Of the numbers among the data types (CiA 301), signed and unsigned integers of 8 to 64 bits and reals.
+# Bits of the numeric data types (CiA 301): signed and unsigned integers of 8 to 64 bits, and reals.
 EDS_BITS: Final = {
     **{0x02: 8, 0x03: 16, 0x04: 32, 0x10: 24, 0x12: 40, 0x13: 48, 0x14: 56, 0x15: 64},
     **{0x05: 8, 0x06: 16, 0x07: 32, 0x16: 24, 0x18: 40, 0x19: 48, 0x1A: 56, 0x1B: 64},
@@ -32,7 +32,7 @@ _OBJECT = re.compile(r"([0-9a-f]{4})(?:sub([0-9a-f]{1,2}))?")
 
 @dataclass(frozen=True)
 class Described:
-    """An object. bits: 0 where it has no fixed length. mappable: None where the file does not say."""
+    """An object in a device file. bits: 0 if it has no fixed length. mappable: None if the file does not specify it."""
 
     name: str
     bits: int
@@ -42,20 +42,20 @@ class Described:
 
 @dataclass
 class DeviceFile:
-    """One drive of a file."""
+    """One drive of a device file."""
 
     path: Path
     name: str
     vendor: int
     product: int
     objects: dict[tuple[int, int], Described] = field(default_factory=dict)
-    pdos: dict[int, list[str]] = field(default_factory=dict)  # ESI: what each message has by default
+    pdos: dict[int, list[str]] = field(default_factory=dict)  # ESI: default mapping of each message
 
 
 def read_device_file(path: Path, product: int | None = None) -> DeviceFile:
-    """Reads EDS, or ESI where the name ends with .xml. Raises TaktError.
+    """Reads a device file: ESI if the name ends in .xml, else EDS. Raises TaktError.
 
-    product: which drive, where the file has several."""
+    product: product code of the drive if the file has several; None: its only one."""
     try:
         if path.stat().st_size > LARGEST_BYTES:
             raise TaktError(f"{path}: larger than {LARGEST_BYTES >> 20} MiB, no such file of a drive")
@@ -73,7 +73,7 @@ def read_device_file(path: Path, product: int | None = None) -> DeviceFile:
 
 
 def _eds(path: Path, data: bytes) -> DeviceFile:
-    ini = RawConfigParser(inline_comment_prefixes=(";",))  # keys in lower case: their case says nothing
+    ini = RawConfigParser(inline_comment_prefixes=(";",))  # keys in lower case: they are case-insensitive
     try:
         ini.read_string(data.decode("utf-8-sig", "replace"), str(path))
         sections = {name.lower(): _Section(name, ini[name]) for name in ini.sections()}
@@ -93,7 +93,7 @@ def _eds(path: Path, data: bytes) -> DeviceFile:
 
 
 class _Section:
-    """Of an EDS file. Empty values are as none."""
+    """A section of an EDS file. Empty values count as missing."""
 
     def __init__(self, name: str, values: Mapping[str, str]) -> None:
         self.name, self._values = name, values
@@ -105,7 +105,7 @@ class _Section:
         return self._values.get(key.lower(), "").strip()
 
     def number(self, key: str, default: int | None = 0) -> int:
-        """Raises ValueError; also without a value, where the default is None."""
+        """Returns the number of a key. Raises ValueError if it is invalid, or missing while the default is None."""
         text = self.text(key)
         try:
             if not text and default is not None:
@@ -119,11 +119,11 @@ class _Section:
 def _add_eds(
     found: DeviceFile, index: int, subindex: int | None, section: _Section, sections: Mapping[str, _Section]
 ) -> None:
-    """An object, or all elements of an array that are described as one (CompactSubObj)."""
+    """Adds an object, or all elements of an array that are described as one (CompactSubObj)."""
     kind = section.number("ObjectType", VAR)
     count = min(section.number("CompactSubObj"), 254) if kind in (ARRAY, RECORD) and subindex is None else 0
     if kind not in (VAR, DOMAIN) and not count:
-        return  # its members have sections of their own
+        return  # its members have their own sections
     name, data_type, access = (
         section.text("ParameterName"),
         section.number("DataType", None),
@@ -131,7 +131,7 @@ def _add_eds(
     )
     if not section.has("AccessType") and kind != DOMAIN:
         raise ValueError(f"[{section.name}] AccessType: expected ro, wo, rw, rwr, rww or const, it is missing")
-    own = sections.get(f"{data_type:x}sub1")  # types that editors define: their base is there
+    own = sections.get(f"{data_type:x}sub1")  # type defined by the editor of the file: holds its base type
     bits = EDS_BITS.get(own.number("DefaultValue") if own and data_type > max(EDS_BITS) else data_type, 0)
     writable = "w" in access.lower() or not section.has("AccessType")
     one = Described(name, bits, writable, section.number("PDOMapping") != 0)
@@ -150,7 +150,7 @@ def _add_eds(
 def _esi(path: Path, data: bytes, product: int | None) -> DeviceFile:
     try:
         root = ElementTree.fromstring(data)
-    except (ElementTree.ParseError, LookupError, ValueError) as error:  # what is no XML, or has no known encoding
+    except (ElementTree.ParseError, LookupError, ValueError) as error:  # not XML, or of an unknown encoding
         raise TaktError(f"{path}: no XML that can be read: {_line(error)}") from None
     try:
         return _device(path, root, product)
@@ -159,7 +159,7 @@ def _esi(path: Path, data: bytes, product: int | None) -> DeviceFile:
 
 
 def _number(text: str | None) -> int:
-    """ "#x6040" or "24640"."""
+    """Returns the number in a text such as "#x6040" or "24640"."""
     text = (text or "").strip().lower()
     try:
         return int(text[2:], 16) if text.startswith("#x") else int(text, 0)
@@ -168,7 +168,7 @@ def _number(text: str | None) -> int:
 
 
 def _number_at(element: ElementTree.Element, name: str) -> int:
-    """The number of an element that must be there."""
+    """Returns the number of a required element."""
     try:
         return _number(element.findtext(name))
     except ValueError as error:
@@ -239,18 +239,18 @@ def _flags(entry: ElementTree.Element, name: str) -> Described:
 
 
 def _line(error: Exception) -> str:
-    """Of any error, in printable characters and not too long: it may quote the file."""
+    """Returns an error in one line of printable characters and of limited length: it may quote the file."""
     tells = isinstance(error, ValueError | ElementTree.ParseError) or type(error) is LookupError
     kind = "" if tells else f"{type(error).__name__}: "
     text = "".join(c if c.isprintable() else "?" for c in " ".join(str(error).split()))
     return kind + (text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]} ...")
 
 
-# --- a machine file against it ---
+# --- check of a machine file ---
 
 
 def against(device: DeviceFile, described: Mapping[str, Any], axis: Mapping[str, Any]) -> list[str]:
-    """What does not fit between a file and the entry of its drive in a machine file."""
+    """Returns the mismatches between a device file and the entry of its drive in a machine file; empty if none."""
     if not device.objects:
         return []  # ESI files need not have a dictionary
     problems = []
@@ -286,8 +286,8 @@ def _needed(described: Mapping[str, Any], mode: Mode) -> list[od.Object]:
 
 
 def with_device_files(bus: Mapping[str, Any], machine: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """The bus with vendor and product of the files of its drives, where they are not given. Raises TaktError with the
-    first drive that does not fit its file."""
+    """Returns the bus with vendor and product of its drives' device files added where they are not given. Raises
+    TaktError for the first drive that does not match its file."""
     axes = {axis["name"]: axis for axis in machine["axes"]}
     drives = []
     for one in bus["drives"]:

@@ -1,7 +1,7 @@
-"""A CiA 402 drive without metal: the power state machine and its modes before the simulated servo of the engine, which
-has inertia, friction, load, encoder and switches as the machine file says.
+"""A CiA 402 drive in software: the power state machine and its modes in front of the simulated servo of the engine,
+which has inertia, friction, load, encoder and switches as in the machine file.
 
-It knows no bus: that writes and reads its objects, and has it step.
+It is independent of the bus, which reads and writes its objects and calls `step`.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from takt.drives.scaling import Scaling, Unwrapped, signed
 AT_REST_COUNTS: Final = 0.5  # in a cycle
 HOME_HERE: Final = (35, 37)  # homing methods: the present position
 HOME_AT: Final = {17: "limit_negative", 18: "limit_positive"}  # the edge of a switch
-HOME_PULSE: Final = {33: -1, 34: 1}  # the next index pulse that way
+HOME_PULSE: Final = {33: -1, 34: 1}  # the next index pulse in that direction
 HOMING_METHODS: Final = (*HOME_HERE, *HOME_AT, *HOME_PULSE)
 FOLLOWING: Final = 0x8611
 
@@ -43,7 +43,7 @@ FOLLOWING: Final = 0x8611
 class EmulatedDrive:
     """One drive; each step is a period of its servo.
 
-    rated_torque: Nm, or N; 0x6076 tells it in thousandths.
+    rated_torque (of the scaling): Nm, or N; 0x6076 holds it in thousandths.
     """
 
     def __init__(self, machine: bytes, file_name: str, axis: str, scaling: Scaling, inputs: dict[str, int]) -> None:
@@ -56,17 +56,17 @@ class EmulatedDrive:
         self.values = {index: entry.default for index, entry in od.OBJECTS.items()}
         self.values[od.RATED_TORQUE.index] = round(1000 * scaling.rated_torque)
         self.period_s = 0.001
-        self.held_fault = 0  # this fault lasts: it cannot be reset
-        self.never_ready = False  # the power stage never comes up
+        self.held_fault = 0  # lasting fault, which cannot be reset; 0: none
+        self.never_ready = False  # the power stage never becomes ready
         self._counts = Unwrapped()  # of the encoder
         self._increments = 0  # unwrapped: position of the encoder
         self._slipped = 0  # increments: offset of the encoder from the motor
         self._measured: dict[str, Any] = {}
         self.homing_velocities = [200_000, 20_000]  # 0x6099: to a switch, to its edge or an index pulse
         self._homed = self._homing_failed = False
-        self._homing_sense = 0  # which way it searches; 0: it does not
-        self._leaving = False  # the switch was found, its edge is looked for
-        self._pulses = 0  # seen when the search began
+        self._homing_sense = 0  # direction of the search; 0: none
+        self._leaving = False  # the switch was found; searches its edge
+        self._pulses = 0  # index pulses at the beginning of the search
         self._homing_speed = 0.0  # increments/s
         self._home = 0  # increments: subtracted from the position
         self._edges = [0, 0]  # of the touch probe, rising and falling
@@ -80,7 +80,7 @@ class EmulatedDrive:
     # --- objects ---
 
     def write(self, entry: od.Object, value: int) -> None:
-        """As process data or SDO bring it."""
+        """Writes an object, from process data or SDO."""
         self.values[entry.index] = value
         if entry is od.QUICK_STOP_OPTION:
             self.machine.quick_stop_option = value
@@ -89,7 +89,7 @@ class EmulatedDrive:
         return self.values[entry.index]
 
     def restart(self) -> None:
-        """As after power has come back, but that the axis is where it was."""
+        """Restarts the drive, as after its supply has returned; the axis keeps its position."""
         fresh = PowerStateMachine(quick_stop_option=self.read(od.QUICK_STOP_OPTION))
         fresh.started()
         self.machine, self._ramp, self._target = fresh, None, None
@@ -100,7 +100,7 @@ class EmulatedDrive:
     # --- faults ---
 
     def fault(self, code: int, *, lasting: bool = False) -> None:
-        """Something is wrong with the drive."""
+        """Puts the drive into a fault with this code (0x603F). lasting: it cannot be reset."""
         self.held_fault = code if lasting else 0
         self.machine.fault(code)
 
@@ -119,13 +119,13 @@ class EmulatedDrive:
 
     @property
     def moving(self) -> bool:
-        """It drives, brakes, or has not come to rest yet."""
+        """It drives, brakes, or is not at rest yet."""
         resting = abs(self._speed) * self.period_s <= AT_REST_COUNTS
         driving = (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION_ACTIVE)
         return self.machine.state in driving or not resting
 
     def step(self) -> None:
-        """Obeys the control word and moves for one period; what was measured at its end is in the objects then."""
+        """Executes the control word and moves for one period; afterwards the objects hold the actual values."""
         word = self.values[od.CONTROL_WORD.index]
         before = self.machine.state
         enabling = command_of(word, word) is Command.ENABLE_OPERATION
@@ -149,7 +149,7 @@ class EmulatedDrive:
         self._ramp = None
 
     def _what_to_do(self, state: State, enabling: bool) -> dict[str, Any]:
-        """What the servo is told in this period."""
+        """Returns the commands of the servo for this period."""
         told = dict(self._told)
         told["torque_limit_nm"] = self._torque_limit()
         if state is State.SWITCHED_ON and enabling and not self.never_ready:
@@ -210,7 +210,7 @@ class EmulatedDrive:
     # --- homing ---
 
     def _search(self) -> None:
-        """One period of homing by the method of 0x6098: the speed of the next one, and what was found."""
+        """Carries out one period of homing by the method of 0x6098: computes the speed of the next one."""
         method = self.values[od.HOMING_METHOD.index]
         if self.values[od.CONTROL_WORD.index] & HOMING_START_BIT and not (self._homed or self._homing_failed):
             if self._homing_sense == 0:
@@ -227,7 +227,7 @@ class EmulatedDrive:
         self._homing_speed += max(-most, min(most, wanted - self._homing_speed))
 
     def _look(self, method: int) -> None:
-        """Ends the search where its reference, or the wrong switch, was found."""
+        """Ends the search at its reference, or at the wrong switch."""
         if method in HOME_HERE:
             self._found(self._increments)
         elif method in HOME_PULSE:
@@ -249,7 +249,7 @@ class EmulatedDrive:
         self._homed = True
 
     def _braked(self) -> float:
-        """The speed of the next period on the quick stop ramp."""
+        """Returns the velocity [counts/s] of the next period on the quick stop ramp."""
         ratio = float(self.scaling.increments_per_count)
         speed = self._speed if self._ramp is None else self._ramp
         less = self.values[od.QUICK_STOP_DECELERATION.index] / ratio * self.period_s
@@ -265,7 +265,7 @@ class EmulatedDrive:
         self._latch(measured)
 
     def _latch(self, measured: dict[str, Any]) -> None:
-        """The touch probes, both on the same wire: where the motor was at an edge."""
+        """Updates the touch probes, both on the same wire: latches the position of the motor at an edge."""
         function, status = self.values[od.PROBE_FUNCTION.index], 0
         edges = [measured["probe_rises"], measured["probe_falls"]]
         for number, shift in ((1, 0), (2, 8)):

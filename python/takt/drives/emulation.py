@@ -1,9 +1,9 @@
 """Emulated drives on a CANopen bus: nodes with SDO server, heartbeat, SYNC and process data, each with an EmulatedDrive
-(`takt drives emulate`). Faults and broken cables come on command.
+(`takt drives emulate`). Commands cause faults and broken cables.
 
-Time: with each SYNC a drive lives through one period (0x1006). By the clock (0x2000 = 0) it first sends what it has
-measured and then takes over its set point, as drives do; without SYNC it goes on by itself. In simulated time (0x2000 =
-1) a SYNC is a whole cycle: the set point is taken, carried out, and what came of it is sent.
+Time: each SYNC advances a drive by one period (0x1006). With the clock of the host (0x2000 = 0) it first sends its
+actual values and then applies its set point, as drives do; without SYNC it continues by the clock. In simulated time
+(0x2000 = 1) a SYNC is a whole cycle: the set point is applied, executed, and the resulting values are sent.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from takt.errors import TaktError
 
 HEARTBEAT_LOST: Final = 0x8130
 SYNC_LOST: Final = 0x8700
-SILENCE_S: Final = 0.1  # without SYNC, before it is missed
-MOST_MADE_UP_S: Final = 0.2  # of the clock, where the host gave no time
+SILENCE_S: Final = 0.1  # without SYNC, until it counts as lost
+MOST_MADE_UP_S: Final = 0.2  # most time that is caught up with after a pause of the process
 OPERATIONAL: Final = 5
 PRE_OPERATIONAL: Final = 127
 NOT_MAPPED: Final = 1 << 31
@@ -33,7 +33,7 @@ _TPDOS: Final = (0x1800, 0x1801, 0x1802, 0x1803)
 
 
 def _dictionary(product: int) -> Any:
-    """canopen's object dictionary of such a drive."""
+    """Returns canopen's object dictionary of an emulated drive."""
     _, canopen = packages()
     dictionary = canopen.objectdictionary
     datatypes = dictionary.datatypes
@@ -86,7 +86,7 @@ def _dictionary(product: int) -> Any:
 
 
 class _Map:
-    """One message of process data, as its mapping says."""
+    """One message of process data with its mapping."""
 
     def __init__(self, cob_id: int, transmission: int, again_s: float, entries: Sequence[od.Object]) -> None:
         self.cob_id, self.transmission, self.again_s = cob_id, transmission, again_s
@@ -94,11 +94,11 @@ class _Map:
         self.entries = entries
         kinds = {(8, False): "B", (8, True): "b", (16, False): "H", (16, True): "h", (32, False): "I", (32, True): "i"}
         self._struct = struct.Struct("<" + "".join(kinds[e.bits, e.signed] for e in entries))
-        self.waiting: bytes | None = None  # came, and is taken over at the next SYNC
+        self.waiting: bytes | None = None  # received; applied at the next SYNC
         self.sent = b""
 
     def take(self, drive: EmulatedDrive, data: bytes) -> bool:
-        """False: it is shorter than mapped."""
+        """Writes the data of a message to the drive. Returns False if it is shorter than mapped."""
         if len(data) < self._struct.size:
             return False
         for entry, value in zip(self.entries, self._struct.unpack_from(data), strict=True):
@@ -121,11 +121,11 @@ class EmulatedNode:
         self.state = PRE_OPERATIONAL
         self.cut = self.off = False
         self.heartbeat_s = 0.0
-        self.watched: tuple[int, float] | None = None  # a node, and how long it may be silent
+        self.watched: tuple[int, float] | None = None  # a node, and its longest silence [s]
         self.master_heard_s: float | None = None
         self.beat_s = 0.0
         self.sync_s: float | None = None  # the last one
-        self.lived_s = 0.0  # until when the drive has lived, without SYNC
+        self.lived_s = 0.0  # time up to which the drive was stepped without SYNC
         self.clock_is_sync = False
         self.rpdos: list[_Map] = []
         self.tpdos: list[_Map] = []
@@ -162,7 +162,7 @@ class EmulatedNode:
         return int.from_bytes(self.local.get_data(index, subindex), "little")
 
     def map(self) -> None:
-        """Reads the mappings, as a node does that becomes operational."""
+        """Reads the mappings, as a node does when it becomes operational."""
         self.rpdos = list(filter(None, (self._mapped(index) for index in _RPDOS)))
         self.tpdos = list(filter(None, (self._mapped(index) for index in _TPDOS)))
 
@@ -176,7 +176,7 @@ class EmulatedNode:
 
 
 class Emulation(Commanded):
-    """Nodes on a bus. `run` serves them until `stop`; commands are texts as `takt drives emulate` reads them."""
+    """Nodes on a bus. `run` serves them until `stop`; commands are texts of `takt drives emulate`."""
 
     def __init__(self, link: Any, nodes: Sequence[EmulatedNode], say: Callable[[str], None]) -> None:
         super().__init__({node.id: node for node in nodes}, say)
@@ -218,12 +218,12 @@ class Emulation(Commanded):
     # --- the bus ---
 
     def route(self, can_id: int) -> bool:
-        """Whether a message gets to anybody: not to a node behind a broken cable."""
+        """Returns whether a message reaches its node: false for a node behind a broken cable."""
         node = self.nodes.get(can_id & 0x7F)
         return node is None or can_id <= 0x80 or self.reaches(node)
 
     def heard(self, can_id: int, data: bytes) -> None:
-        """A message that is no node's own: process data, and signs of life."""
+        """Handles a message that canopen's nodes do not: process data, and heartbeats."""
         if can_id > 0x700:
             for node in self.nodes.values():
                 if node.watched and node.watched[0] == can_id - 0x700 and self.reaches(node):
@@ -257,7 +257,7 @@ class Emulation(Commanded):
     def _on_sync(self, _can_id: int, _data: bytes, _s: float) -> None:
         now_s = time.monotonic()
         live = [node for node in self.nodes.values() if node.state == OPERATIONAL and self.reaches(node)]
-        for node in live:  # what has been measured goes out first: others wait for it
+        for node in live:  # actual values are sent first: the master waits for them
             node.sync_s = node.lived_s = now_s
             if not node.clock_is_sync:
                 self._publish(node)
@@ -326,7 +326,7 @@ class Emulation(Commanded):
 
 
 def emulated_link(bus: str) -> Any:
-    """A link whose network hands everything to the emulated nodes, and nothing to those behind a broken cable."""
+    """Returns a link whose network passes all messages to the emulated nodes, except to those behind a broken cable."""
     base: Any = packages()[1].Network
 
     class Network(base):  # type: ignore[misc]
@@ -361,7 +361,8 @@ def emulated_link(bus: str) -> Any:
 
 
 def emulated_nodes(described: Mapping[str, Any], machine: Mapping[str, Any], text: bytes, file: str) -> list[Any]:
-    """The drives of one bus of a machine file, with the servos that the engine would simulate for their axes."""
+    """Returns the drives of one bus of a machine file, with the servos that the engine would simulate for their
+    axes."""
     axes = {axis["name"]: axis for axis in machine["axes"]}
     nodes = []
     for one in described["drives"]:
@@ -374,7 +375,7 @@ def emulated_nodes(described: Mapping[str, Any], machine: Mapping[str, Any], tex
 
 
 def bus_of(machine: Mapping[str, Any], file: str, bus: str | None) -> list[Mapping[str, Any]]:
-    """The buses of a machine file, or the one of this name."""
+    """Returns the buses of a machine file, or only the one of this name. Raises TaktError if there is none."""
     buses: list[Mapping[str, Any]] = machine["external"].get("buses") or []
     if not buses:
         raise TaktError(f"{file}: has no field buses (external: buses: - bus: canopen:CHANNEL)")

@@ -1,4 +1,4 @@
-"""What can be done to emulated drives while they run, whatever bus they are on: faults, broken cables, supply."""
+"""Commands to emulated drives while they run, on any bus: faults, broken cables, supply."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any, Final
 from takt.drives import objects as od
 from takt.drives.error_texts import error_text
 
-# Object of emulated drives alone (manufacturer specific), the base of their time. 1: one period with each SYNC or
+# Object that only emulated drives have (manufacturer specific): the base of their time. 1: one period with each SYNC or
 # frame, for simulated time; 0: the clock of the host, with supervision of heartbeat and SYNC.
 CLOCK: Final = (0x2000, 0)
 CLOCK_IS_SYNC: Final = 1
@@ -23,7 +23,7 @@ HELP: Final = (
     "fault NODE CODE [lasting] | clear NODE | cut NODE | join NODE | power NODE off|on | stall NODE | "
     "jump NODE INCREMENTS | show | quit (NODE: a number, or all)"
 )
-# Words behind each verb, at least and at most.
+# Smallest and largest number of arguments of each verb.
 _WORDS: Final = {
     "fault": (2, 3), "clear": (1, 1), "cut": (1, 1), "join": (1, 1), "power": (2, 2), "stall": (1, 1), "jump": (2, 2),
     "show": (0, 0), "quit": (0, 0),
@@ -31,11 +31,11 @@ _WORDS: Final = {
 
 
 class Commanded(ABC):
-    """Base of the emulated buses: carries out text commands, as `takt drives emulate` reads them, between bus cycles.
+    """Base of the emulated buses: carries out text commands of `takt drives emulate` between bus cycles.
 
-    fault: a fault with this code (0x603F); lasting: it cannot be reset before clear. clear: ends that, and stall. cut,
-    join: the cable in front of a node is out, or back. stall: the power stage gets ready no more. jump: the value of
-    the encoder jumps, the motor does not move.
+    fault: a fault with this code (0x603F); lasting: it cannot be reset before clear. clear: ends a lasting fault, and
+    stall. cut, join: disconnects or reconnects the cable in front of a node. stall: the power stage no longer becomes
+    ready. jump: the value of the encoder jumps, the motor does not move.
 
     nodes: by address; each has a `drive`, an EmulatedDrive."""
 
@@ -57,8 +57,8 @@ class Commanded(ABC):
         """Switches the supply of a node."""
 
     def more(self, verb: str, rest: Sequence[str]) -> str | None:
-        """Carries out a command of this bus alone. Returns the reply; None where the verb is none of them. Raises
-        ValueError, IndexError or KeyError where its words are wrong."""
+        """Carries out a command that only this bus has. Returns the reply; None if it has no such verb. Raises
+        ValueError, IndexError or KeyError if the arguments are wrong."""
         return None
 
     def stop(self) -> None:
@@ -119,7 +119,7 @@ class Commanded(ABC):
 
 
 def read_commands(emulation: Commanded) -> None:
-    """Takes commands from standard input, beside the emulation."""
+    """Reads commands from standard input in a thread beside the emulation."""
 
     def read() -> None:
         for line in sys.stdin:

@@ -1,4 +1,4 @@
-"""What the error code of a drive (0x603F, and that of emergency messages) means, in words."""
+"""The meaning of a drive's error code (0x603F, and in emergency messages), in words."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from takt import _core
 
 
 def error_text(code: int) -> str:
-    """ "0x3210 (DC link overvoltage)"; of a code that is not known, what its group is about; 0xFFxx is the maker's."""
+    """Returns "0x3210 (DC link overvoltage)"; for an unknown code the meaning of its group; 0xFFxx is specific to the
+    maker."""
     text: str = _core.drive_error_text(code)
     return text

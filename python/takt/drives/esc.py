@@ -1,7 +1,7 @@
-"""The controller of an emulated EtherCAT slave, and a line of them on a wire: registers, EEPROM, sync managers, FMMUs,
-mailbox, states and clock as ETG.1000.3 and .4 describe them.
+"""The controller (ESC) of an emulated EtherCAT slave, and a line of them on a wire: registers, EEPROM, sync managers,
+FMMUs, mailbox, states and clock as described in ETG.1000.3 and .4.
 
-It knows no drive: that is the `Device` behind it.
+It is independent of the drive, which is the `Device` behind it.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _DIVIDER, _WATCHDOG, _WATCHDOG_STATE = 0x0400, 0x0420, 0x0440
 _SII_CONTROL, _SII_ADDRESS, _SII_DATA = 0x0502, 0x0504, 0x0508
 _FMMUS, _SYNC_MANAGERS, _SYNC_MANAGERS_END = 0x0600, 0x0800, 0x0840
 _RECEIVED, _SYSTEM_TIME, _RECEIVED_64, _OFFSET = 0x0900, 0x0910, 0x0918, 0x0920
-_MEMORY: Final = 0x1000  # from here on; registers below
+_MEMORY: Final = 0x1000  # process memory from here on; registers below
 _SIZE: Final = 0x3000
 _READ_ONLY: Final = ((0x0000, 0x0010), (0x0110, 0x0120), (0x0130, 0x0140), (0x0440, 0x0442))
 
@@ -49,15 +49,15 @@ _HOP_NS: Final = 500  # from slave to slave
 
 
 class Device(ABC):
-    """What is behind the controller."""
+    """The application behind the controller."""
 
     @abstractmethod
     def mailbox(self, kind: int, data: bytes) -> list[tuple[int, bytes]]:
-        """The replies to a mailbox message, as (mailbox type, data); `kind` is its type: 3 is CoE."""
+        """Returns the replies to a mailbox message, as (mailbox type, data); `kind` is its type: 3 is CoE."""
 
     @abstractmethod
     def sizes(self) -> tuple[int, int]:
-        """Bytes of process data as they are mapped now: outputs, inputs."""
+        """Returns the sizes of the process data as presently mapped: outputs, inputs [bytes]."""
 
     @abstractmethod
     def entered(self, state: int, before: int) -> None:
@@ -65,30 +65,31 @@ class Device(ABC):
 
     @abstractmethod
     def cycle(self, outputs: bytes | None) -> bytes:
-        """Carries one cycle out; the inputs at its end. None: outputs do not count."""
+        """Executes one cycle and returns the inputs at its end. None: outputs are not in effect."""
 
     @property
     @abstractmethod
     def immediate(self) -> bool:
-        """The inputs in a frame are what came of its outputs, as in simulated time; else those of the frame before."""
+        """The inputs in a frame result from its own outputs, as in simulated time; else from those of the frame
+        before."""
 
 
 class Esc:
     """One slave.
 
-    cut: the cable that leads to it is broken. off: it has no supply."""
+    cut: the cable towards it is broken. off: it has no supply."""
 
     def __init__(self, eeprom: bytes, device: Device, number: int) -> None:
         self.eeprom, self.device, self.number = eeprom, device, number
         self.cut = self.off = False
-        self.last_s = 0.0  # when process data came
-        self.waiting = False  # process data have come, a cycle is to be carried out
-        self._clock_ns = 1_000_003 * (number + 1)  # ahead of the host's: each has its own
+        self.last_s = 0.0  # time of the last process data
+        self.waiting = False  # process data were received; a cycle is to be executed
+        self._clock_ns = 1_000_003 * (number + 1)  # offset from the host's clock, different for each slave
         self._drift, self._drifts_since_ns = 0.0, 0
         self.reset()
 
     def reset(self) -> None:
-        """As after power has come."""
+        """Resets memory and mailbox, as at power on."""
         m = self.memory = bytearray(_SIZE)
         # Type, revision, build, FMMUs, sync managers, KiB, ports 0 and 1, distributed clocks with 64 bits.
         m[0:10] = bytes((0x11, 0, 2, 0, 8, 8, 8, 0x0F, 0x0C, 0))
@@ -116,7 +117,7 @@ class Esc:
         return int.from_bytes(self.memory[register : register + 2], "little")
 
     def _control(self) -> None:
-        """AL control has been written: changes the state or refuses."""
+        """Handles a write to AL control: changes the state or refuses."""
         m = self.memory
         wanted, acknowledged = m[_AL_CONTROL] & 0x0F, bool(m[_AL_CONTROL] & ERROR_BIT)
         if m[_AL_STATUS] & ERROR_BIT and not acknowledged:
@@ -128,7 +129,7 @@ class Esc:
             self._enter(wanted)
 
     def _objection(self, wanted: int) -> int:
-        """The AL status code with which a change is refused."""
+        """Returns the AL status code with which a change of state is refused; 0 if it is allowed."""
         now = self.state
         if wanted == BOOTSTRAP:
             return NO_BOOTSTRAP
@@ -170,7 +171,8 @@ class Esc:
         return self.number_at(_WATCHDOG) * (self.number_at(_DIVIDER) + 2) * 40e-9
 
     def watch(self, now_s: float) -> bool:
-        """Whether the process data watchdog expires now: then to SAFEOP with AL status code 0x001B."""
+        """Returns whether the process data watchdog expires now; if so, changes to SAFEOP with AL status code
+        0x001B."""
         watchdog_s = self.watchdog_s
         watched = self.state == OPERATIONAL and watchdog_s and self.memory[_SYNC_MANAGERS + 16 + 4] & 0x40
         if not watched or now_s - self.last_s <= watchdog_s:
@@ -182,7 +184,7 @@ class Esc:
     # --- sync managers ---
 
     def _area(self, manager: int) -> tuple[int, int]:
-        """Begin and length."""
+        """Returns begin and length of a sync manager's area."""
         begin, length = struct.unpack_from("<HH", self.memory, _SYNC_MANAGERS + 8 * manager)
         return begin, length
 
@@ -203,7 +205,7 @@ class Esc:
     # --- mailbox ---
 
     def serve_mailbox(self) -> None:
-        """Has the device answer the message that has come."""
+        """Passes the received message to the device and queues its replies."""
         letter, self._received = self._received, None
         if letter is None:
             return
@@ -211,7 +213,7 @@ class Esc:
         length, _, _, kind = struct.unpack_from("<HHBB", letter)
         counter = kind >> 4 & 7
         if counter and counter == self._heard:
-            return  # the same once more: its acknowledgement got lost
+            return  # a repetition: its acknowledgement was lost
         self._heard = counter
         size = self._area(1)[1]
         for kind_of_answer, data in self.device.mailbox(kind & 0x0F, letter[6 : 6 + length]):
@@ -232,7 +234,8 @@ class Esc:
         self.memory[_SYNC_MANAGERS + 8 + 5] |= _MAILBOX_FULL
 
     def _repetition(self) -> None:
-        """The master asks for the last message again by changing bit 1; that of the next byte acknowledges it."""
+        """Repeats the last message if the master requests it by changing bit 1; that of the next byte acknowledges
+        it."""
         at = _SYNC_MANAGERS + 8 + 6
         if (self.memory[at] ^ self.memory[at + 1]) & 2:
             self.memory[at + 1] ^= 2
@@ -245,8 +248,8 @@ class Esc:
     # --- memory ---
 
     def read(self, at: int, length: int) -> bytes | None:
-        """So many bytes of the memory; None if the mailbox is empty or they exceed the memory. Reading the last
-        byte of the mailbox empties it."""
+        """Returns `length` bytes of the memory; None if the mailbox is empty or they exceed the memory. Reading the
+        last byte of the mailbox empties it."""
         m = self.memory
         if at >= _MEMORY:
             begin, size = self._area(1)
@@ -265,7 +268,7 @@ class Esc:
         return data if len(data) == length else None
 
     def write(self, at: int, data: bytes) -> bool:
-        """False: the memory is read-only or too short, or the mailbox is full."""
+        """Writes to the memory. Returns False if it is read-only or too short, or the mailbox is full."""
         m, end = self.memory, at + len(data)
         if end > _SIZE or any(first <= at and end <= last for first, last in _READ_ONLY):
             return False
@@ -291,7 +294,7 @@ class Esc:
         return True
 
     def _written(self, at: int, end: int, kept: bytes) -> None:
-        """Registers that do something."""
+        """Handles writes to registers that have an effect."""
         m = self.memory
         if at <= _AL_CONTROL < end:
             self._control()
@@ -323,7 +326,7 @@ class Esc:
         if command == 0x0100:
             m[_SII_DATA : _SII_DATA + 8] = self.eeprom[at : at + 8].ljust(8, b"\xff")
         elif command:
-            refused = 0x2000  # it cannot be written
+            refused = 0x2000  # the EEPROM is read-only
         struct.pack_into("<H", m, _SII_CONTROL, 0x0040 | refused)
 
     # --- clock ---
@@ -333,13 +336,13 @@ class Esc:
         return now_ns + self._clock_ns + round(self._drift * (now_ns - self._drifts_since_ns))
 
     def drift(self, ppm: float) -> None:
-        """Drift of the clock against that of the host, from now on; its time does not jump."""
+        """Sets the drift [ppm] of the clock against that of the host, from now on; its time does not jump."""
         now_ns = time.monotonic_ns()
         self._clock_ns = self.local_ns() - now_ns
         self._drift, self._drifts_since_ns = 1e-6 * ppm, now_ns
 
     def _latch(self) -> None:
-        """When the frame that writes here came by each port; the line of slaves sets the hops."""
+        """Latches the times at which the frame that writes here passed each port; the line of slaves sets the hops."""
         begin_ns = self.local_ns()
         there, back = begin_ns + self.hops_there * _HOP_NS, begin_ns + self.hops_back * _HOP_NS
         struct.pack_into("<II", self.memory, _RECEIVED, there & 0xFFFF_FFFF, back & 0xFFFF_FFFF)
@@ -350,7 +353,7 @@ class Esc:
     # --- logical addresses ---
 
     def logical(self, command: int, start: int, data: bytearray, at: int, length: int) -> int:
-        """Takes and lays its part of a datagram; what it adds to the working counter."""
+        """Reads and writes its part of a datagram. Returns the increment of the working counter."""
         if self.state < SAFE_OPERATIONAL:
             return 0
         wrote = read = False
@@ -381,7 +384,7 @@ class Esc:
 
 
 class Line:
-    """Slaves one behind the other."""
+    """Slaves in a line."""
 
     def __init__(self, slaves: Sequence[Esc]) -> None:
         self.slaves = list(slaves)
@@ -390,7 +393,7 @@ class Line:
         self._behind: list[Esc] | None = None
 
     def reached(self) -> list[Esc]:
-        """Those before the first broken cable and the first one without supply."""
+        """Returns the slaves before the first broken cable and the first one without supply."""
         if self._reached is None:
             self._reached = []
             for slave in self.slaves:
@@ -406,7 +409,7 @@ class Line:
         return self._reached
 
     def reached_from_behind(self) -> list[Esc]:
-        """Of a ring that is broken: those behind the last broken cable and the last one without supply."""
+        """Returns, for a broken ring, the slaves behind the last broken cable and the last one without supply."""
         if self._behind is None:
             self._behind = []
             for slave in reversed(self.slaves):
@@ -419,17 +422,18 @@ class Line:
 
     @property
     def whole(self) -> bool:
-        """What comes in at one end of a ring goes out at the other."""
+        """A frame that enters at one end of a ring leaves at the other."""
         return len(self.reached()) == len(self.slaves)
 
     def changed(self) -> None:
-        """Cables or supplies have."""
+        """Call after cables or supplies have changed."""
         self._reached = self._behind = None
 
     def carry(self, frame: bytearray, *, behind: bool = False) -> bool:
-        """Sends a frame through the slaves and back; False: it is none of EtherCAT, or nobody is there.
+        """Sends a frame through the slaves and back. Returns False if it is not an EtherCAT frame, is malformed, or no
+        slave is reached.
 
-        behind: it comes in at the far end of a ring that is broken."""
+        behind: it enters at the far end of a broken ring."""
         slaves = self.reached_from_behind() if behind else self.reached()
         if len(frame) < HEADER_BYTES + 2 or frame[12:14] != b"\x88\xa4" or not slaves:
             return False
@@ -449,7 +453,7 @@ class Line:
                 return False
             self._datagram(slaves, command, first, second, frame, at, body, length)
             at = body + length + 2
-        frame[6] |= 0x02  # as a frame that has been through
+        frame[6] |= 0x02  # marks a frame that has passed the slaves
         return True
 
     def _datagram(
@@ -482,10 +486,10 @@ class Line:
 
 
 def _physical(slave: Esc, command: int, mine: bool, register: int, frame: bytearray, body: int, end: int) -> int:
-    """A datagram at a slave; what it adds to the working counter."""
+    """Executes a datagram at a slave. Returns the increment of the working counter."""
     if command in (_ARMW, _FRMW):  # read at one, written to all others
         if not mine:
-            if register != _SYSTEM_TIME:  # clocks follow the first one by themselves: they do not drift here
+            if register != _SYSTEM_TIME:  # clocks follow the first one anyway: they do not drift apart here
                 return int(slave.write(register, bytes(frame[body:end])))
             return 1
         command = _APRD

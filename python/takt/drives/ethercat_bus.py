@@ -1,8 +1,8 @@
-"""Drives of CiA 402 on EtherCAT, for an engine: start-up, process data in one frame a cycle, what is lost and back.
+"""Drives of CiA 402 on EtherCAT, for an engine: start-up, process data in one frame a cycle, loss and return of slaves.
 
-A cycle: one frame takes control words and set points to all drives and brings back what they measured before. Its
-working counter tells whether all took part; who did not is asked by a thread beside the cycle, which also brings slaves
-that are back into operation, in steps so short that the cycle of the others goes on.
+A cycle: one frame carries control words and set points to all drives and returns their previous actual values. Its
+working counter shows whether all took part. A thread beside the cycle reads the state of missing slaves and brings
+returning ones into operation, in steps short enough for the cycle of the others.
 """
 
 from __future__ import annotations
@@ -41,28 +41,32 @@ from takt.drives.scaling import scaling_of
 from takt.drives.sdo import SdoError
 from takt.errors import TaktError
 
-SIGNS_MISSING: Final = 3  # of heartbeat_s: the watchdog of a slave's outputs
+SIGNS_MISSING: Final = 3  # times heartbeat_s: the watchdog of a slave's outputs
 OPERATIONAL_WITHIN_S: Final = 5.0
 STATE_WITHIN_S: Final = 2.0
 CLOCK_WITHIN_S: Final = 5.0  # emulated slaves may share a busy host
-REGISTERS_US: Final = 3000  # how long the frame of a register may be under way
-LOOK_AGAIN_S: Final = 0.05  # at slaves that are not in operation
-RING_CYCLES: Final = 20  # that a ring is broken, before it is said
-FIRST_SILENT: Final = 3  # cycles without a frame at the first end of a broken ring, before less time is given to it ...
-FIRST_SHARE: Final = 0.4  # ... for the package asks at the second one only then
-LATE_CYCLES: Final = 50  # after a lost frame: it may still come
-SILENT: Final = 20  # frames lost in a row: the wire itself
+REGISTERS_US: Final = 3000  # longest round trip of a frame that accesses a register
+LOOK_AGAIN_S: Final = 0.05  # interval of checks of slaves that are not in operation
+RING_CYCLES: Final = 20  # cycles with a broken ring before it is reported
+FIRST_SILENT: Final = 3  # cycles without a frame at the first end of a broken ring, before its timeout is reduced ...
+FIRST_SHARE: Final = 0.4  # ... as the package reads the second end only after that
+LATE_CYCLES: Final = 50  # after a lost frame, in which it may still arrive
+SILENT: Final = 20  # frames lost in a row: the wire itself is interrupted
 RX_MAP, TX_MAP, RX_ASSIGNED, TX_ASSIGNED = 0x1600, 0x1A00, 0x1C12, 0x1C13
 AL_CONTROL, AL_STATUS = 0x0120, 0x0130
-FMMUS, MAILBOX_MANAGERS, DATA_MANAGERS = (0x0600, 64), (0x0800, 16), (0x0810, 16)  # registers that are written again
+FMMUS, MAILBOX_MANAGERS, DATA_MANAGERS = (
+    (0x0600, 64),
+    (0x0800, 16),
+    (0x0810, 16),
+)  # registers that are written again when a slave returns
 
-# What is mapped, the last ones only where the drive has them. Those of 8 bits last: some drives want even addresses.
+# Mapped objects, the last ones only if the drive has them. Objects of 8 bits last: some drives require even addresses.
 OUTPUTS: Final = (od.CONTROL_WORD, None, od.TARGET_TORQUE, od.MAX_TORQUE, od.MODE)  # None: the target of the mode
 INPUTS: Final = (od.STATUS_WORD, od.POSITION, od.TORQUE, od.DIGITAL_INPUTS, od.ERROR_CODE)
 
 
 class _Layout:
-    """Where objects are in process data: bytes from their begin."""
+    """The byte offsets of objects in process data."""
 
     def __init__(self, words: Sequence[int]) -> None:
         self.words = list(words)
@@ -84,7 +88,7 @@ class _Layout:
             data[found[0] : found[0] + entry.bits // 8] = entry.encode(value)
 
     def get(self, data: bytes, entry: od.Object) -> int:
-        """0 where it is not mapped."""
+        """Returns the value of an object; 0 if it is not mapped."""
         found = self.at.get(entry.index)
         return 0 if found is None else entry.decode(data[found[0] :])
 
@@ -93,7 +97,7 @@ class _Layout:
 
 
 class _Slave:
-    """One drive, and what is known of it."""
+    """One drive, and its present state."""
 
     def __init__(self, described: Mapping[str, Any], axis: Mapping[str, Any]) -> None:
         self.described, self.axis_described = described, axis
@@ -105,7 +109,7 @@ class _Slave:
         self.drive: DriveAxis | None = None
         self.emulated = False
         self.outputs = self.inputs = _Layout(())
-        self.state = 0  # as last seen
+        self.state = 0  # last known AL state; 0: not there
         number = described["probe_latch"]
         self.latch = ProbeLatch(number) if number else None  # reads the status
         self.registers: dict[int, bytes] = {}
@@ -127,7 +131,7 @@ class _Slave:
 class EthercatBus(FieldBus):
     """The drives of one bus of a machine file.
 
-    Raises TaktError where something is not as the machine file says."""
+    Raises TaktError if the bus does not match the machine file."""
 
     rhythm = "frames"
 
@@ -139,18 +143,18 @@ class EthercatBus(FieldBus):
         self._by_axis = {one.axis: one for one in self._slaves}
         self.lost_frames = 0
         self._lost_in_a_row = 0
-        self._late_frames = 0  # cycles for which lost ones may still come
+        self._late_frames = 0  # cycles in which lost frames may still arrive
         self._counter = 0  # of the last frame
-        self._others_count = 0  # what slaves that are no axis' may add to it
+        self._others_count = 0  # largest contribution of slaves without an axis
         self._phase = Phase(self.period_s)
         self._clocks: deque[tuple[float, float]] = deque(maxlen=200_000)  # s: of this host, and of the slaves
         self._told_silent = False
         self._look = threading.Event()
         self._ended = False
         self._watcher: threading.Thread | None = None
-        self._others: list[Any] = []  # slaves that are no axis'
-        self._ring_broken = 0  # cycles; RING_CYCLES: it was said
-        self._first_silent = 0  # cycles in which the first end of the ring was waited for in vain
+        self._others: list[Any] = []  # slaves without an axis
+        self._ring_broken = 0  # cycles; RING_CYCLES: it was reported
+        self._first_silent = 0  # cycles without a frame at the first end of the ring
         self._wire = Wire(described["bus"], described.get("ring"))
         try:
             self._start_up()
@@ -174,15 +178,16 @@ class EthercatBus(FieldBus):
             try:
                 self._map()
                 break
-            except TaktError:  # the package takes objects whose answers got lost for none
+            except TaktError:  # the package treats objects whose answers were lost as missing
                 if not tries_left:
                     raise
         self._operate()
-        for one in self._slaves:  # from now on the others' cycles wait for no question
+        for one in self._slaves:  # no patience from now on: cycles must not wait for a request
             one.sdo = self._wire.sdo(one.slave, one.position)
 
     def _find(self) -> None:
-        """Every drive is at its place within its time, else none moves."""
+        """Waits until every drive is at its position. Raises TaktError if one is missing after the longest of their
+        times; then no drive moves."""
         end_s = time.monotonic() + max(float(one["ready_within_s"]) for one in self.described["drives"])
         while True:
             found = self._wire.find()
@@ -194,7 +199,7 @@ class EthercatBus(FieldBus):
             time.sleep(0.05)
 
     def _place(self, found: Sequence[Any]) -> str:
-        """Gives each axis its slave; what is missing."""
+        """Assigns each axis its slave. Returns what is missing; "" if nothing is."""
         aliases: dict[int, int] = {}
         if any(one.described.get("alias") is not None for one in self._slaves):
             for position, slave in enumerate(found, start=1):
@@ -219,7 +224,7 @@ class EthercatBus(FieldBus):
         )
 
     def _set_up(self, one: _Slave) -> None:
-        """Everything that a drive is told in PREOP. Raises TaktError."""
+        """Writes all settings of a drive in PREOP. Raises TaktError."""
         try:
             self._check(one)
             for start in one.described["start_up"]:
@@ -280,7 +285,7 @@ class EthercatBus(FieldBus):
             one.sdo.try_to_write(index, 1, mode if index == 0x1C32 or mode == 2 else 0x22, 16)
 
     def _choose(self, one: _Slave) -> None:
-        """Maps what is needed; where a drive has a mapping that stays as it is, that must do."""
+        """Maps the required objects; a drive with a fixed mapping must already have them."""
         target = od.TARGET_POSITION if one.mode is Mode.CYCLIC_POSITION else od.TARGET_VELOCITY
         outputs = [target if entry is None else entry for entry in OUTPUTS]
         inputs = list(INPUTS)
@@ -354,11 +359,11 @@ class EthercatBus(FieldBus):
             raise TaktError(self._not_in(SAFE_OPERATIONAL))
 
     def _set_watchdog(self, one: _Slave) -> None:
-        """Of its process data, from the end of the frames to its fall into SAFEOP. Some slaves have none."""
+        """Sets the watchdog of the process data: time without frames until SAFEOP. Some slaves have none."""
         watchdog_ms = 1000 * SIGNS_MISSING * float(self.described["heartbeat_s"])
         for _ in range(5):
             with contextlib.suppress(Exception), warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # it is rounded to steps of 100 us
+                warnings.simplefilter("ignore")  # the package warns that it rounds to steps of 100 us
                 one.slave.set_watchdog("processdata", watchdog_ms)
                 return
         self._say(f"{one.named}: its watchdog cannot be set to {watchdog_ms / 1000:.4g} s")
@@ -370,7 +375,7 @@ class EthercatBus(FieldBus):
         raise TaktError(f"{self.bus_name}: {one.named}: register 0x{register:04X} cannot be read: no answer")
 
     def _synchronise(self) -> None:
-        """Clocks run together, and SYNC0 comes every period."""
+        """Synchronises the clocks, and starts SYNC0 in every period."""
         if not self._wire.master.config_dc():
             raise TaktError(f"{self.bus_name}: dc: true, but no slave has a distributed clock")
         period_ns = round(1e9 * self.period_s)
@@ -422,14 +427,14 @@ class EthercatBus(FieldBus):
     # --- frames ---
 
     def _frame(self, within_s: float) -> int:
-        """Sends the outputs and takes in the inputs; the working counter, 0 where the frame was lost."""
+        """Sends the outputs and receives the inputs. Returns the working counter; 0 if the frame was lost."""
         master = self._wire.master
         end_s = time.monotonic() + within_s
         if self._late_frames > 0:
             self._late_frames -= 1
             self._wire.discard_late_frames()
         master.send_processdata()
-        if not self._wire.lock.locked():  # else the other thread may take this frame in, too
+        if not self._wire.lock.locked():  # else the other thread may receive this frame
             self._wire.await_frame(within_s)
         counter = master.receive_processdata(max(50, round(1e6 * (end_s - time.monotonic()))))
         self._counter = max(0, counter)
@@ -441,13 +446,13 @@ class EthercatBus(FieldBus):
                 self._look.set()
         else:
             self._lost_in_a_row = 0
-            if self._told_silent or not counter:  # 0: it has come back, and nobody has taken part
+            if self._told_silent or not counter:  # 0: it has come back, and no slave took part
                 self._look.set()
         return self._counter
 
     def _expected(self) -> tuple[int, int]:
-        """The working counter as the states of the drives let expect it: at least, at the most. Drives that are not in
-        operation may or may not take outputs."""
+        """Returns the smallest and largest working counter for the present states of the drives. Drives that are not in
+        operation may or may not accept outputs."""
         least = most = 0
         for one in self._slaves:
             if one.state == OPERATIONAL:
@@ -457,7 +462,7 @@ class EthercatBus(FieldBus):
         return least, most + self._others_count
 
     def _take_in(self) -> dict[str, drive.Measured]:
-        """By axis what the drives in operation have measured; nothing unless all of those have answered."""
+        """Returns the actual values of the drives in operation, by axis; empty unless all of them have answered."""
         if not self._counter:
             return {}
         least, most = self._expected()
@@ -500,10 +505,10 @@ class EthercatBus(FieldBus):
         layout.put(data, od.PROBE_FUNCTION, words.probe)
         one.slave.output = bytes(data)
 
-    # --- who is out of operation ---
+    # --- drives that are not in operation ---
 
     def _watch(self) -> None:
-        """Beside the cycle: looks at the drives when the working counter is not as it should be."""
+        """Runs beside the cycle: checks the drives if the working counter is not as expected."""
         while not self._ended:
             if not self._look.wait(0.2):
                 continue
@@ -511,7 +516,7 @@ class EthercatBus(FieldBus):
             with self._wire.lock:
                 try:
                     self._look_at_all()
-                except Exception as error:  # whatever the package raises: tried again
+                except Exception as error:  # any error of the package: tried again
                     self._say_once(f"{self.bus_name}: {' '.join(str(error).split()) or type(error).__name__}")
             time.sleep(LOOK_AGAIN_S)
 
@@ -530,14 +535,14 @@ class EthercatBus(FieldBus):
                 self._judge(one, state)
 
     def _state_of(self, one: _Slave) -> int | None:
-        """0: it is not there. None: frames get lost."""
+        """Returns the AL state of a drive; 0 if it is not there, None if frames get lost."""
         for _ in range(4):
             begin_s = time.monotonic()
             try:
                 return bytes(one.slave._fprd(AL_STATUS, 2, REGISTERS_US))[0] & 0x1F
             except self._wire.pysoem.WkcError:
                 if time.monotonic() - begin_s < 0.9e-6 * REGISTERS_US:
-                    return 0  # the frame has come back at once, and nobody has taken part
+                    return 0  # the frame has come back at once, and no slave took part
         return None
 
     def _judge(self, one: _Slave, state: int) -> None:
@@ -546,7 +551,7 @@ class EthercatBus(FieldBus):
         fell = one.state == OPERATIONAL
         one.state = state
         with contextlib.suppress(Exception):
-            one.slave.output = bytes(one.outputs.size)  # nothing moves by itself when it is back
+            one.slave.output = bytes(one.outputs.size)  # it must not move by itself when it is back
         if state == 0:
             if not one.told_lost:
                 one.told_lost = True
@@ -556,7 +561,7 @@ class EthercatBus(FieldBus):
             state = self._state_of(one) or 0
             if state == 0:
                 return
-            if state == OPERATIONAL:  # it came back meanwhile, as it was
+            if state == OPERATIONAL:  # it returned meanwhile in its former state
                 return self._goes_on(one)
         elif fell:
             code = int.from_bytes(self._asked(one, 0x0134, 2), "little")
@@ -574,7 +579,7 @@ class EthercatBus(FieldBus):
             self._say(f"{one.named} is heard again")
 
     def _bring_back(self, one: _Slave, state: int) -> None:
-        """Into operation again. Raises TaktError."""
+        """Brings a drive back into operation. Raises TaktError."""
         again = state & 0x0F != SAFE_OPERATIONAL
         if again:
             self._to(one, INIT)
@@ -608,7 +613,7 @@ class EthercatBus(FieldBus):
         raise TaktError(f"{self.bus_name}: {one.named}: register 0x{register:04X} cannot be written: no answer")
 
     def _to(self, one: _Slave, wanted: int) -> None:
-        """Asks for a state and waits for it, in short steps."""
+        """Commands a state and waits for it, in short steps. Raises TaktError."""
         pysoem = self._wire.pysoem
         end_s = time.monotonic() + STATE_WITHIN_S
         while time.monotonic() < end_s:
@@ -632,7 +637,7 @@ class EthercatBus(FieldBus):
             for one in self._slaves:
                 if one.emulated and one.operational:
                     self._tell_clock_of(one, one.sdo.patience(CLOCK_WITHIN_S), simulated)
-            self._simulated = simulated  # the watcher, which waits for the lock, goes by it
+            self._simulated = simulated  # the watcher, which waits for the lock, uses it
 
     def exchange(self, told: Mapping[str, drive.SetPoint], *, real_time: bool) -> Mapping[str, drive.Measured | None]:
         begin_s = time.monotonic()
@@ -658,7 +663,7 @@ class EthercatBus(FieldBus):
         return {one.axis: measured.get(one.axis) for one in self._slaves}
 
     def _look_at_ring(self, waited: bool) -> None:
-        """waited: the frame took all the time that it was given."""
+        """Reports a broken ring. waited: the frame took all the time that it was given."""
         if self.described.get("ring") is None or not self._counter:
             return
         whole = self._wire.ring_is_whole()
@@ -688,7 +693,7 @@ class EthercatBus(FieldBus):
     # --- the end ---
 
     def close(self, within_s: float = 2.0) -> None:
-        """Brakes what moves along the quick stop ramps, switches off, and leaves the bus."""
+        """Brakes moving drives along their quick stop ramps, switches off, and leaves the bus."""
         end_s = time.monotonic() + within_s
         if not self._simulated:
             while (
@@ -721,9 +726,10 @@ class EthercatBus(FieldBus):
 
 
 def drift_of(clocks: Sequence[tuple[float, float]]) -> float | None:
-    """How much faster a second clock runs than the first one, from readings of both in s; None: too few.
+    """Returns by which factor minus 1 a second clock runs faster than the first, from readings of both [s]; None if
+    there are too few.
 
-    The second one is read later by whatever a frame needs; the quickest frames of the first and the last fifth count.
+    The second clock is read with the delay of a frame; the quickest frames of the first and the last fifth are used.
     """
     fifth = len(clocks) // 5
     if fifth < 4:

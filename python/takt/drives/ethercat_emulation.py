@@ -1,9 +1,10 @@
 """Emulated drives on EtherCAT: slaves in a line on an Ethernet interface, usually one end of a veth pair, each with an
-EmulatedDrive (`takt drives emulate`). Faults, broken cables and lost frames come on command.
+EmulatedDrive (`takt drives emulate`). Commands cause faults, broken cables and lost frames.
 
-Time: with each frame of process data a drive lives through one period. By the clock (0x2000 = 0) the frame is answered
-first, with what was measured before, as slaves do; without frames a drive goes on by itself. In simulated time (0x2000
-= 1) a frame is a whole cycle: outputs are carried out, and what came of them is in the very same frame.
+Time: each frame of process data advances a drive by one period. With the clock of the host (0x2000 = 0) the frame is
+answered first, with the previous actual values, as slaves do; without frames a drive continues by the clock. In
+simulated time (0x2000 = 1) a frame is a whole cycle: its outputs are executed, and the resulting values are in the same
+frame.
 """
 
 from __future__ import annotations
@@ -27,10 +28,10 @@ from takt.drives.ethercat_link import ethernet_socket
 from takt.drives.scaling import scaling_of
 
 REVISION: Final = 1
-STRANGE: Final = 0x0001  # product of a device that is no axis'
+STRANGE: Final = 0x0001  # product of a device without an axis
 LINK_LOST: Final = 0x7500
 MOST_DRIFT_PPM: Final = 100_000
-SILENCE_S: Final = 0.1  # without process data, before a drive lives by the clock
+SILENCE_S: Final = 0.1  # without process data, until a drive continues by the clock
 MOST_MADE_UP_S: Final = 0.2
 MAILBOX_BYTES: Final = 256
 MAILBOX_OUT, MAILBOX_IN, OUTPUTS, INPUTS = 0x1000, 0x1200, 0x1400, 0x1800
@@ -44,16 +45,16 @@ NOT_MAPPABLE: Final = 0x0604_0041
 NO_OBJECT: Final = 0x0602_0000
 TOO_LONG: Final = 0x0604_0042
 READ_ONLY: Final = 0x0601_0002
-FIRST_NONE: Final = 0x0601_0003  # a mapping can only be changed while subindex 0 is 0
+FIRST_NONE: Final = 0x0601_0003  # a mapping can be changed only while subindex 0 is 0
 
 DEFAULT_MAPS: Final = {RX_MAP: (od.CONTROL_WORD, od.TARGET_POSITION), TX_MAP: (od.STATUS_WORD, od.POSITION)}
-_FORMATS: Final = {8: "Bb", 16: "Hh", 32: "Ii"}  # without a sign, and with one
+_FORMATS: Final = {8: "Bb", 16: "Hh", 32: "Ii"}  # unsigned and signed
 
 
 class EmulatedSlave(Device):
     """A drive behind its controller.
 
-    fixed_map: its process data cannot be mapped otherwise, as with simple drives."""
+    fixed_map: its process data have a fixed mapping, as with simple drives."""
 
     def __init__(
         self, number: int, drive: EmulatedDrive, *, alias: int = 0, product: int = PRODUCT, fixed_map: bool = False
@@ -61,13 +62,13 @@ class EmulatedSlave(Device):
         self.drive, self.alias, self.product, self.fixed_map = drive, alias, product, fixed_map
         self._clock_is_sync = False
         self.state = 1
-        self.cycles = 0  # that it has lived through
+        self.cycles = 0  # executed cycles
         self.lived_s = 0.0
-        self._alone = False  # no process data come
+        self._alone = False  # no process data are received
         self._maps: dict[int, list[od.Object]] = {}
         self._counts: dict[int, int] = {}
         self._structs: dict[int, struct.Struct] = {}
-        self.numbers: dict[tuple[int, int], tuple[int, int]] = {}  # value and bits of what is a mere number
+        self.numbers: dict[tuple[int, int], tuple[int, int]] = {}  # value and bits of objects that only hold a number
         self._default()
         self._server = SdoServer(self._dictionary(), MAILBOX_BYTES)
         self.esc = Esc(eeprom(alias, product, number + 1), self, number)
@@ -79,7 +80,7 @@ class EmulatedSlave(Device):
         self._pack()
 
     def restart(self) -> None:
-        """After its supply has come back."""
+        """Restarts the slave, as after its supply has returned."""
         self._default()
         self._clock_is_sync = False
         self.state = 1
@@ -213,7 +214,7 @@ class EmulatedSlave(Device):
             self._structs[TX_MAP].size if self.numbers[TX_ASSIGNED, 0][0] else 0,
         )
 
-    # --- what the controller asks for ---
+    # --- interface of the controller ---
 
     def mailbox(self, kind: int, data: bytes) -> list[tuple[int, bytes]]:
         return self._server.answer(kind, data)
@@ -244,7 +245,7 @@ class EmulatedSlave(Device):
         return self._structs[TX_MAP].pack(*(read[e.index] for e in self._maps[TX_MAP][: self._counts[TX_MAP]]))
 
     def live_by_the_clock(self, now_s: float) -> None:
-        """Without process data a motor does not stand still."""
+        """Steps the drive by the clock: without process data a motor keeps moving."""
         if self._clock_is_sync or not self.drive.moving:
             return
         if now_s - self.lived_s < SILENCE_S and not self._alone:
@@ -266,7 +267,7 @@ def _number(data: bytes, bits: int) -> int:
 
 
 def eeprom(alias: int, product: int, serial: int) -> bytes:
-    """Identity, mailboxes, name, sync managers, FMMUs and the mapping that there is before another one is written."""
+    """Returns the EEPROM: identity, mailboxes, name, sync managers, FMMUs and the default mapping."""
     head = struct.pack("<HHHHHHH", 0x0005, 0, 0, 0, alias, 0, 0)
     image = bytearray(head + bytes((_checksum(head), 0)))
     image += struct.pack("<IIII", VENDOR, product, REVISION, serial)
@@ -311,7 +312,7 @@ def _map_in_eeprom(index: int, manager: int, name: int) -> bytes:
 
 
 def _checksum(data: bytes) -> int:
-    """CRC of 8 bits, x^8 + x^2 + x + 1, from 0xFF."""
+    """Returns the CRC of 8 bits, x^8 + x^2 + x + 1, from 0xFF."""
     crc = 0xFF
     for byte in data:
         crc ^= byte
@@ -327,7 +328,7 @@ class EthercatEmulation(Commanded):
     """Slaves on an interface, the first one next to the master. `run` serves them until `stop`.
 
     nodes: by position, from 1.
-    ring: interface at the other end of the slaves."""
+    ring: interface at the other end of the slaves; None: no ring."""
 
     called = "slave"
     help = HELP + " | lose PERCENT | fix NODE | drift PPM"
@@ -374,8 +375,8 @@ class EthercatEmulation(Commanded):
         return False
 
     def _carry(self, frame: bytearray, end: socket.socket) -> socket.socket | None:
-        """Through the slaves: where it comes out, None: nowhere. In a ring that is whole slaves read and write only
-        what comes from its first end; what comes from the other one passes them."""
+        """Sends a frame through the slaves. Returns the end where it leaves; None if nowhere. In an intact ring slaves
+        read and write only frames from its first end; those from the other end pass unchanged."""
         if len(self._ends) == 1:
             return end if self.line.carry(frame) else None
         behind = end is self._ends[1]
@@ -403,7 +404,7 @@ class EthercatEmulation(Commanded):
                 out.send(frame)
             except OSError:
                 return
-        for slave in self._slaves:  # after the answer, so that it does not wait for them
+        for slave in self._slaves:  # after the answer, which must not wait for it
             esc = slave.esc
             esc.serve_mailbox()
             if esc.waiting:
@@ -439,7 +440,7 @@ class EthercatEmulation(Commanded):
             ppm = float(rest[0])
             if not abs(ppm) <= MOST_DRIFT_PPM:
                 raise ValueError(ppm)
-            for node in self._slaves:  # their clocks run together
+            for node in self._slaves:  # their clocks are synchronised
                 node.esc.drift(ppm)
         elif verb == "fix":
             for node in self._which(rest[0]):
@@ -452,7 +453,8 @@ class EthercatEmulation(Commanded):
 def emulated_slaves(
     described: Mapping[str, Any], machine: Mapping[str, Any], text: bytes, file: str
 ) -> list[EmulatedSlave]:
-    """The drives of one bus of a machine file at their positions; in gaps those with an alias, then strange ones."""
+    """Returns the drives of one bus of a machine file at their positions; gaps are filled by drives with an alias, then
+    by devices of another product."""
     axes = {axis["name"]: axis for axis in machine["axes"]}
     drives = list(described["drives"])
     by_position = {one["position"]: one for one in drives if one.get("position") is not None}

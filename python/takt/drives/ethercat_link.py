@@ -23,17 +23,17 @@ from takt.errors import TaktError
 KIND: Final = "ethercat"
 MISSING: Final = "EtherCAT needs the package pysoem: pip install 'takt-motion[ethercat]'"
 QUESTIONS: Final = 3  # without an answer
-FRAME_US: Final = 20_000  # how long a frame may be under way before there are cycles: busy hosts take their time
-LISTENED_S: Final = 0.05  # for another master
+FRAME_US: Final = 20_000  # longest round trip of a frame before the cycles begin: busy hosts are slow
+LISTENED_S: Final = 0.05  # time to listen for another master
 APWR, STATION_ADDRESS = 2, 0x0010  # a command, and the register that it writes
-FIRST_SOURCE, SECOND_SOURCE = b"\x01\x01", b"\x04\x04"  # by interface: what the package has in the source of frames
-OWN_INDEX: Final = 0x7F  # of a frame; the package has 16 of them and takes no notice of others
+FIRST_SOURCE, SECOND_SOURCE = b"\x01\x01", b"\x04\x04"  # by interface: the package's source address of frames
+OWN_INDEX: Final = 0x7F  # of a frame; the package uses 16 of them and ignores others
 GET_FLAGS: Final = 0x8913  # of an interface, by ioctl
 GET_LINK, LINKED_WITH = 18, 5  # of rtnetlink
 ALIAS_WORD: Final = 4  # of the EEPROM
-MAILBOX_MANAGER: Final = 0x0808  # register: the sync manager of what a slave sends
+MAILBOX_MANAGER: Final = 0x0808  # register: the sync manager of the mailbox that a slave sends from
 MAILBOX_FULL: Final = 0x08
-MAILBOX_QUIET_S, MAILBOX_WITHIN_S = 0.02, 1.0  # until no late answer is expected any more; the longest wait for that
+MAILBOX_QUIET_S, MAILBOX_WITHIN_S = 0.02, 1.0  # silence after which no late answer is expected; longest wait for it
 
 INIT, PRE_OPERATIONAL, SAFE_OPERATIONAL, OPERATIONAL = 1, 2, 4, 8
 ERROR_BIT: Final = 0x10
@@ -48,13 +48,13 @@ STATES: Final = {
 
 
 def state_text(state: int) -> str:
-    """ "SAFEOP with an error"."""
+    """Returns the name of an AL state, such as "SAFEOP with an error"."""
     name = STATES.get(state & 0x0F, f"state {state & 0x0F}")
     return f"{name} with an error" if state & ERROR_BIT else name
 
 
 def package() -> Any:
-    """The module pysoem; TaktError says how to get it."""
+    """Returns the module pysoem. Raises TaktError that says how to install it."""
     try:
         import pysoem
     except ImportError:
@@ -69,7 +69,7 @@ def is_ethercat(bus: str) -> bool:
 
 
 def parse(text: str) -> str:
-    """The interface of "ethercat:INTERFACE"."""
+    """Returns the interface of "ethercat:INTERFACE". Raises TaktError if the name is invalid."""
     kind, _, interface = text.partition(":")
     if kind != KIND or not interface:
         raise TaktError(f"{text}: expected ethercat:INTERFACE, such as ethercat:eth1")
@@ -77,7 +77,7 @@ def parse(text: str) -> str:
 
 
 def ethernet_socket(interface: str) -> socket.socket:
-    """Takes and sends frames of EtherCAT; TaktError says in one line why not."""
+    """Returns a socket that receives and sends EtherCAT frames. Raises TaktError with the reason in one line."""
     name = f"{KIND}:{interface}"
     known = [found for _, found in socket.if_nameindex()]
     if interface not in known:
@@ -99,10 +99,10 @@ def ethernet_socket(interface: str) -> socket.socket:
 
 
 def other_end(interface: str) -> str:
-    """Of a veth pair."""
+    """Returns the other end of a veth pair. Raises TaktError if the interface is not one."""
     linked = _linked(interface)
     if linked:
-        with contextlib.suppress(OSError):  # it is in another network namespace
+        with contextlib.suppress(OSError):  # the other end is in another network namespace
             return socket.if_indextoname(linked)
     raise TaktError(
         f"{KIND}:{interface}: expected one end of a veth pair of this host, whose other end the emulation takes: "
@@ -112,8 +112,8 @@ def other_end(interface: str) -> str:
 
 
 def _linked(interface: str) -> int:
-    """The number of the interface that this one is linked with, 0: none. Asks the kernel (rtnetlink), as /sys may be
-    that of another network namespace."""
+    """Returns the number of the interface that this one is linked with; 0 if none. Asks the kernel (rtnetlink), as /sys
+    may be that of another network namespace."""
     with contextlib.suppress(OSError, struct.error):
         index = socket.if_nametoindex(interface)
         with socket.socket(socket.AF_NETLINK, socket.SOCK_RAW, 0) as asking:
@@ -135,7 +135,7 @@ def _is_up(opened: socket.socket, interface: str) -> bool:
 
 
 def _packet_sockets() -> set[int]:
-    """Those of this process."""
+    """Returns the packet sockets of this process."""
     found = set()
     for path in Path("/proc/self/fd").iterdir():
         number = int(path.name)
@@ -148,14 +148,14 @@ def _packet_sockets() -> set[int]:
 
 
 def another_master(interface: str, listened_s: float = LISTENED_S) -> bool:
-    """Whether frames of EtherCAT go over the interface while nothing here sends any."""
+    """Returns whether EtherCAT frames pass the interface while this process sends none."""
     with ethernet_socket(interface) as listening:
         return bool(select.select([listening], [], [], listened_s)[0])
 
 
 class Wire:
     """The master on an interface, or on two at both ends of a ring. Everything but the exchange of process data may be
-    done by one thread at a time beside it, with `lock`."""
+    done by one other thread at a time, which holds `lock`."""
 
     def __init__(self, bus: str, ring: str | None = None) -> None:
         pysoem = self.pysoem = package()
@@ -175,26 +175,26 @@ class Wire:
         self.ring_end = None if ring is None else ethernet_socket(ring)
 
     def hurry(self) -> None:
-        """From now on there are cycles. The package waits for frames in the kernel, for several ms at the least where
-        one is lost. So it looks again and again instead, and `await_frame` waits before that as long as a cycle may."""
+        """Call before the cycles begin. The package waits for frames in the kernel, for at least several ms if one is
+        lost. So its sockets are made non-blocking, and `await_frame` waits first, as long as a cycle may."""
         for number in self._sockets:
             os.set_blocking(number, False)
 
     def await_frame(self, within_s: float) -> None:
-        """Until a frame has come, or for so long."""
+        """Waits for a frame, at most `within_s`."""
         if self._sockets:
             select.select(self._sockets, [], [], max(0.0, within_s))
 
     def discard_late_frames(self) -> None:
-        """Takes out what has come back too late: frames have numbers up to 15 only, and the package would take one of
-        them for the answer to its sixteenth next, and so on for good."""
+        """Discards frames that came back too late: frame numbers only go up to 15, so the package would take one for
+        the answer to its sixteenth next, and so on forever."""
         for received in self._received:
             with contextlib.suppress(OSError):  # no more
                 while received.recv(2048, socket.MSG_DONTWAIT):
                     pass
 
     def find(self) -> list[Any]:
-        """Brings the slaves that there are to PREOP; in the order of their positions."""
+        """Brings the present slaves to PREOP. Returns them in the order of their positions. Raises TaktError."""
         try:
             count = self.master.config_init()
         except Exception as error:
@@ -202,8 +202,8 @@ class Wire:
         return list(self.master.slaves) if count > 0 else []
 
     def ring_is_whole(self) -> bool:
-        """Whether what went out at the first interface has come in at the second one since the last question, and
-        nothing that had gone out there: a broken ring sends that back."""
+        """Returns whether, since the previous call, frames from the first interface came in at the second one, and none
+        that were sent there: a broken ring sends those back."""
         came = set()
         while self.ring_end is not None:
             try:
@@ -215,8 +215,9 @@ class Wire:
         return FIRST_SOURCE in came and SECOND_SOURCE not in came
 
     def give_address(self, position: int, address: bytes) -> None:
-        """To the slave at a position, which has lost it with its supply. The package does that only for slaves without
-        any address, and leaves another one behind where a frame gets lost; so this is a frame of our own."""
+        """Sends its address to the slave at a position, which has lost it with its supply. The package does that only
+        for slaves without any address, and leaves a wrong one behind if a frame gets lost; so this is a frame of our
+        own."""
         datagram = (
             struct.pack("<BBHHHH", APWR, OWN_INDEX, 1 - position & 0xFFFF, STATION_ADDRESS, 2, 0) + address + b"\0\0"
         )
@@ -225,9 +226,9 @@ class Wire:
             aside.send((head + struct.pack("<H", len(datagram) | 0x1000) + datagram).ljust(60, b"\0"))
 
     def alias(self, slave: Any) -> int:
-        """0: none."""
+        """Returns the alias of a slave; 0 if none."""
         before = None
-        for _ in range(QUESTIONS):  # without an answer it is whatever was there
+        for _ in range(QUESTIONS):  # read twice: a lost answer leaves an old value
             read = int.from_bytes(bytes(slave.eeprom_read(ALIAS_WORD))[:2], "little")
             if read == before:
                 return read
@@ -263,7 +264,7 @@ class Sdo(Objects):
         self._within_s = 0.0
 
     def patience(self, timeout_s: float) -> Sdo:
-        """A question without an answer is put again for so long."""
+        """Returns the same objects, whose requests without an answer are repeated for this time [s]."""
         patient = Sdo(self._wire, self._slave, self.position)
         patient._within_s = timeout_s
         return patient
@@ -295,8 +296,8 @@ class Sdo(Objects):
         raise SdoError(f"{what}: no answer")
 
     def _discard_late_answers(self, asked: int) -> None:
-        """Where a question was put again its answer may come twice; the package would take the second one for that to
-        the next question about the same index."""
+        """Discards late answers. A repeated request may be answered twice; the package would take the second answer for
+        that to the next request for the same index."""
         end_s = time.monotonic() + MAILBOX_WITHIN_S
         empty_since_s: float | None = None
         while asked > 1 and time.monotonic() < end_s:

@@ -1,4 +1,4 @@
-"""What the drives of every field bus have in common for an engine: its pace, its clock, what its cycles were like."""
+"""Common base of the field buses for an engine: cycle time, clock, and statistics of the cycles."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ class Member(Protocol):
 
 
 def interpolation_period(period_s: float) -> tuple[int, int] | None:
-    """Returns value (1 to 255) and exponent (-6 to -3) of 0x60C2, whose period is value * 10^exponent [s]; None where a
-    period has none."""
+    """Returns value (1 to 255) and exponent (-6 to -3) of 0x60C2, whose period is value * 10^exponent [s]; None if no
+    such pair gives the period."""
     period_us = round(1e6 * period_s)
     for exponent in (-3, -4, -5, -6):
         value, rest = divmod(period_us, 10 ** (6 + exponent))
@@ -44,7 +44,7 @@ def interpolation_period(period_s: float) -> tuple[int, int] | None:
 
 
 def lacks(described: Mapping[str, Any], sdo: Objects, modes: Collection[Mode]) -> str:
-    """What a drive does not have of what its entry in the machine file asks for; "": nothing."""
+    """Returns what a drive lacks of the functions that its entry in the machine file requires; "" if nothing."""
     if described.get("homing") and Mode.HOMING not in modes:
         has = ", ".join(MODE_NAMES[m] for m in sorted(modes)) or "none"
         return f"does not have the mode hm, which homing asks for; it has {has}"
@@ -58,7 +58,7 @@ def lacks(described: Mapping[str, Any], sdo: Objects, modes: Collection[Mode]) -
 def extras_of(
     described: Mapping[str, Any], axis: Mapping[str, Any], scaling: Scaling, period_s: float
 ) -> dict[str, Any]:
-    """Keywords of a DriveAxis for an entry in the machine file."""
+    """Returns keyword arguments of a DriveAxis for an entry in the machine file."""
     homing, number = described.get("homing"), described["probe_latch"]
     counts = float(axis["limits"]["velocity"]) * float(axis["encoder"]["increments_per_unit"]) * period_s
     sense = -1 if axis["encoder"]["invert"] else 1
@@ -83,11 +83,11 @@ class FieldBus(drive.Bus):
         self.described = described
         self.period_s = float(machine["cycle"]["period_s"])
         self._say = say
-        self._said: set[str] = set()  # what is said once only
+        self._said: set[str] = set()  # sentences that are reported only once
         self._simulated = False
         self.cycles = 0
-        self.late = 0  # drives' answers that did not come in time
-        self.sent_s: deque[float] = deque(maxlen=200_000)  # in real time: when that was sent
+        self.late = 0  # answers of drives that were late or lost
+        self.sent_s: deque[float] = deque(maxlen=200_000)  # in real time: when `rhythm` was sent
         self.round_trips_s: deque[float] = deque(maxlen=200_000)  # from the first message to the last answer
 
     @property
@@ -101,7 +101,7 @@ class FieldBus(drive.Bus):
 
     @abstractmethod
     def _tell_clock(self, simulated: bool) -> None:
-        """Emulated drives go by the engine's time, or by the clock."""
+        """Switches emulated drives to the engine's simulated time, or to the clock."""
 
     def _tell_clock_of(self, one: Member, objects: Objects, simulated: bool) -> None:
         try:
@@ -110,7 +110,7 @@ class FieldBus(drive.Bus):
             raise TaktError(f"{self.bus_name}: {one.named}: {error}") from None
 
     def _tell_interpolation_period(self, one: Member, objects: Objects) -> None:
-        """Writes 0x60C2 (CiA 402) where the drive has it."""
+        """Writes 0x60C2 (CiA 402) if the drive has it."""
         period = interpolation_period(self.period_s)
         if period is not None:
             value, exponent = period
@@ -147,7 +147,7 @@ class FieldBus(drive.Bus):
         return ANSWERS_WITHIN * self.period_s if real_time else ANSWERS_WITHIN_S
 
     def summary(self) -> str:
-        """What the cycles were like, in a line."""
+        """Returns the statistics of the cycles in a line."""
         said = f"{self.bus_name}: {counted(self.cycles, 'cycle')}, {counted(self.late, 'answer')} late or lost"
         said += self._also_lost()
         if len(self.sent_s) > 2:

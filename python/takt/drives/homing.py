@@ -1,7 +1,7 @@
-"""Homing by a drive itself (CiA 402, mode hm): what is written for it, and how it is carried out (AX-87).
+"""Homing by a drive itself (CiA 402, mode hm): the objects written for it, and its execution (AX-87).
 
-The drive counts from its reference afterwards, so its position jumps. The axis does not: the engine hears the position
-go on as before, and is told the reference as an index pulse.
+Afterwards the drive counts from its reference, so its position jumps. The axis' position does not: the engine receives
+a continuous position, and the reference as an index pulse.
 """
 
 from __future__ import annotations
@@ -13,19 +13,19 @@ from typing import Any, Final
 from takt.drives.cia402 import FOLLOWING_ERROR_BIT, FOLLOWS_BIT, HOMING_START_BIT, TARGET_REACHED_BIT, Mode
 from takt.drives.scaling import Scaling
 
-MODE_WITHIN_S: Final = 1.0  # from the request for the mode to the mode
-QUIET_CYCLES: Final = 2  # in the mode without the start bit, which counts by its edge
-ANSWER_CYCLES: Final = 4  # from the start bit to a status word that is about it
-BRAKING_SHARE: Final = 2.0  # times the braking distance: how far behind a limit switch a drive may come to rest
-BRAKING_CYCLES: Final = 4  # and that many cycles until it brakes
-AVERAGED_SAMPLES: Final = 8  # of the speed: on a busy computer single positions are late, or come in pairs
+MODE_WITHIN_S: Final = 1.0  # from the command of the mode to the mode
+QUIET_CYCLES: Final = 2  # in the mode without the start bit, whose edge starts homing
+ANSWER_CYCLES: Final = 4  # from the start bit to a status word that reflects it
+BRAKING_SHARE: Final = 2.0  # times the braking distance: largest overrun of a limit switch
+BRAKING_CYCLES: Final = 4  # cycles until the drive begins to brake
+AVERAGED_SAMPLES: Final = 8  # of the speed: on a busy computer single positions are late, or arrive in pairs
 
 
 class Watch:
-    """That a drive which homes stays where it may be: it comes to rest behind a limit switch, and does not go too far.
-    All in increments, with the sense of the axis.
+    """Supervises a homing drive: it must come to rest behind a limit switch, and not move too far. All values in
+    increments, with the sign of the axis.
 
-    most: how far from where it began; None: anywhere.
+    most: largest distance from the start; None: unlimited.
     acceleration: increments/s²."""
 
     def __init__(self, most: float | None, acceleration: float, period_s: float) -> None:
@@ -36,12 +36,12 @@ class Watch:
         self._from: int | None = None
         self._before: deque[tuple[int, int]] = deque(maxlen=AVERAGED_SAMPLES)  # positions, each with its cycle
         self._cycle = 0
-        self._edges: dict[int, tuple[int, float]] = {}  # by sense: where its switch came on, and the speed there
+        self._edges: dict[int, tuple[int, float]] = {}  # by sign: position and speed when its switch came on
 
     def look(self, position: int, switches: Mapping[int, bool], cycles: int = 1) -> str:
-        """Once a cycle, or after so many; "": all is well, else why the drive must stop.
+        """Checks the drive, once a cycle or after `cycles`. Returns why it must stop; "" if it need not.
 
-        switches: by sense, -1 and 1, whether the limit switch at that end is on."""
+        switches: by sign, -1 and 1, whether the limit switch at that end is on."""
         if self._from is None:
             self._from = position
         self._cycle += cycles
@@ -63,27 +63,27 @@ class Watch:
         return ""
 
     def _speed(self, position: int) -> float:
-        """Of the last cycle, or on average, whichever is more; increments/s."""
+        """Returns the larger of the speed in the last cycle and the average speed [increments/s]."""
         compared = [self._before[-1], self._before[0]] if self._before else []
         per_cycle = [abs(position - before) / (self._cycle - cycle) for before, cycle in compared]
         return max(per_cycle, default=0.0) / self._period_s
 
 
 class DriveHoming:
-    """One homing of a drive after the other; the drive is in operation meanwhile.
+    """The homing of a drive, which may be repeated; the drive is in operation meanwhile.
 
-    watch: None: what the drive does is its own affair."""
+    watch: None: the motion of the drive is not supervised."""
 
     def __init__(self, described: Mapping[str, Any], watch: Watch | None = None) -> None:
         self.method: int = described["method"]
         self.watch = watch
         self.within_s = float(described["within_s"])
         self.homed = False
-        self.failed = ""  # why; "": it has not
+        self.failed = ""  # the reason; "": it has not failed
         self.interrupted()
 
     def interrupted(self) -> None:
-        """The drive is not in operation: the next homing starts anew."""
+        """Call while the drive is not in operation: the next homing starts from the beginning."""
         self._begin_s: float | None = None
         self._cycles = 0  # in the mode
         if self.watch is not None:
@@ -95,18 +95,18 @@ class DriveHoming:
 
     @property
     def moves(self) -> bool:
-        """The drive was told to home, and has not ended by itself."""
+        """Homing was commanded and has not succeeded yet."""
         return self._begin_s is not None and not self.homed
 
     def forget(self) -> None:
-        """The drive has started anew."""
+        """Forgets a former homing, as after a restart of the drive."""
         self.homed, self.failed = False, ""
         self.interrupted()
 
     def control_bits(self, status: int, mode: int, now_s: float) -> int:
-        """Bits of the control word in this cycle.
+        """Returns bits of the control word for this cycle.
 
-        mode: that the drive says it is in (0x6061)."""
+        mode: reported by the drive (0x6061)."""
         if self._begin_s is None:
             self._begin_s = now_s
         elapsed_s = now_s - self._begin_s
@@ -130,7 +130,8 @@ class DriveHoming:
 
 
 def watch_of(described: Mapping[str, Any], axis: Mapping[str, Any], scaling: Scaling, period_s: float) -> Watch:
-    """For the `homing` of a machine file; what it does not say of braking is as the axis does it."""
+    """Returns the supervision for the `homing` of a machine file; if that has no acceleration, the axis' deceleration
+    or acceleration limit is used."""
     per_unit = float(axis["encoder"]["increments_per_unit"]) * float(scaling.increments_per_count)
     limits, distance = axis["limits"], described.get("distance")
     acceleration = described.get("acceleration") or limits.get("deceleration") or limits["acceleration"]
@@ -140,7 +141,7 @@ def watch_of(described: Mapping[str, Any], axis: Mapping[str, Any], scaling: Sca
 def homing_objects(
     described: Mapping[str, Any], axis: Mapping[str, Any], scaling: Scaling
 ) -> list[tuple[int, int, int, int]]:
-    """Index, subindex, value and bits of what is written for the `homing` of a machine file."""
+    """Returns index, subindex, value and bits of the objects to write for the `homing` of a machine file."""
     counts = float(axis["encoder"]["increments_per_unit"])
     written = [(0x6098, 0, int(described["method"]), 8)]
     for key, index, subindex in (

@@ -20,7 +20,7 @@ class Object:
 
     @property
     def mapping(self) -> int:
-        """How a mapping of process data names it."""
+        """The entry of the object in a mapping of process data."""
         return self.index << 16 | self.bits
 
     def encode(self, value: int) -> bytes:

@@ -1,4 +1,4 @@
-"""Between the units of an axis and the integers of its drive (AX-87)."""
+"""Conversion between the units of an axis and the integers of its drive (AX-87)."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ WORD = 1 << 32
 
 
 def signed(value: int, bits: int = 32) -> int:
-    """The value modulo 2^bits as a number with a sign."""
+    """Returns the value modulo 2^bits as a signed number."""
     value &= (1 << bits) - 1
     return value - (1 << bits) if value >> (bits - 1) else value
 
 
 def clamped(value: float, bits: int) -> int:
-    """The nearest whole number that an object with a sign and so many bits holds; what is no number is 0."""
+    """Returns the nearest integer that a signed object of this many bits holds; 0 if the value is not finite."""
     if not math.isfinite(value):
         return 0
     edge = 1 << (bits - 1)
@@ -27,7 +27,7 @@ def clamped(value: float, bits: int) -> int:
 
 @dataclass
 class Unwrapped:
-    """A counter of 32 bits as one without an end: each new value is the nearest one to the last."""
+    """A 32-bit counter extended without limit: each new value is the nearest one to the last."""
 
     total: int | None = None
 
@@ -38,9 +38,9 @@ class Unwrapped:
 
 @dataclass(frozen=True)
 class Scaling:
-    """Counts of an axis' encoder, as the engine has them, against increments of its drive.
+    """Ratio of an axis' encoder counts in the engine to increments of its drive.
 
-    increments_per_count: exact, so that nothing creeps however far an endless axis turns.
+    increments_per_count: exact, so that nothing drifts however far an endless axis turns.
     velocity_factor: units of the drive's velocities in 1 increment/s.
     rated_torque: Nm, or N: torque objects are thousandths of it.
     """
@@ -50,27 +50,29 @@ class Scaling:
     rated_torque: float = 1.0
 
     def increments(self, counts: float) -> int:
-        """The target position for these counts, as the object of 32 bits holds it; counts may be unwrapped."""
+        """Returns the target position for these counts, as the object of 32 bits holds it; counts may be unwrapped. 0
+        if they are not finite."""
         ratio = self.increments_per_count
         if not math.isfinite(counts):
             return 0
         return signed(round(counts) if ratio == 1 else round(Fraction(counts) * ratio))
 
     def counts(self, increments: int) -> int:
-        """What an unwrapped position of the drive is in counts."""
+        """Returns the counts for an unwrapped position of the drive."""
         ratio = self.increments_per_count
         return increments if ratio == 1 else round(increments / ratio)
 
     def velocity(self, counts_s: float) -> int:
-        """The target velocity for count/s."""
+        """Returns the target velocity, in units of the drive, for counts/s."""
         return clamped(counts_s * float(self.increments_per_count) * self.velocity_factor, 32)
 
     def torque(self, nm: float) -> int:
-        """Thousandths of the rated torque."""
+        """Returns the torque in thousandths of the rated torque."""
         return clamped(1000 * nm / self.rated_torque, 16)
 
     def torque_limit(self, nm: float) -> int:
-        """The object "max torque" (0x6072) for a limit; 0: none but the drive's."""
+        """Returns the object "max torque" (0x6072) for a limit [Nm]; 0xFFFF, the drive's own limit, if it is 0 or
+        infinite."""
         return min(0xFFFF, round(1000 * nm / self.rated_torque)) if 0 < nm < math.inf else 0xFFFF
 
     def torque_nm(self, thousandths: int) -> float:
@@ -78,7 +80,7 @@ class Scaling:
 
 
 def scaling_of(drive: Mapping[str, Any], axis: Mapping[str, Any], rated_torque: float = 1.0) -> Scaling:
-    """The scaling of a drive under `external: buses:` of a machine file for its axis."""
+    """Returns the scaling of a drive under `external: buses:` of a machine file for its axis."""
     given = drive.get("scaling")
     ratio = Fraction(1)
     if given:

@@ -1,11 +1,11 @@
-"""Objects of a drive, read and written by SDO over whatever bus (CiA 301, ETG.1000.6)."""
+"""Objects of a drive, read and written by SDO on any bus (CiA 301, ETG.1000.6)."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from typing import Final
 
-# Of aborts: the object may exist, but cannot be read or written just now.
+# Abort codes of objects that may exist, but temporarily cannot be read or written.
 TRANSIENT: Final = frozenset((0x05040000, 0x08000020, 0x08000021, 0x08000022))
 
 
@@ -22,7 +22,7 @@ class SdoError(Exception):
 class Objects(ABC):
     """Objects of one drive, as integers.
 
-    called: the drive in error sentences, as "node 3" or "slave 2"."""
+    called: the drive in error sentences, such as "node 3" or "slave 2"."""
 
     called: str
 
@@ -41,8 +41,8 @@ class Objects(ABC):
         return int.from_bytes(self.read_bytes(index, subindex), "little", signed=signed)
 
     def find(self, index: int, subindex: int = 0, *, signed: bool = False) -> int | None:
-        """Returns the value of an object; None where the drive refuses to read it, as it does where the object does not
-        exist. Raises SdoError where there is no answer, or the drive cannot read it just now."""
+        """Returns the value of an object; None if the drive refuses to read it, as it does if the object does not
+        exist. Raises SdoError if there is no answer, or the drive temporarily cannot read it."""
         try:
             return self.read(index, subindex, signed=signed)
         except SdoError as error:
@@ -52,15 +52,15 @@ class Objects(ABC):
 
     def write(self, index: int, subindex: int, value: int, bits: int) -> None:
         """Writes an integer of `bits` bits (a multiple of 8), little endian, two's complement below 0. Raises SdoError,
-        also where it does not fit."""
+        also if it does not fit."""
         what = f"0x{index:04X}:{subindex} cannot be written with {value}"
         if not -(1 << (bits - 1)) <= value < 1 << bits:
             raise SdoError(f"{what}: it has {bits} bits")
         self.download(what, index, subindex, (value & ((1 << bits) - 1)).to_bytes(bits // 8, "little"))
 
     def try_to_write(self, index: int, subindex: int, value: int, bits: int) -> bool:
-        """Returns false where the drive refuses it. Raises SdoError where there is no answer, or the drive cannot write
-        it just now, or the value does not fit."""
+        """Writes like `write`. Returns false if the drive refuses it. Raises SdoError if there is no answer, the drive
+        temporarily cannot write it, or the value does not fit."""
         try:
             self.write(index, subindex, value, bits)
         except SdoError as error:
@@ -71,7 +71,7 @@ class Objects(ABC):
 
 
 def abort_text(code: int) -> str:
-    """Returns an abort code with its text, as "SDO abort 0x06020000, the object does not exist"; without one where
+    """Returns an abort code with its text, as "SDO abort 0x06020000, the object does not exist"; without a text if
     ABORTS has none."""
     text = ABORTS.get(code)
     return f"SDO abort 0x{code:08X}" + (f", {text}" if text else "")
