@@ -1,1 +1,1 @@
-"""The live page: what an engine does, in a browser on the same host."""
+"""The live page: the state of an engine, in a browser on the same host."""

@@ -1,9 +1,9 @@
-"""One of several clients of an engine in one process: the commands that it gives, what becomes of them, and the
-heartbeats that keep up what it holds (EN-23).
+"""One of several clients of an engine in one process: its commands, their feedback, and the heartbeats that keep held
+commands active (EN-23).
 
-Each is a client of the engine by itself, and its heartbeats go out only while `hold` was called within the dead man's
-time. Whether the far end hangs, is closed or is cut off, or this process dies: the engine hears no heartbeat and lets
-go."""
+Each is a separate client of the engine, and sends heartbeats only while `hold` was called within the dead man's time.
+If the far end hangs, is closed or is cut off, or this process dies, the engine receives no heartbeat and releases held
+commands."""
 
 from __future__ import annotations
 
@@ -17,32 +17,33 @@ from takt import msgs
 from takt.arguments import to_text
 from takt.view.machine import Machine
 
-RESEND_S = 0.1  # [s] between two tries of a command that is not answered: some 15 before it is given up
-REFRESH_S = 2.0  # after which a command that is not finished is asked about: its last answer may have been lost
-GIVEN_UP_S = 2.0
-ACTIVE, FINAL, ERROR = 1, 2, 4  # states of a feedback; from FINAL on it is the last one
+RESEND_S = 0.1  # interval at which an unanswered command is repeated
+REFRESH_S = 2.0  # interval at which an unfinished command is repeated: its last feedback may have been lost
+GIVEN_UP_S = 2.0  # time without an answer after which a command is given up
+ACTIVE, FINAL, ERROR = 1, 2, 4  # states of a feedback; from FINAL on it is the last
 
 
 @dataclass
 class Given:
+    # A pending command.
     message: msgs.command
-    began: float
-    sent: float
+    began: float  # time.monotonic() [s] at which it was first sent
+    sent: float  # time.monotonic() [s] at which it was last sent
     answered: bool = False
     ticket: int = 0
-    held: bool = False  # goes on until it is let go of
-    let_go: bool = False  # it is to be let go of as soon as it has a ticket
+    held: bool = False  # continues until it is released
+    let_go: bool = False  # to be released as soon as it has a ticket
     released: bool = False  # its release has been sent
-    active: bool = False  # it has been in control
+    active: bool = False  # it was in control at some time
 
     def outlasts(self, feedback: msgs.feedback) -> bool:
-        """Whether its hold outlasts this final feedback: that of a stop does, unless it was refused."""
+        """Returns whether its hold outlasts this final feedback: that of a stop does, unless it was refused."""
         return self.held and self.message.verb == "stop" and (self.active or feedback.state != ERROR)
 
 
 class Client(ABC):
     def __init__(self, network: Any, machine: Machine, kind: str) -> None:
-        """kind: what its name begins with."""
+        """kind: prefix of the client's name."""
         self._network = network
         self._machine = machine
         self.name = f"{kind}-{random.SystemRandom().getrandbits(40):010x}"
@@ -50,24 +51,24 @@ class Client(ABC):
         self._dead_man_s = float(machine.parameters["lcm"]["dead_man_s"])
         self._last_id = 0
         self._given: dict[int, Given] = {}
-        self._holds: list[Given] = []  # stops that are final and hold on
-        self._held_at = 0.0  # when it was said last that something is held
+        self._holds: list[Given] = []  # stops whose feedback is final and that still hold
+        self._held_at = 0.0  # time of the latest call of `hold`
         self._beat_at = 0.0
 
     @abstractmethod
     def _became(self, message: msgs.command, feedback: msgs.feedback) -> None:
-        """What became of a command so far."""
+        """Called with each feedback of a command."""
 
     @abstractmethod
     def _unanswered(self, message: msgs.command) -> None:
-        """The engine does not answer a command, which is given up."""
+        """Called when a command is given up because the engine has not answered within GIVEN_UP_S."""
 
     def hold(self, now: float) -> None:
-        """What is held is still meant to be."""
+        """Confirms that held commands continue. now: time.monotonic() [s]."""
         self._held_at = now
 
     def release(self) -> None:
-        """Lets go of what is held."""
+        """Releases all held commands."""
         now = time.monotonic()
         held = [one for one in self._given.values() if one.held] + self._holds
         self._holds = []
@@ -76,7 +77,8 @@ class Client(ABC):
             self._let_go(given, now)
 
     def tick(self, now: float) -> None:
-        """Beats while something is held and is meant to be; asks again what was not answered."""
+        """Sends heartbeats while commands are held and `hold` confirms them, else releases them; repeats unanswered
+        commands. Call it at least every dead_man_s / 4. now: time.monotonic() [s]."""
         holding = bool(self._holds) or any(one.held for one in self._given.values())
         if holding and now - self._held_at > self._dead_man_s:
             self.release()
@@ -91,7 +93,7 @@ class Client(ABC):
                 self._network.publish("takt/command", given.message.encode())
 
     def take(self, message: msgs.feedback) -> None:
-        """A feedback that passed by."""
+        """Processes a feedback; those of other clients are ignored."""
         if message.client != self.name or message.session != self._session:
             return
         given = self._given.get(message.id)
@@ -113,7 +115,7 @@ class Client(ABC):
             self._send("machine", "release", to_text({"ticket": given.ticket}), now)
 
     def _send(self, target: str, verb: str, arguments: str, now: float, held: bool = False) -> int:
-        """Gives a command, and returns its number."""
+        """Sends a command. Returns its number."""
         if verb == "release":
             for given in [*self._given.values(), *self._holds]:
                 given.released |= bool(given.ticket) and arguments == to_text({"ticket": given.ticket})

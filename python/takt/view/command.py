@@ -19,15 +19,15 @@ from takt.keys import KeyFile, read_key
 from takt.network import usual_url
 from takt.view.server import serving
 
-LOOK_S = 0.2  # from one look at the engine's process to the next
-OPENS_S = 15.0  # that a browser may take to open the page, before the scenario begins without it
+LOOK_S = 0.2  # interval of checks whether the engine's process has ended
+OPENS_S = 15.0  # time for a browser to open the page, before the scenario begins without it
 
 
 def run(
     what: str | None, port: int, browser: bool, pace: str, say: Callable[[str], None], key_file: KeyFile | None = None
 ) -> int:
-    """Shows the engine of a network (its URL, or nothing for the usual one), or one of its own for a machine file, with
-    the key in this file (`read_key`)."""
+    """Shows the engine of a network (its URL; None: the default one), or an own engine for a machine file, with the key
+    in this file (`read_key`). port 0: any. Returns the exit status."""
     key = read_key(key_file)
     end_in_order()
     if what is None or "://" in what:
@@ -36,7 +36,7 @@ def run(
             _show(address, f"the engine on {url}", browser, say)
             wait_until_ended()
     file = Path(what or "")
-    _core.load_machine(*read_machine(file))  # says what is wrong with it
+    _core.load_machine(*read_machine(file))  # raises if the file is invalid
     url = free_url()
     with contextlib.ExitStack() as stack:
         directory = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="takt-view-")))
@@ -48,14 +48,14 @@ def run(
 
 @dataclass(frozen=True)
 class Beside:
-    """The page of an engine that somebody else runs: a context for as long as that is, given the engine's network. It
-    begins when the page has drawn something, or when that takes too long."""
+    """The live page of an engine that the caller runs, as a context: call it with the URL of the engine's network. It
+    begins when the page has drawn something, or after OPENS_S."""
 
-    shows: str  # what the page shows at first, as in its address
+    shows: str  # initial view of the page, as in its address
     port: int  # 0: any
     browser: bool
     say: Callable[[str], None]
-    machine: Path | None = None  # its file
+    machine: Path | None = None  # machine file
 
     @contextlib.contextmanager
     def __call__(self, url: str) -> Iterator[None]:
@@ -71,8 +71,8 @@ class Beside:
             yield
 
     def stay(self) -> None:
-        """Until Ctrl-C."""
-        with contextlib.suppress(KeyboardInterrupt):  # it may come as soon as it is said
+        """Waits for Ctrl-C."""
+        with contextlib.suppress(KeyboardInterrupt):  # it may come at once
             self.say("the engine and its page stay until Ctrl-C")
             wait_until_ended()
 

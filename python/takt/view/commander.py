@@ -1,7 +1,7 @@
-"""Commands that a page gives: only those named here, only where the machine file allows it.
+"""Commands from a page: only those listed here, and only if the machine file allows them.
 
-Jogging goes on as long as the page says so (EN-23): each page is a client of the engine by itself, which is told again
-and again that the button is still held."""
+Jogging continues only while the page confirms it (EN-23): each page is a separate client of the engine, and repeatedly
+reports that the button is still held."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from takt.tables import KINDS
 from takt.view.client import Client
 from takt.view.machine import Machine
 
-# By kind of component: verbs with the arguments that a page may give.
+# By kind of component: verbs that a page may give, with their permitted arguments.
 ALLOWED: dict[str, dict[str, frozenset[str]]] = {
     "machine": {
         "emergency_stop": frozenset(),
@@ -43,23 +43,23 @@ ALLOWED: dict[str, dict[str, frozenset[str]]] = {
     "track": {verb: frozenset() for verb in ("enable", "disable", "reset")},
     "planar_group": {verb: frozenset() for verb in ("enable", "disable", "reset")},
 }
-HELD = {("axis", "jog"), ("group", "jog")}  # go on only while they are held
+HELD = {("axis", "jog"), ("group", "jog")}  # continue only while they are held
 Tell = Callable[[dict[str, Any]], None]
 
 
 class RefusedError(Exception):
-    """Why a page may not give a command."""
+    """A page may not give a command; the text says why."""
 
 
 class Commander(Client):
-    """What one page commands. `tell` takes what becomes of it."""
+    """The commands of one page. `tell` receives errors of them."""
 
     def __init__(self, network: Any, machine: Machine, tell: Tell) -> None:
         super().__init__(network, machine, "page")
         self._tell = tell
 
     def give(self, target: str, verb: str, arguments: Mapping[str, Any], now: float) -> None:
-        """Gives a command, or raises RefusedError with a sentence."""
+        """Gives a command. Raises RefusedError with a sentence."""
         if not self._machine.parameters["view"]["commands"]:
             raise RefusedError("the machine file does not let the page command: view: {commands: true}")
         source = self._machine.by_name.get(target)
@@ -75,7 +75,7 @@ class Commander(Client):
         if held:
             self.release()
             self._held_at = now
-            self._beat(now)  # the name is known before the command needs it
+            self._beat(now)  # the engine must know the client before the command
         self._send(target, verb, to_text(arguments), now, held)
 
     def _became(self, message: msgs.command, feedback: msgs.feedback) -> None:

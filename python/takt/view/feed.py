@@ -1,8 +1,8 @@
-"""What an engine says over LCM, for the page.
+"""The messages of an engine over LCM, for the page.
 
-Two subscriptions of each component: the overview takes the newest message of everything some times a second and lets
-LCM drop the others before Python sees them; the scope takes every message of the few components whose signals somebody
-looks at, into rings. All of it happens in `tick`, on one thread; in between LCM's own threads keep what comes."""
+Each component has up to two subscriptions: the overview takes its newest message several times a second and lets LCM
+drop the others before they reach Python; the scope takes every message of the few components whose signals are shown,
+into rings. All processing happens in `tick`, on one thread; between ticks LCM's own threads store the messages."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ from takt.view.overview import Overview
 from takt.view.ring import Ring
 from takt.view.shapes import Routes, Shapes
 
-QUEUE = 200_000  # messages that wait for the next tick, of all that must not get lost
-AT_ONCE = 2000  # messages of one tick, besides states
+QUEUE = 200_000  # capacity for messages until the next tick, on channels that must not lose any
+AT_ONCE = 2000  # most messages of one tick, besides states
 SILENCE_S = 3.0  # silence after which the engine counts as gone
-TAKEN_OVER_S = 1.5  # without one, and another engine is heard: that one took its place
-KEPT_S = 30.0  # how long signals are kept that nobody looks at, for a page that comes back
+TAKEN_OVER_S = 1.5  # silence after which another engine that is heard replaces it
+KEPT_S = 30.0  # how long signals that no page shows are kept, for a page that comes back
 
 
 class Tap:
-    """All messages of one component, and the last values of those of its signals that are looked at."""
+    """All messages of one component, and the latest values of those of its signals that are shown."""
 
     def __init__(self, source: Source, period_s: float) -> None:
         self.source = source
         self.ring = Ring(())
-        self.lost = 0  # on the way: gaps in the sequence
+        self.lost = 0  # messages lost: gaps in the sequence
         self.malformed = 0
         self.idle_since = time.monotonic()
         self._period_ns = period_s * 1e9
@@ -83,7 +83,7 @@ class Tap:
 
 class Feed:
     def __init__(self, url: str, key: Key | None = None, file: Path | None = None) -> None:
-        """file: machine file on this host; if the machine that runs equals it, the meshes that it names are drawn."""
+        """file: machine file on this host; if it equals the running machine, the meshes that it names are drawn."""
         self.url = url
         self._file = file
         self.machine: Machine | None = None
@@ -92,14 +92,14 @@ class Feed:
         self.made_cams = MadeCams(drawn)
         self.taps: dict[int, Tap] = {}
         self.engine: dict[str, Any] | None = None
-        self.objects: dict[str, list[list[float]]] = {}  # what lies on belts
+        self.objects: dict[str, list[list[float]]] = {}  # objects on belts
         self.shapes = Shapes()  # of tracks
         self.routes = Routes()  # of movers
         self.links: dict[str, list[list[float]]] = {}  # poses of the links of groups
-        self.trouble = ""  # what is wrong beside the engine, in a sentence
-        self.messages = 0  # of the scope, so far
+        self.trouble = ""  # a problem outside the engine, as a sentence
+        self.messages = 0  # messages of the scope so far
         self.epoch = 0  # counts the machines that were seen
-        self.listeners: set[Callable[[msgs.feedback], None]] = set()  # to what becomes of commands
+        self.listeners: set[Callable[[msgs.feedback], None]] = set()  # called with each feedback
         self._heard = 0.0
         self._other_heard = 0.0
         self._key = key
@@ -118,7 +118,7 @@ class Feed:
 
     @property
     def gone(self) -> bool:
-        """No engine is heard."""
+        """No engine has been heard for SILENCE_S."""
         return self.machine is None or time.monotonic() - self._heard > SILENCE_S
 
     @property
@@ -127,20 +127,21 @@ class Feed:
 
     @property
     def _latest_cycle(self) -> float:
-        """No component can be later than this, by what the engine itself said, whose messages have the run's number."""
+        """Upper bound of the cycle of any component, from the engine's own state, whose messages carry the number of
+        the run."""
         if self.engine is None or self.machine is None:
             return math.inf
         return float(self.engine["cycle"]) + JUMP_S / self.machine.period_s
 
     @property
     def network(self) -> Any:
-        """Where commands go."""
+        """The network for commands."""
         return self._news
 
-    # --- what is looked at ---
+    # --- shown signals ---
 
     def look_at(self, wanted: Iterable[tuple[int, str]]) -> None:
-        """The signals that all pages together look at: (component, field). Others are kept for a while."""
+        """Sets the signals that all pages together show: (component, field). Others are kept for KEPT_S."""
         if self.machine is None:
             return
         fields: dict[int, list[str]] = {}
@@ -165,11 +166,11 @@ class Feed:
         self._tap_subscriptions[source.index] = subscription
         return tap
 
-    # --- what has come ---
+    # --- received messages ---
 
     def tick(self) -> None:
-        """Takes everything that has come since the last one."""
-        # Of the newest states new ones may come as fast as they are taken: one of each is enough.
+        """Processes all messages received since the previous call."""
+        # New states may arrive as fast as they are taken: one of each suffices.
         _drain(self._news, AT_ONCE + (len(self.machine.sources) if self.machine else 0))
         _drain(self._scope, QUEUE)
         for tap in self.taps.values():
@@ -230,7 +231,7 @@ class Feed:
             self._subscriptions.append(self._newest(f"takt/mover_routes/{mover}", self._on_route))
 
     def _newest(self, channel: str, handler: Any) -> Any:
-        """One message is enough until the next tick."""
+        """Subscribes to a channel with a queue of one message: the newest one suffices until the next tick."""
         subscription = self._news.subscribe(re.escape(channel), handler)
         subscription.set_queue_capacity(1)
         return subscription
@@ -304,8 +305,8 @@ def _drain(network: Any, most: int) -> None:
 
 
 def _decoded(kind: Any, data: bytes) -> Any:
-    """The message, or None where the bytes are something else."""
+    """Returns the message; None if the bytes are invalid."""
     try:
         return kind.decode(data)
-    except Exception:  # generated code raises whatever comes
+    except Exception:  # generated code raises any exception
         return None

@@ -1,7 +1,7 @@
 """`takt foxglove`: the scene and the signals of a running engine, live for Foxglove, by Foxglove's own server (PY-27).
 
-What a client sees are the topics that `takt export --mcap` writes: /scene and /tf of the same description, and one of
-each component, with what it publishes."""
+A client sees the topics that `takt export --mcap` writes: /scene and /tf of the same description, and one topic per
+component with its published values."""
 
 from __future__ import annotations
 
@@ -35,8 +35,7 @@ NEEDS = "a live link to Foxglove needs the package foxglove-sdk: pip install 'ta
 
 
 class Link:
-    """A server of Foxglove's, and what it says of one engine after the other. All of it happens in `tick`, on one
-    thread."""
+    """A Foxglove server that publishes one engine after the other. All of it happens in `tick`, on one thread."""
 
     def __init__(self, feed: Feed, port: int) -> None:
         try:
@@ -48,14 +47,14 @@ class Link:
         self._context = foxglove.Context()
         self._epoch = 0
         self._channels: dict[str, Any] = {}
-        self._last: dict[str, Any] = {}  # what was said last of each frame and belt
-        self._complete = threading.Event()  # all is to be said again
-        listener: Any = _Listener(self._complete)  # the package's protocol asks for more than it needs
+        self._last: dict[str, Any] = {}  # last published value of each frame and belt
+        self._complete = threading.Event()  # the complete state is to be published
+        listener: Any = _Listener(self._complete)  # the package's protocol demands more methods than it needs
         try:
             self._server = foxglove.start_server(
                 name="takt", host=HOST, port=port, context=self._context, server_listener=listener
             )
-        except Exception as error:  # the package has no narrower one
+        except Exception as error:  # the package raises nothing narrower
             raise TaktError(f"port {port} cannot be used for Foxglove: {error}") from None
 
     @property
@@ -66,7 +65,7 @@ class Link:
         self._server.stop()
 
     def tick(self) -> None:
-        """Says what is new."""
+        """Publishes what has changed."""
         self._feed.tick()
         machine, overview = self._feed.machine, self._feed.overview
         if machine is None or overview is None or self._feed.engine is None:
@@ -136,7 +135,7 @@ class Link:
             if not math.isfinite(value):
                 continue
             if field in kind.names:
-                with contextlib.suppress(KeyError, IndexError):  # of another version
+                with contextlib.suppress(KeyError, IndexError):  # value of another version
                     said[field] = str(kind.names[field][int(value)])
             else:
                 said[field] = bool(value) if kind.dtypes[field] == np.bool_ else value
@@ -144,7 +143,8 @@ class Link:
 
 
 def _schema(machine: Machine, source: Source) -> dict[str, Any]:
-    """As `takt export --mcap` has it: units in the descriptions, enumerations as texts."""
+    """Returns the schema of a component's topic, as in `takt export --mcap`: units in the descriptions, enumerations as
+    texts."""
     kind, own = KINDS[source.kind], units_of(machine.parameters, KINDS[source.kind], source.parameters)
     properties: dict[str, Any] = {"time_s": {"type": "number", "description": "s"}}
     for field in kind.units:
@@ -158,7 +158,7 @@ def _schema(machine: Machine, source: Source) -> dict[str, Any]:
 
 
 class _Listener:
-    """Of Foxglove's server, on threads of its own: a client that has come wants to hear all."""
+    """Listener of Foxglove's server, on its own threads: a new subscriber needs the complete state."""
 
     def __init__(self, complete: threading.Event) -> None:
         self._complete = complete
@@ -173,7 +173,8 @@ class _Listener:
 
 
 def run(what: str | None, port: int, pace: str, say: Callable[[str], None], key_file: KeyFile | None = None) -> int:
-    """Serves the engine of a network (its URL, or nothing for the usual one), or one of its own for a machine file."""
+    """Serves the engine of a network (its URL; None: the default one), or an own engine for a machine file. Returns the
+    exit status."""
     key = read_key(key_file)
     end_in_order()
     with contextlib.ExitStack() as stack:
@@ -181,7 +182,7 @@ def run(what: str | None, port: int, pace: str, say: Callable[[str], None], key_
             url, file, engine = what or usual_url(), None, None
         else:
             url, file = free_url(), Path(what)
-            _core.load_machine(*read_machine(file))  # says what is wrong with it
+            _core.load_machine(*read_machine(file))  # raises if the file is invalid
         link = Link(Feed(url, key, file), port)
         stack.callback(link.stop)
         if file is not None:

@@ -1,7 +1,7 @@
 """Messages with the state of a component as rows of a table: many at once, without decoding each.
 
-LCM's encoding has every number at a fixed place, but for what follows a text; the only text in a state is the name of
-its component, which does not change."""
+LCM's encoding has every number at a fixed offset, except after a text; the only text in a state is the name of its
+component, which does not change."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ import numpy as np
 from takt.tables import KINDS, place_of
 
 HEAD = ("cycle", "time_ns", "sequence")
-# What differs from a fresh message in all of its bytes, by type; the types LCM has for it, by length.
+# By type: a value that differs from a fresh message in all bytes; by type and length: NumPy's type for LCM's encoding.
 _PROBES: dict[type, Any] = {int: -1, bool: True, float: 1 / 3}
 _TYPES = {(int, 1): ">i1", (int, 2): ">i2", (int, 4): ">i4", (int, 8): ">i8", (bool, 1): ">i1", (float, 8): ">f8"}
-_NAME_AT = 8 + 4 * 8  # behind the fingerprint, utime and HEAD
+_NAME_AT = 8 + 4 * 8  # after the fingerprint, utime and HEAD
 
 
 @functools.cache
 def _places(kind: str) -> dict[str, tuple[int, str]]:
-    """Offset and type of each field in a message whose component has no name. The message itself is asked: a field that
-    is set changes the bytes that hold it."""
+    """Returns offset and type of each field in a message whose component has no name. They are measured: setting a
+    field changes the bytes that hold it."""
     message = KINDS[kind].message
     fresh = message().encode()
     paths = {field: field for field in HEAD} | {field: place_of(field, message) for field in KINDS[kind].getters}
@@ -41,7 +41,7 @@ def _places(kind: str) -> dict[str, tuple[int, str]]:
 
 
 class Layout:
-    """How messages of the component `name` lie in memory."""
+    """The memory layout of messages of the component `name`."""
 
     def __init__(self, kind: str, name: str) -> None:
         message = KINDS[kind].message()
@@ -62,7 +62,7 @@ class Layout:
         self._name = fresh[_NAME_AT : _NAME_AT + 4 + encoded + 1]
 
     def fits(self, data: bytes) -> bool:
-        """Whether this is a message of the component."""
+        """Returns whether this is a message of the component."""
         return (
             len(data) == self.dtype.itemsize
             and data.startswith(self._fingerprint)
@@ -70,5 +70,5 @@ class Layout:
         )
 
     def rows(self, messages: list[bytes]) -> np.typing.NDArray[np.void]:
-        """Messages that fit, as rows."""
+        """Returns messages that fit as rows."""
         return np.frombuffer(b"".join(messages), self.dtype)

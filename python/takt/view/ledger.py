@@ -1,4 +1,4 @@
-"""Who was told what, and what became of it: from the commands and feedbacks that pass by."""
+"""Commands of all clients and their results, from the commands and feedbacks on the network."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from takt import msgs
 
-MOST = 5000  # commands remembered
+MOST = 5000  # commands stored
 MOST_EVENTS = 500
 STATES = ("busy", "active", "done", "aborted", "error")
 FINAL = 2  # from this state on
@@ -26,10 +26,10 @@ class Event(NamedTuple):
 
 class Ledger:
     def __init__(self, targets: Collection[str]) -> None:
-        self._targets = targets  # there are; of others only events are kept
+        self._targets = targets  # existing targets; of others only events are kept
         self.events: deque[Event] = deque(maxlen=MOST_EVENTS)
-        self.count = 0  # of all events ever
-        self.touched: set[str] = set()  # targets of which there is something new; whoever reads it empties it
+        self.count = 0  # number of all events so far
+        self.touched: set[str] = set()  # targets with news; the reader clears it
         self._given: OrderedDict[Key, tuple[str, str]] = OrderedDict()
         self._tickets: OrderedDict[int, str] = OrderedDict()
         self._open: dict[str, OrderedDict[Key, str]] = {}
@@ -38,7 +38,7 @@ class Ledger:
 
     def take_command(self, message: msgs.command, cycle: int) -> None:
         key = (message.client, message.session, message.id)
-        if key in self._given:  # sent again
+        if key in self._given:  # a repetition
             return
         arguments = message.arguments.strip()
         text = f"{message.verb} {arguments}" if arguments not in ("", "{}") else message.verb
@@ -65,18 +65,19 @@ class Ledger:
         self.touched.add(target)
 
     def command_of(self, target: str, ticket: int = 0) -> str:
-        """What the component carries out: the command of this ticket, else the oldest that has not ended."""
+        """Returns the command that a component executes: the one with this ticket; ticket 0: the oldest that has not
+        ended. "" if there is none."""
         if ticket:
             return self._tickets.get(ticket, f"command {ticket}")
         still_open = self._open.get(target)
         return next(iter(still_open.values())) if still_open else ""
 
     def trouble_of(self, target: str) -> str:
-        """What was refused or failed last, for people."""
+        """Returns the sentence of the last refused or failed command; "" if there is none."""
         return self._trouble.get(target, "")
 
     def since(self, count: int) -> list[Event]:
-        """The events from this number on, as far as they are remembered."""
+        """Returns the events from this number on, as far as they are stored."""
         new = min(self.count - count, len(self.events))
         return list(self.events)[len(self.events) - new :] if new > 0 else []
 

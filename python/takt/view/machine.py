@@ -1,4 +1,4 @@
-"""The machine that an engine runs, as the page needs it: its components, their signals, what stands where."""
+"""The machine that an engine runs, as the page needs it: its components, their signals, and its geometry."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ from takt.view.status import LIVE
 
 CAM_POINTS = 400
 MOST_JOINTS = 4000
-MOST_KNOTS = 60  # of a cam that can be edited
-MOST_PIECES = 9  # of a law, and more
-SLOPE_STEP = 1e-6  # of the largest slope, what rounding leaves
+MOST_KNOTS = 60  # largest number of knots of an editable cam
+MOST_PIECES = 9  # at least the number of pieces of any law
+SLOPE_STEP = 1e-6  # relative to the largest slope: tolerance for rounding
 TRACK_STEP = 10.0  # mm
 
 
 @dataclass(frozen=True)
 class Source:
-    """A component and where its messages come from."""
+    """A component and the channel of its messages."""
 
     index: int
     name: str
@@ -52,10 +52,10 @@ class Source:
 
 
 class Machine:
-    """What an engine said it runs. Raises ConfigError where this package cannot read it.
+    """The machine that an engine describes. Raises ConfigError if this package cannot read it.
 
-    folder: where files are that the text names; without, none is opened. file: a machine file of this host; if it says
-    the same, the meshes that it names are drawn."""
+    folder: base of the files that the text names; None: no file is opened. file: a machine file on this host; if its
+    content is the same, the meshes that it names are drawn."""
 
     def __init__(self, message: msgs.machine_description, folder: Path | None = None, file: Path | None = None) -> None:
         self.run_id = message.run_id
@@ -79,7 +79,7 @@ class Machine:
         self.mechanisms = self._mechanisms()
 
     def describe(self) -> dict[str, Any]:
-        """Everything that does not change while it runs, for the page."""
+        """Returns all constant properties of the machine, for the page."""
         used = [kind for kind in KINDS.values() if self.names[kind.name]]
         about = {kind.name: {f: text for f, _, text, _ in _core.output_fields(kind.name)} for kind in used}
         return {
@@ -135,7 +135,7 @@ class Machine:
             shown["range"] = [limits["lower"], limits["upper"]]
         return shown
 
-    # --- from above ---
+    # --- plan view ---
 
     def _plan(self) -> dict[str, Any]:
         of = self.parameters
@@ -161,7 +161,7 @@ class Machine:
         }
 
     def _tracks(self) -> list[dict[str, Any]]:
-        """Those that have their geometry from the machine file; what commands made of them since the engine says."""
+        """Returns the tracks whose geometry is in the machine file; the engine reports later changes by commands."""
         try:
             tracks = TrackLayout(self.text).tracks if self.parameters["tracks"] else ()
         except (TaktError, ConfigError):
@@ -207,7 +207,7 @@ class Machine:
     # --- arms ---
 
     def _mechanisms(self) -> dict[str, tuple[Kinematics, list[str], Array]]:
-        """Of each group with kinematics: them, its axes, and where its base stands."""
+        """Returns, for each group with kinematics: its kinematics, its axes, and the pose of its base as a matrix."""
         found = {}
         for group in self.parameters["groups"]:
             given = {name: value for name, value in (group.get("kinematics") or {}).items() if value}
@@ -223,13 +223,14 @@ class Machine:
         return make_scene(self.parameters, self.mechanisms, *self._drawn_from)
 
     def link_poses(self, group: str, joints: Array) -> Array:
-        """(n, links, 7): where the links of a group are in the world, for rows of positions of its axes."""
+        """Returns the poses (n, links, 7) of the links of a group in the world frame, for rows of positions of its
+        axes."""
         mechanism, _, base = self.mechanisms[group]
         return link_poses(mechanism, base, joints[:, : mechanism.axes])
 
 
 def _loaded(file: Path) -> Any:
-    """What a machine file says; None where it cannot be read."""
+    """Returns the content of a machine file; None if it cannot be read."""
     try:
         return json.loads(_core.load_machine(*read_machine(file)))
     except (ConfigError, OSError):
@@ -237,7 +238,8 @@ def _loaded(file: Path) -> Any:
 
 
 def drawn(table: Any) -> dict[str, Any]:
-    """A cam as the page draws it: position, velocity, acceleration and jerk. Of many points not every joint."""
+    """Returns a cam as the page draws it: position, velocity, acceleration and jerk. If there are very many joints,
+    only some are sampled."""
     joints = table.joints[:: 1 + len(table.joints) // MOST_JOINTS]
     x = np.unique(np.concatenate([np.linspace(table.begin, table.end, CAM_POINTS), joints]))
     return {
@@ -251,9 +253,9 @@ def drawn(table: Any) -> dict[str, Any]:
 
 
 def _knots(table: Any) -> list[list[float]] | None:
-    """Where the page lets a cam be dragged: [x, y, y', y''] at each point, or at both ends of each segment, not where
-    pieces of one law meet; None: they are too many, or the slope has steps, as that of straight lines between points
-    has."""
+    """Returns the points at which the page lets a cam be dragged: [x, y, y', y''] at each point, or at both ends of
+    each segment, not where pieces of one law meet. None if there are too many, or the slope has steps, as with straight
+    lines between points."""
     if len(table.joints) > MOST_PIECES * MOST_KNOTS:
         return None
     source = json.loads(table.source) if isinstance(table.source, str) else table.source
@@ -263,7 +265,7 @@ def _knots(table: Any) -> list[list[float]] | None:
     if len(x) > MOST_KNOTS:
         return None
     y, v, a, _ = (values.copy() for values in table.at(x))
-    if table.cyclic:  # one point of the turn
+    if table.cyclic:  # both ends are one point of the cycle
         v[-1], a[-1] = v[0], a[0]
     left = table.at(np.nextafter(x, -np.inf))[1]
     if np.abs(left - v).max() > SLOPE_STEP * (1 + np.abs(v).max()):
@@ -280,7 +282,7 @@ def _finite(values: Array) -> list[float | None]:
 
 
 def _thin(s: Array) -> Array:
-    """Which points of a line are far enough from those before, the last one always."""
+    """Returns which points of a line are far enough from the previous ones; always the last one."""
     steps = np.floor(s / TRACK_STEP)
     kept = np.concatenate(([True], np.diff(steps) > 0))
     kept[-1] = True

@@ -1,4 +1,5 @@
-"""Cams made at run time, gathered from commands (CAM-88): those that pass by, for the page, or those of a log."""
+"""Cams made at run time, assembled from commands (CAM-88): from those on the network, for the page, or from those of a
+log."""
 
 from __future__ import annotations
 
@@ -12,35 +13,35 @@ from takt import cam, msgs
 from takt.errors import ConfigError
 from takt.yaml_text import load
 
-MOST_PIECES = 500  # of one cam; of a longer one the page shows no curve
-DRAFTS = 4  # that are remembered; an engine has two
-BUILDS = 16  # under way
-KNOWN = 256  # cams
+MOST_PIECES = 500  # of one cam; the page shows no curve of a longer one
+DRAFTS = 4  # stored drafts; an engine has two
+BUILDS = 16  # in progress
+KNOWN = 256  # stored cams
 DONE = msgs.feedback.STATE_DONE
 VERBS = {"begin_cam", "add_cam_points", "add_cam_segments", "build_cam"}
 
 Key = tuple[str, int, int]
-Draft = OrderedDict[Key, str]  # the commands that sent a cam, as texts
+Draft = OrderedDict[Key, str]  # arguments of the commands that sent a cam
 
 
 class MadeCams:
-    """Cams by number, and what is kept of each. What was made before anyone listened, or only heard in part, is not
-    among them."""
+    """Cams by number, and the stored form of each. Cams made before listening began, or received only in part, are
+    missing."""
 
     def __init__(self, drawn: Callable[[cam.Table], dict[str, Any]], builds: int = BUILDS) -> None:
-        """drawn: what is kept of a cam. builds: how many may be under way."""
-        self.count = 0  # of cams so far
+        """drawn: returns the stored form of a cam. builds: largest number of builds in progress."""
+        self.count = 0  # number of cams so far
         self._most_builds = builds
         self._drawn = drawn
         self._drafts: OrderedDict[str, Draft] = OrderedDict()  # by name
         self._builds: OrderedDict[Key, Draft] = OrderedDict()
-        self._known: OrderedDict[int, dict[str, Any]] = OrderedDict()  # by how many there were
+        self._known: OrderedDict[int, dict[str, Any]] = OrderedDict()  # by the count at their creation
 
     def take_command(self, message: msgs.command) -> None:
         if message.target != "machine" or message.verb not in VERBS:
             return
         key = (message.client, message.session, message.id)
-        if key in self._builds or any(key in draft for draft in self._drafts.values()):  # sent again
+        if key in self._builds or any(key in draft for draft in self._drafts.values()):  # a repetition
             return
         first = message.verb == "begin_cam"
         name = _read(message.arguments).get("name" if first else "cam")
@@ -70,12 +71,12 @@ class MadeCams:
             _remember(self._known, self.count, {"number": int(number), **self._drawn(table)}, KNOWN)
 
     def since(self, count: int) -> list[dict[str, Any]]:
-        """Those behind this number of cams, as far as they are remembered."""
+        """Returns the cams made after the first `count`, as far as they are stored."""
         return [known for at, known in self._known.items() if at > count]
 
 
 def _table(draft: Draft) -> cam.Table | None:
-    """None: pieces are missing."""
+    """Returns the cam of a draft; None if pieces are missing or invalid."""
     head, *pieces, build = (_read(text) for text in draft.values())
     lists: dict[str, list[Any]] = {"points": [], "segments": []}
     try:

@@ -1,4 +1,4 @@
-"""The newest state of every component: numbers for the page's pictures, and words where they have changed."""
+"""The newest state of every component: numbers for the page's pictures, and texts when they have changed."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class _Batch:
         self.rows = self.sources[0].layout.rows(self.messages)
 
     def changed(self) -> npt.NDArray[np.intp]:
-        """Places in the batch of the components whose texts have changed."""
+        """Returns the indices in the batch of the components whose texts have changed."""
         fields = WORDS.get(self.kind, ())
         now = np.stack([self.rows[f] for f in fields], axis=1).astype(float) if fields else np.zeros(self.seen.shape)
         news = np.any((now != self.seen) & ~(np.isnan(now) & np.isnan(self.seen)), axis=1) & self.heard
@@ -43,9 +43,9 @@ class _Batch:
 class Overview:
     def __init__(self, machine: Machine) -> None:
         self.machine = machine
-        self.cycle = 0  # the newest that was heard
+        self.cycle = 0  # the newest one received
         self.revision = 0
-        self.words: dict[int, tuple[int, Row]] = {}  # of each component: revision, row
+        self.words: dict[int, tuple[int, Row]] = {}  # by component: revision, row
         alike: dict[tuple[str, int], list[Source]] = {}
         for source in machine.sources:
             alike.setdefault((source.kind, source.layout.dtype.itemsize), []).append(source)
@@ -62,7 +62,7 @@ class Overview:
         batch.heard[i] = True
 
     def update(self, ledger: Ledger, latest_cycle: float) -> None:
-        """Decodes the newest messages: numbers, words, and `cycle`, which passes over cycles after `latest_cycle`."""
+        """Decodes the newest messages into numbers, texts, and `cycle`, which ignores cycles after `latest_cycle`."""
         touched = {self.machine.by_name[t].index for t in ledger.touched if t in self.machine.by_name}
         ledger.touched.clear()
         for batch in self._batches:
@@ -80,17 +80,17 @@ class Overview:
         return [row for changed_at, row in self.words.values() if changed_at > revision]
 
     def value(self, name: str, field: str) -> float:
-        """The newest value of a field of a component, in its unit; NaN before its first message."""
+        """Returns the newest value of a field of a component, in its unit; NaN before its first message."""
         batch, i = self._place[self.machine.by_name[name].index]
         return float(batch.rows[field][i]) if batch.heard[i] else float("nan")
 
     def heard(self, index: int) -> bool:
-        """Whether a message of the component has been received."""
+        """Returns whether a message of the component has been received."""
         batch, i = self._place[index]
         return bool(batch.heard[i])
 
     def values(self, index: int, fields: Mapping[str, Any]) -> Floats:
-        """All that a component publishes, in the order of its fields; NaN before it was heard."""
+        """Returns the given fields of a component, in their order; NaN before its first message."""
         batch, i = self._place[index]
         if not batch.heard[i]:
             return np.full(len(fields), np.nan)

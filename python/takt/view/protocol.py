@@ -1,8 +1,8 @@
-"""What goes over the socket between server and page.
+"""The protocol of the socket between server and page.
 
-To the page: the machine as JSON text, when there is a new one; then frames, twenty a second. A frame is a JSON header
-and float64 numbers behind it: 4 bytes with the header's length, the header, padding to 8 bytes, the numbers. The header
-says what the numbers are. To the server: JSON texts, see `Request`."""
+To the page: the machine as JSON text when there is a new one; then frames, up to twenty a second. A frame is a JSON
+header followed by float64 numbers: 4 bytes with the header's length, the header, padding to 8 bytes, the numbers. The
+header describes the numbers. To the server: JSON texts, see `Request`."""
 
 from __future__ import annotations
 
@@ -20,27 +20,27 @@ from takt.view.machine import Machine
 
 MOST_SIGNALS = 256
 MOST_DETAILS = 16
-MOST_LETTERS = 60  # of a name or a unit
-SIGNS = set("\"'\\{}[]:,#")  # that end or begin something in the text of arguments
-POINTS = 20  # of a cam in one command
+MOST_LETTERS = 60  # longest name or unit
+SIGNS = set("\"'\\{}[]:,#")  # delimiters in the text of arguments
+POINTS = 20  # of a cam, most in one command
 LARGEST = sys.float_info.max  # integers of JSON may be larger
 KEYS = dict.fromkeys(("ack", "epoch", "signals", "after", "details", "command", "hold")).keys()
 
 
 class RequestError(Exception):
-    """What is wrong with what a page asked for."""
+    """The request of a page is invalid; the text says why."""
 
 
 @dataclass(frozen=True)
 class Request:
-    """What a page wants to know from now on; None: as before."""
+    """The data that a page requests from now on; None: unchanged."""
 
-    ack: int | None = None  # the frame it has drawn
+    ack: int | None = None  # the last frame that was drawn
     signals: Mapping[int, tuple[str, ...]] | None = None  # fields by component
-    after: Mapping[int, float] = field(default_factory=dict)  # by component: the newest cycle it has
-    details: tuple[int, ...] | None = None  # components of which it wants all that they publish
+    after: Mapping[int, float] = field(default_factory=dict)  # by component: the newest cycle that the page has
+    details: tuple[int, ...] | None = None  # components with all their fields
     command: tuple[str, str, dict[str, Any]] | None = None  # target, verb, arguments
-    hold: bool | None = None  # a button is held; it is let go of
+    hold: bool | None = None  # true: a button is held; false: it was released
 
 
 def frame(header: Mapping[str, Any], numbers: Sequence[Array]) -> bytes:
@@ -52,7 +52,7 @@ def frame(header: Mapping[str, Any], numbers: Sequence[Array]) -> bytes:
 
 
 def parse(text: str, machine: Machine | None, epoch: int) -> Request:
-    """What a page says. What it says of a machine that is gone is left out."""
+    """Returns the request in a text. Requests about a former machine are reduced to `ack`. Raises RequestError."""
     try:
         said = json.loads(text)
     except (ValueError, RecursionError):
@@ -104,12 +104,12 @@ def _command(said: Any) -> tuple[str, str, dict[str, Any]]:
 
 
 def _is_plain(value: Any) -> bool:
-    """Nothing in it that an argument's text could be ended with."""
+    """Returns whether a value holds nothing that could end the text of an argument."""
     return type(value) in (bool, int, float) or (isinstance(value, str) and _is_word(value))
 
 
 def _is_word(text: str) -> bool:
-    """A name or a unit."""
+    """Returns whether a text is a name or a unit."""
     return 0 < len(text) <= MOST_LETTERS and text.isprintable() and not SIGNS & set(text)
 
 

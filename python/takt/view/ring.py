@@ -15,14 +15,14 @@ CAPACITY = 1 << 15  # rows: half a minute at 1 kHz
 class Piece(NamedTuple):
     """Rows that a reader has not read yet."""
 
-    cursor: int  # where it goes on
-    skipped: int  # rows that were overwritten before it came
+    cursor: int  # start of the next read
+    skipped: int  # rows that were overwritten before they were read
     cycles: Floats
     columns: Floats  # (fields, rows)
 
 
 class Ring:
-    """Rows are counted from the first one ever written; readers keep where they are themselves."""
+    """Rows are counted from the first one ever written; readers store their own position."""
 
     def __init__(self, fields: Sequence[str], capacity: int = CAPACITY) -> None:
         self.fields = tuple(fields)
@@ -40,7 +40,7 @@ class Ring:
         return max(0, self.written - self.capacity)
 
     def append(self, cycles: npt.NDArray[np.generic], columns: npt.NDArray[np.generic]) -> None:
-        """So many rows more; `columns` has a row for each field."""
+        """Appends rows; `columns` has shape (fields, rows)."""
         count = len(cycles)
         kept = min(count, self.capacity)
         at = np.arange(self.written + count - kept, self.written + count) % self.capacity
@@ -49,7 +49,7 @@ class Ring:
         self.written += count
 
     def since(self, cursor: int, fields: Sequence[str], most: int) -> Piece:
-        """The rows from `cursor` on, `most` at most, of these fields."""
+        """Returns the rows from `cursor` on, at most `most`, with these fields."""
         begin = min(max(cursor, self.first), self.written)
         end = min(self.written, begin + most)
         at = np.arange(begin, end) % self.capacity
@@ -59,12 +59,12 @@ class Ring:
         )
 
     def after(self, cycle: float) -> int:
-        """Number of the first row with a later cycle; `written` if there is none."""
+        """Returns the number of the first row with a later cycle; `written` if there is none."""
         at = np.arange(self.first, self.written) % self.capacity
         return self.first + int(np.searchsorted(self._cycles[at], cycle, side="right"))
 
     def with_fields(self, fields: Sequence[str]) -> Ring:
-        """The same rows with other fields; what was not kept of them is NaN."""
+        """Returns the same rows with other fields; values that were not kept are NaN."""
         ring = Ring(fields, self.capacity)
         ring.written = self.written
         ring._cycles[:] = self._cycles

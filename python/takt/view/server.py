@@ -1,4 +1,4 @@
-"""Serves the page on this host, and tells every page what it asked for."""
+"""Serves the page on this host, and sends each page the data that it requests."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ from takt.view.protocol import Request, RequestError, frame, parse
 
 HOST = "127.0.0.1"
 HOSTS = ["127.0.0.1", "localhost"]
-TICK_S = 0.05  # from frame to frame
-AHEAD = 4  # frames that a page may not have drawn yet: a slow one gets fewer and larger ones
-WAITING_S = 1.0  # from one time that a page is told that it waits for an engine to the next
+TICK_S = 0.05  # interval of frames
+AHEAD = 4  # largest number of frames not drawn yet: a slow page receives fewer and larger ones
+WAITING_S = 1.0  # interval of the message that the page waits for an engine
 MOST_ROWS = 8192  # of one component in one frame
-MOST_ANSWERS = 256  # kept for a page that takes no frames: the newest
+MOST_ANSWERS = 256  # newest answers kept for a page that takes no frames
 HEADERS = [
     (b"cache-control", b"no-store"),
     (b"x-content-type-options", b"nosniff"),
@@ -49,10 +49,10 @@ HEADERS = [
 
 
 class Page:
-    """One page that is open."""
+    """One open page."""
 
     def __init__(self, socket: WebSocket, feed: Feed, drawn: threading.Event) -> None:
-        self._drawn = drawn  # set as soon as it has drawn something of an engine
+        self._drawn = drawn  # set as soon as the page has drawn something of an engine
         self._wanted: dict[int, tuple[str, ...]] = {}
         self.ready = asyncio.Event()
         self._socket = socket
@@ -66,17 +66,17 @@ class Page:
         self._shapes = 0
         self._routes = 0
         self._made_cams = 0
-        self._waited = 0.0  # when the page was told last that it waits
+        self._waited = 0.0  # when the page was last informed that it waits
         self._engine: Any = None
         self._sent = 0
         self._acked = 0
         self._skipped = 0
         self._commander: Commander | None = None
-        self._answers: deque[dict[str, Any]] = deque(maxlen=MOST_ANSWERS)  # what became of commands
+        self._answers: deque[dict[str, Any]] = deque(maxlen=MOST_ANSWERS)  # errors of commands
 
     @property
     def signals(self) -> list[tuple[int, str]]:
-        """What it looks at, of the machine that runs now."""
+        """The signals that the page shows, of the running machine."""
         if self._epoch != self._feed.epoch:
             return []
         return [(index, field) for index, fields in self._wanted.items() for field in fields]
@@ -115,13 +115,13 @@ class Page:
             self._cursors = {i: cursor for i, cursor in self._cursors.items() if i in self._wanted}
 
     def tick(self) -> None:
-        """After the feed's: time passes for what is held, and there may be something to tell."""
+        """Call after the feed's tick: handles held commands, and triggers the next frame."""
         if self._commander is not None:
             self._commander.tick(time.monotonic())
         self.ready.set()
 
     def leave(self) -> None:
-        """Lets go of everything."""
+        """Releases all held commands."""
         if self._commander is not None:
             self._commander.release()
             self._feed.listeners.discard(self._commander.take)
@@ -142,7 +142,7 @@ class Page:
         if feed.machine is None:
             waiting = {"waiting": feed.url, "trouble": feed.trouble}
             now = time.monotonic()
-            if waiting != self._waiting or now - self._waited > WAITING_S:  # a page takes silence for a dead server
+            if waiting != self._waiting or now - self._waited > WAITING_S:  # the page takes silence for a dead server
                 self._waiting, self._waited = waiting, now
                 await self._socket.send_text(json.dumps(waiting))
             return
@@ -257,7 +257,7 @@ class Site:
     def _trouble_told(self) -> Iterator[None]:
         try:
             yield
-        except Exception as error:  # a page that says so is better than one that stands still
+        except Exception as error:  # the page shows it, rather than standing still
             trouble = f"the server of this page has failed: {error!r}"
             if self.feed.trouble != trouble:
                 traceback.print_exc()
@@ -307,8 +307,9 @@ def serving(
     key: Key | None = None,
     file: Path | None = None,
 ) -> Iterator[str]:
-    """The page of the engine on this network, on a thread of its own. Yields its address. `drawn` is set as soon as
-    somebody's page has drawn something of the engine. `file`: the machine file that is thought to run there."""
+    """Serves the page of the engine on this network, in a thread, while the context is open. Yields its address. port
+    0: any. `drawn` is set as soon as a page has drawn something of the engine. `file`: the machine file that the engine
+    presumably runs. Raises TaktError if the port cannot be used."""
     site = Site(Feed(url, key, file), drawn or threading.Event())
     with socket.socket() as listener:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

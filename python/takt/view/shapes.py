@@ -1,4 +1,4 @@
-"""What the engine says of shapes for the plan: of tracks, and of routes over the free surface."""
+"""Shapes from the engine for the plan view: tracks, and routes over the free surface."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ import numpy as np
 
 from takt import msgs
 
-DECIMALS = 2  # of places, in mm
+DECIMALS = 2  # of coordinates, in mm
 
 
 def track(name: str, part: str, closed: bool, places: Any) -> dict[str, Any]:
-    """One track as the page knows it. places: (n, 3), position along it, x and y, from where its part is; mm."""
+    """Returns one track in the page's form. places: (n, 3), arc length, x and y relative to its part [mm]."""
     points = np.round(np.asarray(places, dtype=float), DECIMALS)
     return {"name": name, "part": part, "closed": closed, "points": points.ravel().tolist()}
 
 
 class Newest:
-    """The newest of each name. What has not changed is told to a page once."""
+    """The newest shape of each name. Unchanged ones are sent to a page only once."""
 
     def __init__(self) -> None:
-        self.count = 0  # of changes
+        self.count = 0  # number of changes so far
         self._known: dict[str, tuple[int, dict[str, Any]]] = {}
 
     def put(self, new: dict[str, Any]) -> None:
-        """Rejects points that are no numbers: those of a damaged message."""
+        """Stores a shape. One with points that are not finite (a damaged message) is ignored."""
         name = new["name"]
         if not np.all(np.isfinite(new["points"])):
             return
@@ -36,12 +36,12 @@ class Newest:
         self._known[name] = (self.count, new)
 
     def since(self, count: int) -> list[dict[str, Any]]:
-        """Those that changed after so many changes."""
+        """Returns the shapes that changed after the first `count` changes."""
         return [new for changed, new in self._known.values() if changed > count]
 
 
 class Shapes(Newest):
-    """Of tracks."""
+    """Shapes of tracks."""
 
     def __init__(self, parts: Sequence[str] = ()) -> None:
         super().__init__()
@@ -56,7 +56,7 @@ class Shapes(Newest):
 
 
 class Routes(Newest):
-    """Of movers over the free surface."""
+    """Routes of movers over the free surface."""
 
     def take(self, message: msgs.mover_route) -> None:
         points = np.round([message.x, message.y], DECIMALS).T.ravel().tolist()

@@ -1,4 +1,4 @@
-"""What a component is doing and why it waits, in a few words: from what it publishes."""
+"""The activity of a component and why it waits, in a few words: from its published values."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from takt.counted import counted
 from takt.tables import KINDS, named
 
 Values = Mapping[str, Any]
-NamesOf = Callable[[str, int], str]  # of a kind and a number from 1: the component's name
+NamesOf = Callable[[str, int], str]  # kind, number from 1 -> name of the component
 
-# What the page shows of every component all the time.
+# Fields of every component that the page always shows.
 LIVE: dict[str, tuple[str, ...]] = {
     "axis": ("actual_position", "set_velocity", "following_error", "set_position"),
     "flex_cam": (
@@ -51,7 +51,7 @@ LIVE: dict[str, tuple[str, ...]] = {
     "part": ("x", "y", "coordinate_system"),
 }
 
-# What its words are made of: they are made again when one of these changes.
+# Fields from which the texts are made: they are updated when one of these changes.
 WORDS: dict[str, tuple[str, ...]] = {
     "axis": (
         *("state", "error", "active_command", "limited_by", "buffered_commands", "in_step", "synchronizing"),
@@ -89,15 +89,15 @@ WORDS: dict[str, tuple[str, ...]] = {
         "mover_count",
     ),
 }
-TICKETS = {"axis": "active_command", "group": "command"}  # where a component says which command it carries out
+TICKETS = {"axis": "active_command", "group": "command"}  # field with the ticket of the command in control
 
 
 class Words(NamedTuple):
     state: str
     error: int
-    more: str  # what else there is to say
-    waits: str  # why it does not go on; empty: it does, or has nothing to do
-    since: int  # the cycle since which it waits; 0: not known
+    more: str  # further details
+    waits: str  # why it does not proceed; empty: it proceeds, or has nothing to do
+    since: int  # cycle since which it waits; 0: unknown
 
 
 def words(kind: str, values: Values, name_of: NamesOf) -> Words:
@@ -280,7 +280,7 @@ _SAY: dict[str, Callable[[Values, NamesOf, list[str], list[str]], int]] = {
 
 
 def name_in(names: Mapping[str, Sequence[str]]) -> NamesOf:
-    """The names of components by kind and number, as messages speak of them."""
+    """Returns a function that gives the name of a component by kind and number, as messages refer to it."""
 
     def name_of(kind: str, number: int) -> str:
         known = names.get(kind, ())
