@@ -1,10 +1,10 @@
-"""Reports of runs: one HTML page each that needs nothing else. `takt report`, `takt run --report` and `takt demo` write
-them, and so can programs:
+"""Reports of runs: one self-contained HTML page each. `takt report`, `takt run --report` and `takt demo` write them,
+and so can programs:
 
     write_report(recording, verdicts, "reports/mine", "A title")
     write_comparison(compare(before, after), "compared.html")
 
-Everything that the page is made of is kept in the recording (`kept`), so that it can be made again from that alone.
+All data of the page are kept in the recording (`kept`), so the page can be made again from that alone.
 """
 
 from takt.report.comparison import Comparison, Difference, compare

@@ -1,8 +1,7 @@
-"""Columns of numbers as a page holds them: as small as they can be without a difference that could be seen, and one
-behind the other in a block that is deflated.
+"""Columns of numbers in a page: as small as possible without a visible difference, concatenated in a deflated block.
 
-The bytes of a column lie apart: first the lowest ones of all its numbers, then the next ones. Numbers that follow one
-another differ in their low bytes only, so that the others shrink to nearly nothing.
+The bytes of a column are separated: first the lowest bytes of all its numbers, then the next ones. Consecutive numbers
+differ in their low bytes only, so that the others compress to nearly nothing.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ TYPES = {"i8": "i1", "f32": "<f4", "f64": "<f8"}
 
 
 class Block:
-    """Takes columns and says where they are: {"f32": [at, n]} from the byte `at` on."""
+    """Collects columns and returns their location: {"f32": [at, n]}, n numbers from the byte `at` on."""
 
     def __init__(self) -> None:
         self._parts: list[bytes] = []
@@ -27,8 +26,8 @@ class Block:
         self._known: dict[tuple[str, bytes], dict[str, Any]] = {}
 
     def put(self, column: Array) -> dict[str, Any]:
-        """One value where nothing changes, bytes for states, 32-bit floats where their rounding is below a millionth of
-        the column's range."""
+        """Adds a column. Constant columns become one value, states bytes; numbers become 32-bit floats if their
+        rounding is below a millionth of the column's range."""
         if column.dtype.kind == "b" or column.dtype == np.int8:
             if len(column) and np.all(column == column[0]):
                 return {"constant": float(column[0])}
@@ -44,7 +43,7 @@ class Block:
         return self.exactly(values, "f32" if small else "f64")
 
     def time(self, time_s: Array) -> dict[str, Any]:
-        """Times: from, to and how many where they are even."""
+        """Adds times: evenly spaced ones become start, end and number."""
         n = len(time_s)
         if n > 1:
             even = time_s[0] + np.arange(n) * ((time_s[-1] - time_s[0]) / (n - 1))
@@ -63,7 +62,7 @@ class Block:
 
     @property
     def size(self) -> int:
-        """Bytes before they are deflated."""
+        """Bytes before compression."""
         return self._size
 
     def text(self) -> str:
@@ -71,12 +70,12 @@ class Block:
 
 
 def unpacked(text: str) -> bytes:
-    """The bytes of a block, as its text was."""
+    """Returns the bytes of a block from its text."""
     return zlib.decompress(base64.b64decode(text))
 
 
 def column_of(data: bytes, place: dict[str, Any], n: int) -> Array:
-    """A column of n numbers again; NaN where nothing is known."""
+    """Returns a column of n numbers from the bytes of a block; NaN if it holds no finite number."""
     if "constant" in place:
         return np.full(n, np.nan if place["constant"] is None else place["constant"])
     kind = next(kind for kind in TYPES if kind in place)

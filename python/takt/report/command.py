@@ -17,7 +17,7 @@ from takt.written import write_text
 
 
 def write_outcome(outcome: Outcome, scenario: Scenario, directory: Path, engine: Mapping[str, Any]) -> Report:
-    """The report of a scenario that was run; `engine`: what the engine says of itself."""
+    """Writes the report of a finished scenario; `engine`: the engine's own figures."""
     drawn = scenario.draw(outcome.recording) if outcome.passed else {}
     figures = {"engine": engine}
     return write_report(
@@ -26,18 +26,18 @@ def write_outcome(outcome: Outcome, scenario: Scenario, directory: Path, engine:
 
 
 def target_of(run: Path) -> Path:
-    """Where the page of a run goes unless told: into its directory, or beside its file."""
+    """Returns the default path of a run's page: in its directory, or beside its file."""
     return run / PAGE if run.is_dir() else run.with_name(f"{stem_of(run)}.html")
 
 
 def target_of_two(runs: Sequence[Path]) -> Path:
-    """Where the page of two runs goes unless told: beside the first one."""
+    """Returns the default path of the page of two runs: beside the first one."""
     a, b = map(stem_of, runs)
     return runs[0].parent / f"{a}_and_{b}.html"
 
 
 def names_of(runs: Sequence[Path]) -> tuple[str, str]:
-    """What two runs are called: as short as they can be told apart."""
+    """Returns names of two runs: the shortest ends of their paths that differ."""
     whole = [run.resolve() for run in runs]
     for parts in range(1, max(len(run.parts) for run in whole)):
         a, b = (shown("/".join(run.parts[-parts:])) for run in whole)
@@ -47,7 +47,7 @@ def names_of(runs: Sequence[Path]) -> tuple[str, str]:
 
 
 def judged(outcome: Outcome, scenario: Scenario) -> Recording:
-    """The recording with what its scenario says of it now. What the engine said of itself stays."""
+    """Returns the recording with the present verdicts of its scenario. The engine's own figures are kept."""
     drawn = scenario.draw(outcome.recording) if outcome.passed else {}
     figures = (outcome.recording.meta.get("run") or {}).get("figures")
     pictures = {name: png(figure) for name, figure in drawn.items()}
@@ -55,6 +55,6 @@ def judged(outcome: Outcome, scenario: Scenario) -> Recording:
 
 
 def write_page(recording: Recording, run: Path, target: Path) -> Path:
-    """The page of a recording as it was kept."""
+    """Writes the page of a recording with its kept data. Returns `target`."""
     write_text(target, render_kept(recording, shown(run.resolve().name)))
     return target

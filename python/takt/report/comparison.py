@@ -1,13 +1,13 @@
-"""What differs between two runs: signal by signal, in figures.
+"""Differences between two runs: signal by signal, in figures.
 
     comparison = compare(before, after)
-    comparison.differing[0].largest      # the signal that differs most for its range
+    comparison.differing[0].largest      # the signal that differs most relative to its range
 
-Two recordings are compared at times that both span. Of a component that was sampled at different times the run with
-fewer samples says at which; the other one's numbers lie on the line between its neighbouring samples, its states are
-those of the last sample. Where samples are missing nothing is compared. Samples of the same times differ unless their
-values are equal; between samples numbers differ above `TOLERANCE` of the signal's range, since the line is not the
-motion.
+Two recordings are compared at times that both span. If a component was sampled at different times, the run with fewer
+samples gives the times; the other run's numbers are interpolated linearly between its neighbouring samples, its states
+and integers are those of the last sample. Gaps with missing samples are not compared. At common times samples differ
+unless their values are equal; between samples numbers differ above `TOLERANCE` of the signal's range, since the
+interpolation is not the motion.
 """
 
 from __future__ import annotations
@@ -24,26 +24,28 @@ from takt.counted import counted
 from takt.recording import Array, FloatArray, Recording, RecordingError
 from takt.verdict import number, seconds
 
-SAME_TIME_S = 1e-9  # two samples that are no further apart are of the same time
-TOLERANCE = 1e-3  # of the range of a signal, where one run has no samples at the other's times
+SAME_TIME_S = 1e-9  # samples at most this far apart have the same time
+TOLERANCE = 1e-3  # relative to the range of a signal, if one run has no samples at the other's times
 
 
 @dataclass(frozen=True)
 class Difference:
-    """One signal of two runs, B less A."""
+    """One signal of two runs, B minus A."""
 
     component: str
     field: str
     unit: str
-    samples: int  # times that were compared
-    largest: float | None  # of the differences, by amount; None: states, numbers of commands, or no number in both
+    samples: int  # number of compared times
+    largest: (
+        float | None
+    )  # largest absolute difference; None: states, integers without a unit, or no finite number in both
     largest_s: float | None  # when
     rms: float | None
-    first_s: float | None  # the first time at which they differ; None: they do not
-    share: float  # of the times at which they differ, 0 to 1
-    relative: float  # the largest difference as a share of the range of both; of states the share of times
-    states: bool  # an enumeration or a switch
-    interpolated: bool  # the samples of the two are not of the same times
+    first_s: float | None  # first time at which they differ; None: they do not
+    share: float  # share of the times at which they differ, 0 to 1
+    relative: float  # largest difference relative to the range of both; for states the share of times
+    states: bool  # an enumeration or a boolean
+    interpolated: bool  # the samples of the two have different times
     time_s: FloatArray = kept_field(repr=False, compare=False)
     delta: FloatArray = kept_field(repr=False, compare=False)
 
@@ -68,15 +70,15 @@ class Difference:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two runs, and what differs between them."""
+    """Two runs, and the differences between them."""
 
     a: Recording
     b: Recording  # its times are shifted by `shift_s`
     names: tuple[str, str]
     shift_s: float
-    signals: tuple[Difference, ...]  # that both have, those first that differ most for their range
-    only: tuple[tuple[str, ...], tuple[str, ...]]  # components and signals that one of them has
-    incomparable: tuple[str, ...]  # signals of both that mean something else, in sentences
+    signals: tuple[Difference, ...]  # common signals, those that differ most relative to their range first
+    only: tuple[tuple[str, ...], tuple[str, ...]]  # components and signals that only one of them has
+    incomparable: tuple[str, ...]  # common signals with different meanings, as sentences
 
     def __repr__(self) -> str:
         return f"<Comparison {' and '.join(self.names)}: {self.sentence}>"
@@ -92,7 +94,7 @@ class Comparison:
 
     @property
     def same(self) -> bool:
-        """Whether they are the same in all signals."""
+        """Whether all signals of both are the same."""
         return not self.differing and not self.incomparable and self.only == ((), ())
 
     @property
@@ -106,11 +108,11 @@ class Comparison:
 
 
 def compare(a: Recording, b: Recording, names: tuple[str, str] = ("A", "B"), *, align: str = "") -> Comparison:
-    """Compares two recordings.
+    """Compares two recordings. Raises RecordingError if one has no samples, or they have no time in common.
 
-    names: what they are called.
-    align: "": engine time is the same in both; "start": the first samples of both are at the same time; else the text
-        of a mark or another event that both have: its first ones are.
+    names: of the two runs.
+    align: "": engine time is the same in both; "start": aligns the first samples of both; else the text of a mark or
+        another event in both: aligns its first occurrences.
     """
     shift = _shift(a, b, names, align)
     b = b.shifted(shift) if shift else b
@@ -137,7 +139,7 @@ def compare(a: Recording, b: Recording, names: tuple[str, str] = ("A", "B"), *, 
 
 
 def _shift(a: Recording, b: Recording, names: tuple[str, str], align: str) -> float:
-    """What to add to the times of B, s."""
+    """Returns the time [s] to add to the times of B. Raises RecordingError if an event to align by is missing."""
     if not align:
         return 0.0
     if align == "start":
@@ -153,7 +155,7 @@ def _shift(a: Recording, b: Recording, names: tuple[str, str], align: str) -> fl
 
 
 def _only(one: Recording, other: Recording) -> tuple[str, ...]:
-    """What the other one has not."""
+    """Returns the components and signals that the other recording lacks."""
     found = []
     for component in one:
         if component not in other:
@@ -164,7 +166,7 @@ def _only(one: Recording, other: Recording) -> tuple[str, ...]:
 
 
 def _why_not(a: Recording, b: Recording, names: tuple[str, str], component: str, signal: str) -> str:
-    """Why two columns of one name cannot be compared; empty: they can."""
+    """Returns why two columns of one name cannot be compared; empty if they can."""
     units = [run.unit(component, signal) for run in (a, b)]
     if units[0] != units[1]:
         return " but ".join(f"[{unit or '1'}] in {name}" for name, unit in zip(names, units, strict=True))
@@ -189,7 +191,7 @@ def _difference(a: Recording, b: Recording, component: str, signal: str) -> Diff
     unit = "" if unit == "1" else unit
     position = quantity(signal) == "position"
     modulus = a.info(component).get("modulus") if position else None
-    asks = 0 if len(times[0]) <= len(times[1]) else 1  # whose samples say at which times
+    asks = 0 if len(times[0]) <= len(times[1]) else 1  # index of the run that gives the times
     time_s = times[asks]
     other_time, other = times[1 - asks], columns[1 - asks]
     rows = np.empty(0, np.int64)
@@ -203,19 +205,19 @@ def _difference(a: Recording, b: Recording, component: str, signal: str) -> Diff
     found = other[nearest] if sampled else _between(time_s, other_time, other, nearest, held, modulus)
     with np.errstate(invalid="ignore", over="ignore"):
         delta = found - values if asks == 0 else values - found
-        if modulus is not None:  # only where it changes something, as it rounds
+        if modulus is not None:  # only if it is needed, as it rounds
             delta = np.where(np.abs(delta) > modulus / 2, wrap(delta, modulus), delta)
     good = np.concatenate((values, found))
     good = good[np.isfinite(good)]
     extent = float(np.ptp(good)) if len(good) else 0.0
-    if sampled:  # the values themselves: numbers above 2^53 and whole turns would be lost in the difference
+    if sampled:  # compares the values: differences would lose numbers above 2^53 and whole turns
         differs = (kept[asks][rows] != kept[1 - asks][nearest]) & ~(np.isnan(found) & np.isnan(values))
     else:
         limit = 0.0 if held else TOLERANCE * extent
         differs = (np.isnan(found) != np.isnan(values)) | (np.abs(np.nan_to_num(delta, nan=0.0)) > limit)
     amounts = np.abs(delta[np.isfinite(delta)])
     share = float(np.mean(differs)) if len(differs) else 0.0
-    numbered = held and unit == ""  # of commands, errors: how far apart they are says nothing
+    numbered = held and unit == ""  # numbers of commands, errors: their distance has no meaning
     numeric = not states and not numbered and len(amounts) > 0
     worst = float(amounts.max()) if numeric else None
     largest_s = float(time_s[int(np.nanargmax(np.where(np.isfinite(delta), np.abs(delta), -1.0)))]) if numeric else None
@@ -238,7 +240,7 @@ def _difference(a: Recording, b: Recording, component: str, signal: str) -> Diff
 
 
 def _values(run: Recording, component: str, signal: str, names: Mapping[int, str]) -> Array:
-    """A column; states of both runs by the numbers that they have in the first one."""
+    """Returns a column; states are encoded by the numbers of the first run."""
     column = run.column(component, signal)
     own = run.names(component, signal)
     if own and own != names:
@@ -249,7 +251,8 @@ def _values(run: Recording, component: str, signal: str, names: Mapping[int, str
 
 
 def _nearest(time_s: FloatArray, other_time: FloatArray) -> tuple[Array, bool]:
-    """The samples of another time base that are nearest to these times, and whether all of them are of these times."""
+    """Returns the samples of another time base that are nearest to these times, and whether all of them have these
+    times."""
     if not len(time_s):
         return np.empty(0, np.int64), True
     behind = np.clip(np.searchsorted(other_time, time_s), 0, len(other_time) - 1)
@@ -261,7 +264,7 @@ def _nearest(time_s: FloatArray, other_time: FloatArray) -> tuple[Array, bool]:
 def _between(
     time_s: FloatArray, other_time: FloatArray, other: FloatArray, nearest: Array, held: bool, modulus: float | None
 ) -> FloatArray:
-    """The values of another time base at these times."""
+    """Returns the values of another time base at these times."""
     behind = np.clip(np.searchsorted(other_time, time_s), 0, len(other_time) - 1)
     before = np.maximum(behind - 1, 0)
     sampled = np.abs(other_time[nearest] - time_s) <= SAME_TIME_S

@@ -1,4 +1,4 @@
-"""The page of two runs: what differs in figures, verdicts of both side by side, curves over one another."""
+"""The page of two runs: their differences in figures, verdicts of both side by side, superimposed curves."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ from takt.report.writing import columns_of, facts_of, filled
 from takt.verdict import number, seconds
 from takt.written import write_text
 
-POINTS = 20_000  # of a curve of differences; longer ones are the least and the greatest value of each stretch
-LINES = 400  # of the difference of the machine files
+POINTS = 20_000  # of a curve of differences; longer ones are reduced to the extremes of each interval
+LINES = 400  # largest number of lines of the machine files' difference
 
 
 def write_comparison(comparison: Comparison, path: str | PathLike[str]) -> Path:
-    """Writes the page."""
+    """Writes the page. Returns its path."""
     target = Path(path)
     write_text(target, render_comparison(comparison))
     return target
 
 
 def render_comparison(comparison: Comparison) -> str:
-    """The page as text."""
+    """Returns the page as text."""
     block = Block()
     a, b = comparison.a, comparison.b
     title = " and ".join(comparison.names)
@@ -60,8 +60,8 @@ def render_comparison(comparison: Comparison) -> str:
 
 
 def verdict_rows(a: Recording, b: Recording) -> list[tuple[str, list[Any], list[Any]]]:
-    """Of each verdict its title, and of both runs whether it passed and what it says; [] where a run has none of it.
-    Those of the same title stand side by side in their order."""
+    """Returns a row per verdict: its title, and for both runs whether it passed and its sentence; [] if a run lacks it.
+    Verdicts of the same title are paired in their order."""
     told = [_verdicts(run) for run in (a, b)]
     titles = dict.fromkeys(key for one in told for key in one)
     rows = [(title, told[0].get((title, k), []), told[1].get((title, k), [])) for title, k in titles]
@@ -69,7 +69,7 @@ def verdict_rows(a: Recording, b: Recording) -> list[tuple[str, list[Any], list[
 
 
 def fact_rows(a: Recording, b: Recording) -> list[tuple[str, str, str]]:
-    """What is said of each of the runs, by name."""
+    """Returns the facts of both runs, by name."""
     told = [dict(_facts(run)) for run in (a, b)]
     return [(name, told[0].get(name, "—"), told[1].get(name, "—")) for name in dict.fromkeys((*told[0], *told[1]))]
 
@@ -79,7 +79,7 @@ def _runs(comparison: Comparison) -> Iterator[tuple[str, Recording]]:
 
 
 def _notes(comparison: Comparison) -> list[str]:
-    """How it was compared, in sentences."""
+    """Returns notes about the comparison, as sentences."""
     notes = []
     a, b = comparison.a, comparison.b
     if comparison.shift_s:
@@ -146,7 +146,7 @@ def _facts(run: Recording) -> Iterator[tuple[str, str]]:
 
 
 def _machine(comparison: Comparison) -> list[str]:
-    """Lines that differ between the machine files."""
+    """Returns the differing lines of the machine files."""
     texts = [(run.meta.get("machine_file") or {}).get("text", "") for run in (comparison.a, comparison.b)]
     if not all(texts):
         return []

@@ -1,5 +1,5 @@
-"""JavaScript modules inside a page: an import map that has each of them as a data URL, so that the page opens from a
-file, offline, with the very modules that the live page loads from its server."""
+"""JavaScript modules inside a page: an import map that holds each of them as a data URL, so that the page opens from a
+file, offline, with the same modules that the live page loads from its server."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ IMPORT = re.compile(r'(^import[^;]*?|^export[^;]*? from )"(\.{1,2}/[^"]+)"', re.
 
 
 def asset(*path: str) -> str:
-    """A file of this package as text."""
+    """Returns a file of this package as text."""
     return resources.files("takt").joinpath(*path).read_text(encoding="utf-8")
 
 
 def import_map(main: str) -> str:
-    """The map for `main` ("takt/report/page/main.js") and all that it imports, by their places in the package. Modules
-    that are data have no place of their own: what they import by a relative path is spelled out."""
+    """Returns the import map of `main` ("takt/report/page/main.js") and all its imports, by their paths in the package.
+    Modules in data URLs have no path of their own, so their relative imports are made absolute."""
     modules: dict[str, str] = {}
     waiting = [main]
     while waiting:

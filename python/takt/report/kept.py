@@ -1,4 +1,4 @@
-"""What a report needs beside the recording: verdicts with their curves, figures, pictures. It is kept in the
+"""The data of a report beside the recording: verdicts with their curves, figures, pictures. They are kept in the
 recording's own `meta["run"]`, so that one file holds a whole run."""
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from takt.recording import Array, Recording
 from takt.verdict import Bound, Interval, Lane, Trace, Verdict, seconds
 
 KEY = "run"
-POINTS = 2000  # of a curve of a verdict away from its place; there all are kept, up to
+POINTS = 2000  # of a verdict's curve outside its view; inside all are kept, up to
 POINTS_AT_PLACE = 20_000
-AROUND_S = 0.5  # of a plain assertion that names nothing, what is shown before and behind
+AROUND_S = 0.5  # time shown before and after a plain assertion without components
 
 
 def keep(
@@ -30,10 +30,10 @@ def keep(
     figures: Mapping[str, Any] | None = None,
     pictures: Mapping[str, bytes] | None = None,
 ) -> Recording:
-    """The same recording with all that its report says in its `meta`.
+    """Returns the same recording with all data of its report in its `meta`.
 
-    assertion: a plain one that failed beside the verdicts. figures: what else to say about the run; plain values
-    stand in the head ("machine": "six_axes"), a dict is a group of figures under its name ("engine": {"longest cycle":
+    assertion: a failed plain assertion beside the verdicts; None: none. figures: further facts of the run; plain values
+    appear in the head ("machine": "six_axes"), a dict is a group of figures under its name ("engine": {"longest cycle":
     "112 µs", "overruns": 0}). pictures: PNG files by their titles.
     """
     whole = copy.copy(recording)
@@ -53,19 +53,20 @@ def keep(
 
 
 def kept(recording: Recording) -> dict[str, Any] | None:
-    """What `keep` put there; None: nothing."""
+    """Returns the data of `keep`; None if there are none."""
     found: dict[str, Any] | None = recording.meta.get(KEY)
     return found
 
 
 def told(facts: Mapping[str, Any]) -> dict[str, Any]:
-    """What there is to say of them, as JSON has it."""
+    """Returns facts in JSON's types, without empty ones."""
     found: dict[str, Any] = plain({name: value for name, value in facts.items() if value not in ({}, [], "", None)})
     return found
 
 
 def plain(value: Any) -> Any:
-    """Numbers that JSON does not know become null; NumPy's become Python's; what else there is becomes text."""
+    """Returns a value in JSON's types: numbers that are not finite become null, NumPy's numbers Python's, other objects
+    text."""
     if isinstance(value, Mapping):
         return {str(k): plain(v) for k, v in value.items()}
     if isinstance(value, list | tuple):
@@ -94,7 +95,7 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
 
 
 def _assertion(assertion: Verdict, recording: Recording) -> dict[str, Any]:
-    """Where no curve belongs to it, what is around its time is to be seen in those of the machine."""
+    """Returns an assertion. If it has no curves, its view is the time around it in the curves of the machine."""
     told = _verdict(assertion)
     if assertion.place and not assertion.lanes:
         at = assertion.place[0]
@@ -131,7 +132,7 @@ def _bound(bound: Bound, view: Interval | None) -> dict[str, Any]:
 
 
 def _changes(values: Array) -> Array:
-    """Of a state the first and the last row of each stretch."""
+    """Returns the first and last row of each interval of constant state."""
     if not len(values):
         return np.empty(0, np.int64)
     steps = np.flatnonzero(values[1:] != values[:-1])
@@ -139,7 +140,7 @@ def _changes(values: Array) -> Array:
 
 
 def _rows(time_s: Array, values: Array, view: Interval | None) -> Array:
-    """All rows at the place; elsewhere the least and the greatest value of each stretch, as a picture shows it."""
+    """Returns all rows in the view; elsewhere the rows of the extremes of each interval, as a picture shows them."""
     if len(values) <= POINTS:
         return np.arange(len(values))
     inside = np.arange(0)

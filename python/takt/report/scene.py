@@ -1,5 +1,5 @@
-"""The machine from above and in three dimensions, for the page's own drawing of it: the model that the live page gets,
-and how its arms and what lies on its belts were at all times."""
+"""The plan and the scene of the machine for the page's own drawing: the description that the live page gets, and the
+poses of arms and of objects on belts over time."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from takt.scene import rounded_poses
 from takt.scene.moving import POSE, held
 from takt.view.machine import Machine, drawn
 
-RATE_HZ = 50.0  # of the places of arms, where they stay below
-NUMBERS = 1_000_000  # of them
-LYING = ("tracks", "stators", "parts", "movers", "belts", "groups")  # what there is to see from above
+RATE_HZ = 50.0  # rate of the poses of arms, unless they would exceed
+NUMBERS = 1_000_000  # numbers
+LYING = ("tracks", "stators", "parts", "movers", "belts", "groups")  # visible in the plan
 
 
 def machine_of(recording: Recording) -> Machine | None:
-    """None where the recording does not know its machine."""
+    """Returns the machine of a recording; None if the recording has none, or it cannot be read."""
     file = recording.meta.get("machine_file")
     if not file:
         return None
@@ -36,11 +36,12 @@ def machine_of(recording: Recording) -> Machine | None:
     try:
         return Machine(description, Path(file["folder"]))
     except ConfigError:
-        return None  # of another version
+        return None  # file of another version
 
 
 def cams_of(recording: Recording, machine: Machine | None) -> dict[str, Any] | None:
-    """What the page draws of the cams of recorded modules, those made at run time included; None: no module."""
+    """Returns the cams that the page draws for recorded cam modules, including cams made at run time; None if there is
+    no module."""
     modules = [name for name in recording.components if "mp05_set_y_position" in recording.fields(name)]
     if machine is None or not modules:
         return None
@@ -58,7 +59,7 @@ def cams_of(recording: Recording, machine: Machine | None) -> dict[str, Any] | N
 
 
 def scene_of(recording: Recording, block: Block, machine: Machine | None) -> dict[str, Any] | None:
-    """None where the machine has nothing to draw, or the recording does not know its machine."""
+    """Returns the scene; None if the machine has nothing to draw, or the recording has no machine."""
     if machine is None:
         return None
     told = machine.describe()
@@ -77,7 +78,8 @@ def scene_of(recording: Recording, block: Block, machine: Machine | None) -> dic
 
 
 def _links(machine: Machine, group: str, recording: Recording, block: Block) -> dict[str, Any] | None:
-    """Poses of the links of a group, frame after frame: n frames from `from` to `to`, of `count` numbers each."""
+    """Returns the poses of the links of a group, frame after frame: n frames from `from` to `to` [s], of `count`
+    numbers each. None if its axes were not recorded."""
     mechanism, axes, _ = machine.mechanisms[group]
     axes = axes[: mechanism.axes]
     if any(axis not in recording or len(recording[axis]) < 2 for axis in axes):

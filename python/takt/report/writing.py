@@ -1,4 +1,4 @@
-"""Writes reports: the page with everything inside, and the pictures beside it."""
+"""Writes reports: the self-contained page, and the pictures beside it."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ from takt.tables import short_name
 from takt.verdict import Verdict
 from takt.written import write_text
 
-# What says where a component is, the best first: its own measured position, or the Y of a cam module.
+# Fields with the position of a component, the best first: its actual position, or the Y of a cam module.
 POSITIONS = ("actual_position", "position", "set_position", "set_y_position")
-# What the summary says the largest of: the first one that there is. Several fields count as one vector, and measured
-# places from where they should be.
+# Columns of the summary with the largest value of the first field that exists. Several fields are one vector; actual
+# coordinates are taken relative to their set points.
 LARGEST = {
     "max. velocity": (
         *("actual_velocity", "velocity", "set_velocity", "set_y_velocity", "set_path_velocity"),
@@ -47,8 +47,8 @@ LARGEST = {
     "max. following error": ("following_error", "actual_x actual_y actual_z"),
 }
 PAGE = "report.html"
-BYTES = 128 << 20  # of all curves of a page before they are deflated; longer runs are thinned evenly
-# What the page does not show as a fact of its head.
+BYTES = 128 << 20  # of all curves of a page before compression; longer runs are thinned evenly
+# Entries of `meta` that are not shown as facts in the head of the page.
 ELSEWHERE = (
     KEY,
     "machine_file",
@@ -79,13 +79,12 @@ def write_report(
     more: Mapping[str, Figure] | None = None,
     assertion: Verdict | None = None,
 ) -> Report:
-    """Writes report.html, the recording with all that it was made of (recording.npz) and the pictures into `out_dir`,
-    replacing what an earlier run left under the same names.
+    """Writes report.html, the recording with all data of the page (recording.npz) and the pictures into `out_dir`,
+    replacing files of an earlier run with the same names.
 
-    meta: what to say about the run, as `keep` takes it: figures. What the recording's own `meta` holds is shown as
-        well.
-    more: pictures of the caller's by name, to be shown in the page and kept as NAME.png beside it.
-    assertion: a plain one that failed beside the verdicts.
+    meta: facts of the run, as the figures of `keep`. The recording's own `meta` is shown as well.
+    more: further pictures by name, shown in the page and saved as NAME.png beside it.
+    assertion: a failed plain assertion beside the verdicts; None: none.
     """
     directory = Path(out_dir)
     directory.mkdir(parents=True, exist_ok=True)
@@ -106,12 +105,12 @@ def render(
     meta: Mapping[str, Any] | None = None,
     assertion: Verdict | None = None,
 ) -> str:
-    """The HTML page as text."""
+    """Returns the HTML page as text."""
     return render_kept(keep(recording, title, verdicts, assertion, meta), title)
 
 
 def render_kept(recording: Recording, name: str) -> str:
-    """The HTML page of a recording and of what is kept with it. `name`: what it is called where nothing is."""
+    """Returns the HTML page of a recording with its kept data. `name`: its title if there are none."""
     run = kept(recording) or {"title": name, "made": "", "verdicts": [], "complaint": "", "figures": {}, "pictures": {}}
     block = Block()
     facts = facts_of(recording, run["figures"])
@@ -141,7 +140,7 @@ def render_kept(recording: Recording, name: str) -> str:
 
 
 def filled(name: str, title: str, payload: Mapping[str, Any], block: Block, **parts: str) -> str:
-    """The page `name`.html with all that it needs: its module, those that this one imports, its data."""
+    """Returns the page `name`.html with all that it needs: its module and the imports of that, and its data."""
     main = f"takt/report/page/{MAINS[name]}"
     data = json.dumps(payload, ensure_ascii=False, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     parts |= {
@@ -159,7 +158,7 @@ def filled(name: str, title: str, payload: Mapping[str, Any], block: Block, **pa
 
 @functools.cache
 def three_inside() -> str:
-    """three.js for pages with a scene: what it imports, and itself, deflated; some 250 kB."""
+    """Returns three.js for pages with a scene, with its imports, deflated; about 250 kB."""
     texts = (asset("view", "page", "three", f"three.{part}.min.js") for part in ("core", "module"))
     return base64.b64encode(zlib.compress("\0".join(texts).encode(), 9)).decode("ascii")
 
@@ -173,7 +172,7 @@ STYLES = (
 
 
 def facts_of(recording: Recording, figures: Mapping[str, Any]) -> dict[str, Any]:
-    """What the head says of the run: that of the recording's own `meta`, and what was kept besides, in words."""
+    """Returns the facts in the head of the page: from the recording's own `meta`, and the kept figures, in words."""
     facts: dict[str, Any] = {**told({k: v for k, v in recording.meta.items() if k not in ELSEWHERE}), **figures}
     if isinstance(engine := facts.get("engine"), Mapping):
         facts["engine"] = in_words(engine)
@@ -194,12 +193,12 @@ def _shown(name: str, png: bytes) -> str:
     )
 
 
-# --- what the page is given ---
+# --- data of the page ---
 
 
 def columns_of(recording: Recording, block: Block, whole: Sequence[Sequence[float]]) -> dict[str, Any]:
-    """Time bases, shared where they are the same, and the columns of each component; every n-th sample of recordings
-    that would be too long for a page, but all of the windows `whole`."""
+    """Returns time bases, shared if they are the same, and the columns of each component. Recordings that would be too
+    long for a page are reduced to every n-th sample, except in the windows `whole` [s]."""
     every = _every(recording)
     bases: list[dict[str, Any]] = []
     known: dict[bytes, int] = {}
@@ -225,7 +224,7 @@ def columns_of(recording: Recording, block: Block, whole: Sequence[Sequence[floa
 
 
 def _thinned(recording: Recording, every: int) -> str:
-    """What is not shown, in a sentence; empty: nothing."""
+    """Returns a sentence about samples that are not shown; empty if all are."""
     if every == 1:
         return ""
     rate = max(rates(recording).values()) / every
@@ -236,7 +235,7 @@ def _thinned(recording: Recording, every: int) -> str:
 
 
 def _every(recording: Recording) -> int:
-    """Of how many samples one is shown."""
+    """Returns n if every n-th sample is shown."""
     size = sum(
         table[f].nbytes // (2 if table[f].dtype.kind == "f" else 1)
         for table in map(recording.__getitem__, recording.components)
@@ -247,7 +246,7 @@ def _every(recording: Recording) -> int:
 
 
 def _rows(table: Array, every: int, whole: Sequence[Sequence[float]]) -> Any:
-    """Which rows of a component are shown, the last one always."""
+    """Returns which rows of a component are shown; always the last one."""
     if every == 1:
         return slice(None)
     time_s = table["time_s"]
@@ -278,7 +277,7 @@ def _field(recording: Recording, component: str, field: str, rows: Any, block: B
 
 
 def _verdict(verdict: Mapping[str, Any], block: Block, recording: Recording) -> dict[str, Any]:
-    """As it is kept, with its curves in the block."""
+    """Returns a kept verdict with its curves in the block."""
 
     def curve(kept: Mapping[str, Any]) -> dict[str, Any]:
         rest = {k: v for k, v in kept.items() if k not in ("time_s", "values")}
@@ -294,7 +293,7 @@ def _verdict(verdict: Mapping[str, Any], block: Block, recording: Recording) -> 
 
 
 def _summary(recording: Recording) -> dict[str, Any]:
-    """A row per component: extremes of what was measured, how it ended, what was lost."""
+    """Returns a row per component: extremes of actual values, final state, losses."""
     rows = []
     for component in recording.components:
         table = recording[component]
@@ -341,7 +340,7 @@ def _largest(recording: Recording, component: str, what: str) -> str:
     columns = [table[field].astype(np.float64) for field in found]
     if found[0] == "actual_x":
         columns = [there - table[field.removeprefix("actual_")] for there, field in zip(columns, found, strict=True)]
-    with np.errstate(over="ignore"):  # numbers that no engine publishes, of damaged logs
+    with np.errstate(over="ignore"):  # damaged logs hold numbers that no engine publishes
         lengths = np.sqrt(np.sum(np.square(columns), axis=0))
     lengths = lengths[np.isfinite(lengths)]
     return f"{float(lengths.max()):.5g} {recording.unit(component, found[0])}".rstrip() if len(lengths) else "—"
