@@ -1,6 +1,7 @@
-"""A recording's scene for Foxglove (PY-27): messages of its types FrameTransforms and SceneUpdate, in m, as JSON.
+"""A recording's scene for Foxglove (PY-27): messages of its types FrameTransforms and SceneUpdate, lengths in m, as
+JSON. Scenes, poses and sizes that are passed in are in mm.
 
-Every node of the scene is a frame, and what is on it an entity in that frame, so that a viewer that knows nothing of
+Every node of the scene is a frame, and its solids are an entity in that frame, so that a viewer without knowledge of
 machines moves it by transforms alone.
 """
 
@@ -42,12 +43,12 @@ COLOURS = {
 EVENTS = "/events"  # the topic of marks, starts and ends of commands, errors
 SHAPES = "/scene"
 POSES = "/tf"
-ONE = 0  # of Foxglove's kinds of deletions: the entity of that id
+ONE = 0  # Foxglove's kind of deletion: the entity with this id
 TRACK = (0.18, 0.44, 0.87, 0.75)
 
 
 class Stream(NamedTuple):
-    """Messages of one topic in the order of time."""
+    """Messages of one topic, ordered by time."""
 
     topic: str
     schema: dict[str, Any]
@@ -56,13 +57,14 @@ class Stream(NamedTuple):
 
 
 def topic_of(component: str) -> str:
-    """The topic of a component's values: /NAME; /components/NAME where that is a topic of another kind."""
+    """Returns the topic of a component's values: /NAME, or /components/NAME if /NAME is a topic of another kind."""
     topic = f"/{component}"
     return f"/components{topic}" if topic in (EVENTS, SHAPES, POSES) else topic
 
 
 def streams_of(recording: Recording, machine: Any) -> list[Stream]:
-    """Transforms and solids of a recorded machine (`takt.view.machine.Machine`); none of one that was not recorded."""
+    """Returns the streams of transforms and of solids of a recorded machine (`takt.view.machine.Machine`); empty if the
+    scene has no nodes or the recording no samples."""
     scene, start, end = machine.scene, recording.start_s, recording.end_s
     if not scene["nodes"] or not end >= start:
         return []
@@ -77,11 +79,11 @@ def streams_of(recording: Recording, machine: Any) -> list[Stream]:
     ]
 
 
-# --- where frames are ---
+# --- poses of frames ---
 
 
 def _transforms(recording: Recording, machine: Any, times: Array) -> Iterator[tuple[float, dict[str, Any]]]:
-    """At each time those that have changed; what is not known is left out."""
+    """Yields time [s] and message at each time at which transforms have changed; unknown poses are left out."""
     scene = machine.scene
     links = {name: _links(recording, machine, name, times) for name in machine.mechanisms}
     columns: dict[tuple[str, str], Array] = {}
@@ -120,7 +122,7 @@ def _links(recording: Recording, machine: Any, group: str, times: Array) -> Arra
 
 
 def _column(recording: Recording, component: str, field: str, times: Array) -> Array:
-    """NaN where nothing was recorded."""
+    """Returns the values at these times; NaN where nothing was recorded."""
     if component not in recording or field not in recording.fields(component) or not len(recording[component]):
         return np.full(len(times), np.nan)
     column = held(recording, component, field, times)
@@ -128,7 +130,7 @@ def _column(recording: Recording, component: str, field: str, times: Array) -> A
 
 
 def transform(name: str, pose: list[float], time_s: float) -> dict[str, Any]:
-    """Where a frame is in the world."""
+    """Returns the transform of a frame to the world, from its pose (7 numbers, mm)."""
     at = _pose(pose)
     return {
         "timestamp": _time(time_s),
@@ -139,18 +141,18 @@ def transform(name: str, pose: list[float], time_s: float) -> dict[str, Any]:
     }
 
 
-# --- what is on them ---
+# --- entities ---
 
 
 def entities(scene: Mapping[str, Any], time_s: float) -> Iterator[dict[str, Any]]:
-    """What is on each frame of a scene and never goes."""
+    """Yields the entities of nodes that are always visible."""
     for node in scene["nodes"]:
         if "shown" not in node:
             yield entity(node, time_s)
 
 
 def entity(node: Mapping[str, Any], time_s: float) -> dict[str, Any]:
-    """What is on the frame of a node."""
+    """Returns the entity with the solids of a node."""
     shapes: dict[str, list[dict[str, Any]]] = {}
     for solid in node["solids"]:
         for kind, shape in _shapes(solid):
@@ -159,7 +161,7 @@ def entity(node: Mapping[str, Any], time_s: float) -> dict[str, Any]:
 
 
 def coming_or_going(node: Mapping[str, Any], shown: bool, time_s: float) -> dict[str, Any]:
-    """The update that shows a node, or takes it away."""
+    """Returns the update that shows or removes a node."""
     if shown:
         return {"deletions": [], "entities": [entity(node, time_s)]}
     return {"deletions": [{"timestamp": _time(time_s), "type": ONE, "id": node["name"]}], "entities": []}
@@ -195,7 +197,7 @@ def _entity(name: str, frame: str, time_s: float, shapes: Mapping[str, list[dict
 
 
 def _shapes(solid: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The primitives of Foxglove for one solid: a capsule is a cylinder and two balls."""
+    """Yields Foxglove's primitives for one solid: a capsule is a cylinder and two spheres."""
     at = np.eye(4)
     if "at" in solid:
         at[:3] = np.reshape(solid["at"], (3, 4))
@@ -225,7 +227,7 @@ def _shapes(solid: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
 
 
 def tracks(machine: Any, time_s: float) -> Iterator[dict[str, Any]]:
-    """Those of a machine, as lines."""
+    """Yields the tracks of a machine, as lines."""
     parts = {part["name"] for part in machine.parameters["parts"]}
     for track in machine.describe()["plan"]["tracks"]:
         points = [_vector([x, y, 3.0]) for _, x, y in np.reshape(track["points"], (-1, 3)).tolist()]
@@ -238,7 +240,7 @@ def tracks(machine: Any, time_s: float) -> Iterator[dict[str, Any]]:
 
 
 def _products(recording: Recording, scene: Mapping[str, Any]) -> Iterator[tuple[float, dict[str, Any]]]:
-    """What lay on each belt, as often as it was looked at."""
+    """Yields time [s] and update of the objects on each belt, at each recorded time."""
     for belt, told in recording.meta.get("objects", {}).items():
         size = scene.get("belts", {}).get(belt, {}).get("size")
         for i, time_s in enumerate(told["time_s"].tolist() if size else ()):
@@ -249,7 +251,8 @@ def _products(recording: Recording, scene: Mapping[str, Any]) -> Iterator[tuple[
 
 
 def products_on(belt: str, size: Any, rows: Iterable[Any], time_s: float) -> dict[str, Any]:
-    """The entity of all that lies on a belt: rows as those of `takt.belt_object_log.rows_of`."""
+    """Returns the entity of all objects on a belt, with rows of `takt.belt_object_log.rows_of` and the size of an
+    object [mm]."""
     cubes = []
     for _, x, y, z, turn, taken, near in rows:
         half = math.radians(turn) / 2
@@ -259,7 +262,7 @@ def products_on(belt: str, size: Any, rows: Iterable[Any], time_s: float) -> dic
     return _entity(f"on {belt}", WORLD, time_s, {"cubes": cubes})
 
 
-# --- numbers as Foxglove has them ---
+# --- Foxglove's types (m) ---
 
 
 def _time(time_s: float) -> dict[str, int]:

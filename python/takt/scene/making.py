@@ -1,23 +1,24 @@
-"""The scene of a machine: what stands still, and what is moved by which signal.
+"""The scene of a machine: its solids, fixed or moved by signals.
 
 A scene is JSON. `nodes` are frames with solids on them, in mm:
 
     {"name": "robot.link_2", "of": "robot", "solids": [...],
-     "at": [12 numbers],        the upper rows of a matrix: in the world, or in what moves it; left out: none
-     "moved": {...}}            left out: it stands still
+     "at": [12 numbers],        upper rows of a matrix: pose in the world, or in its moving frame; left out: identity
+     "moved": {...}}            left out: it is fixed
 
 `moved` is one of
 
     {"group": "robot", "link": 2}                             the pose of a link, by the kinematics (`link_poses`)
     {"component": "m1", "pose": ["x", "y", "", "", "", "c"],  published fields of X, Y, Z, A, B, C; "": 0
-     "system": "coordinate_system"}                           whose number says how high it is drawn (`heights`)
+     "system": "coordinate_system"}                           field with the number that gives its height (`heights`)
     {"component": "x", "slide": "actual_position", "from": 0, "scale": 1, "wrap": 600, "turns": true}
                                                               along X, or about Z in deg
 
-`shown`, {"component": "picker", "field": "held"}: it is there while that is above 0; left out: always.
+`shown`, {"component": "picker", "field": "held"}: the node is visible while that field is above 0; left out: always.
 
-`label` says how high above its frame a node has its name. `belts` says how large what lies on them is, `trails` which
-groups leave a line, `followed` what a camera can follow. Nothing is there whose section the machine file leaves out.
+`label` is the height of a node's name above its frame. `belts` holds the size of objects on belts, `trails` the groups
+that leave a trail, `followed` the components that a camera can follow. A section that the machine file leaves out has
+no nodes.
 """
 
 from __future__ import annotations
@@ -40,26 +41,27 @@ from takt.yaml_text import to_json
 Node = dict[str, Any]
 Mechanisms = Mapping[str, tuple[Kinematics, list[str], Array]]  # of groups: kinematics, axes, base
 
-BELT_WIDTH = 120.0  # mm; how wide belts are nobody says, nor how far they go
+BELT_WIDTH = 120.0  # mm; the machine file gives neither width nor length of belts
 BELT_LENGTH = 800.0
-MARKS = 50.0  # mm from one mark on a belt to the next
+MARKS = 50.0  # mm between marks on a belt
 TABLE = 300.0  # radius of a belt that turns
 PRODUCT = 20.0  # height: the tool touches its top
 STATOR = 240.0
 MOVER = 12.0  # height
-TRAVEL = 600.0  # of an axis without limits, until its slide begins again
+TRAVEL = 600.0  # of an axis without limits, until its slide starts again
 SMALL, LARGE = 150.0, 1500.0  # slides are drawn no smaller and no larger
 DISC = 60.0  # radius of an axis that turns
-ROOM = 160.0  # from one axis to the next
+ROOM = 160.0  # distance between axes
 NO_LIMIT = (-math.inf, math.inf)
 
 
 def make_scene(
     machine: Mapping[str, Any], mechanisms: Mechanisms, text: str = "", folder: Path | None = None
 ) -> dict[str, Any]:
-    """The scene of a machine as the loader has it.
+    """Returns the scene of a machine, from the loader's description.
 
-    text: of its file, which says where its URDF lies. folder: where files are; without, none is opened."""
+    text: of the machine file, which gives the location of its URDF. folder: base of file names; None: no file is
+    opened."""
     made = _Maker(machine, mechanisms, {} if folder is None else urdf_folders(text, folder), folder)
     made.stators()
     made.parts()
@@ -84,7 +86,7 @@ class _Maker:
         self.machine, self.mechanisms, self.urdf_folders, self.folder = machine, mechanisms, urdf_folders, folder
         self.axes = {axis["name"]: axis for axis in machine["axes"]}
         self.nodes: list[Node] = []
-        self.room: list[list[float]] = []  # places that something is at, X and Y
+        self.room: list[list[float]] = []  # occupied positions, X and Y
         self.heights = self._heights()
 
     def scene(self) -> dict[str, Any]:
@@ -105,7 +107,8 @@ class _Maker:
             self.nodes.append({"name": name, "solids": kept, **more})
 
     def _heights(self) -> list[float]:
-        """Coordinate systems lie over one another, the first one on top, far enough apart to see what is between."""
+        """Returns the heights of the coordinate systems: stacked, the first one on top, far enough apart to see between
+        them."""
         systems = len(self.machine["coordinate_systems"])
         widest = max(
             (STATOR * max(part.get("columns") or 0, part.get("rows") or 0) for part in self.machine["parts"]), default=0
@@ -114,12 +117,12 @@ class _Maker:
         return rounded([storey * (systems - 1 - i) for i in range(systems)])
 
     def _part_names(self) -> dict[str, list[str]]:
-        """What `first_part` and `second_part` of groups with a workspace count."""
+        """Returns the names of the parts that `first_part` and `second_part` of groups with a workspace index."""
         if not any(group.get("workspace") for group in self.machine["groups"]):
             return {}
         return dict(_core.parts_of_groups(to_json(self.machine).encode(), "machine"))
 
-    # --- movers and what is under them ---
+    # --- movers, stators and parts ---
 
     def stators(self) -> None:
         for environment in self.machine["environments"]:
@@ -138,7 +141,7 @@ class _Maker:
             at = part["positions"][part["initial_position"] - 1]
             self.room += [[at["x"] + x, at["y"] + y] for x, y in tiles]
             moved = {"component": part["name"], "pose": ["x", "y", "", "", "", ""], "system": "coordinate_system"}
-            solids = _tiles(tiles) or [ball(4, (0, 0, 0), "stator")]  # its tracks go with it
+            solids = _tiles(tiles) or [ball(4, (0, 0, 0), "stator")]  # its tracks move with it
             self._add(part["name"], solids, of=part["name"], moved=moved)
 
     def movers(self) -> None:
@@ -216,7 +219,8 @@ class _Maker:
             self._workspace(group, base)
 
     def held(self) -> None:
-        """What pick and place modules hold: a product whose top touches the tool, on its far side from the flange."""
+        """Adds the products that pick and place modules hold: the top touches the tool, on its far side from the
+        flange."""
         groups = {group["name"]: group for group in self.machine["groups"]}
         for module in self.machine["pick_and_place"]:
             name = module["group"]
@@ -233,7 +237,7 @@ class _Maker:
             self._add(f"{module['name']}.held", [solid], at=rounded(tool[:3]), of=name, moved=moved, shown=shown)
 
     def _product(self) -> list[float]:
-        """Edges of a product: those of the twin, which alone knows them."""
+        """Returns the edges of a product [mm]: those of the twin if it has products, else a default."""
         told = (self.machine.get("twin") or {}).get("products")
         return [told["length"], told["width"], told["height"]] if told else [40.0, 40.0, PRODUCT]
 
@@ -274,10 +278,10 @@ class _Maker:
         lower, upper = limits.get("lower"), limits.get("upper")
         return (NO_LIMIT[0] if lower is None else lower, NO_LIMIT[1] if upper is None else upper)
 
-    # --- axes that no mechanism has ---
+    # --- axes without a mechanism ---
 
     def axes_alone(self) -> None:
-        """Slides and discs in rows before everything else."""
+        """Adds slides and discs in rows in front of everything else, for axes without a mechanism."""
         taken = {axis for mechanism, axes, _ in self.mechanisms.values() for axis in axes[: mechanism.axes]}
         taken |= {belt["axis"] for belt in self.machine["belts"] if belt.get("axis")}
         alone = [axis for axis in self.machine["axes"] if axis["name"] not in taken]
@@ -310,7 +314,7 @@ class _Maker:
         self._add(name, carriage, at=at, of=name, moved=moved)
 
     def _disc(self, axis: Mapping[str, Any], x: float, y: float) -> None:
-        """Upright, seen from the front, with a hand."""
+        """Adds an upright disc with a hand, seen from the front."""
         name = axis["name"]
         upright = [1, 0, 0, x, 0, 0, -1, y, 0, 1, 0, DISC + 20]
         turn = 360.0 / axis["modulus"] if axis["kind"] == "rotary" else 360.0 if axis["unit"] == "rev" else 1.0
@@ -333,7 +337,7 @@ def _between(lower: Any, upper: Any, colour: str) -> Solid:
 
 
 def _reach3(mechanism: Kinematics, ranges: Array) -> list[list[float]]:
-    """Some places of the tool, seen from the base, all over the ranges of the axes."""
+    """Returns sampled positions of the tool in the base frame, over the ranges of the axes."""
     rotary = np.array(mechanism.rotary)
     usual = np.where(rotary[:, np.newaxis], [-60.0, 60.0], [-500.0, 500.0])
     known = np.where(np.isfinite(ranges), ranges, usual)

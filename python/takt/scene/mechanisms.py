@@ -1,5 +1,5 @@
-"""What the links of a group look like: the shapes that the machine file or its URDF gives them, else simple solids made
-from the parameters of the mechanism."""
+"""The solids of a group's links: the shapes that the machine file or its URDF gives, else simple solids made from the
+parameters of the mechanism."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from takt.names import shown
 from takt.recording import Array
 from takt.scene.solids import Solid, ball, box, capsule, cylinder, from_file
 
-ROD_SPACING = 60.0  # mm: between the rods of a Delta that does not say it, to be seen
+ROD_SPACING = 60.0  # mm: between the rods of a Delta without a given spacing, so that both are visible
 TRAVEL = 500.0  # mm to both sides of an axis without limits
-THICK = 0.035  # radius of an arm, as a share of how far the mechanism reaches
+THICK = 0.035  # radius of an arm, relative to the reach of the mechanism
 Solids = list[list[Solid]]  # of each link
 
 
 def solids_of_links(
     group: Mapping[str, Any], mechanism: Kinematics, ranges: Array, folder: Path | None, urdf_folder: Path | None
 ) -> Solids:
-    """Of each link, in its own frame. ranges: (axes, 2), where the axes may be."""
+    """Returns the solids of each link, in its own frame. ranges: (axes, 2), ranges of the axes."""
     spans = mechanism.link_spans
     kinematics = group["kinematics"]
     kind = next((kind for kind in kinematics if kinematics[kind] and kind != "joints"), "")
@@ -47,13 +47,14 @@ def _given(group: Mapping[str, Any], mechanism: Kinematics, folder: Path | None)
 
 
 def _of_urdf(mechanism: Kinematics, serial: Mapping[str, Any], folder: Path | None, *, visual: bool) -> Solids:
-    """The shapes that a URDF gives links to be seen, or for collisions; none of files that cannot be read."""
+    """Returns the shapes of links in a URDF, visual or for collisions; files that cannot be read give none."""
     told = _core.urdf_solids(serial["urdf"], serial["base"], serial["tip"], shown((folder or Path()).resolve()), visual)
     return _placed(mechanism, [json.loads(one) for one in told], folder)
 
 
 def _placed(mechanism: Kinematics, solids: Sequence[Mapping[str, Any]], folder: Path | None) -> Solids:
-    """Those that a machine file gives: each for all links whose names begin so, unless one is called so."""
+    """Returns the shapes of a machine file: each applies to the link of this name, else to all links whose names begin
+    with it."""
     found: Solids = [[] for _ in mechanism.links]
     for solid in solids:
         exact = [i for i, link in enumerate(mechanism.links) if link == solid["link"]]
@@ -72,15 +73,15 @@ def _gripper(group: Mapping[str, Any], folder: Path | None) -> list[Solid]:
 
 
 def _tool(tool: Mapping[str, float], thick: float) -> list[Solid]:
-    """From the flange to the tool centre point."""
+    """Returns the solids from the flange to the tool centre point."""
     at = (tool["x"], tool["y"], tool["z"])
     point = ball(max(4.0, 0.35 * thick), at, "tip", part="tool")
     return [point, cylinder(0.35 * thick, (0, 0, 0), at, "tool", part="tool")] if math.hypot(*at) > 1 else [point]
 
 
 def _thickness(kind: str, spans: Array) -> float:
-    """Returns the radius [mm] that arms are drawn with: a share of the length of all links together, of a Delta of one
-    of its equal arms."""
+    """Returns the radius [mm] of drawn arms: a share of the length of all links together, for a Delta of one of its
+    equal arms."""
     lengths = np.linalg.norm(spans, axis=1)
     reach = float(np.sum(np.unique(np.round(lengths, 3)) if kind == "delta" else lengths))
     return float(np.clip(THICK * reach, 6.0, 70.0))
@@ -134,7 +135,7 @@ def _motors(p: Mapping[str, Any], thick: float) -> list[Solid]:
 
 
 def _chain(mechanism: Kinematics, spans: Array) -> Solids:
-    """A capsule along each link that leads somewhere, a ball at its axis; a column under the first one."""
+    """Returns a capsule along each link of non-zero length and a ball at its axis; a column under the first one."""
     thick = _thickness("", spans)
     solids: Solids = []
     joints = len(mechanism.links) - 2
@@ -154,7 +155,7 @@ def _chain(mechanism: Kinematics, spans: Array) -> Solids:
 
 
 def _scara(p: Mapping[str, Any], mechanism: Kinematics, spans: Array, ranges: Array) -> Solids:
-    """Arms as high as the machine file says; a spindle that reaches them wherever it is."""
+    """Returns arms at the height of the machine file, and a spindle that reaches them in all positions."""
     thick, height = _thickness("scara", spans), p["height"]
     lift = np.array([0.0, 0.0, height])
     ends = np.zeros((2, mechanism.axes))
@@ -178,7 +179,8 @@ def _scara(p: Mapping[str, Any], mechanism: Kinematics, spans: Array, ranges: Ar
 
 
 def _gantry(mechanism: Kinematics, ranges: Array) -> Solids:
-    """Rails along X, a beam along Y, a column along Z: as far as the tool can be moved, by the ranges of the axes."""
+    """Returns rails along X, a beam along Y and a column along Z, over the travel of the tool by the ranges of the
+    axes."""
     lower, upper = _travel(mechanism, ranges)
     links = mechanism.links
     size = float(np.clip(0.06 * np.max(upper - lower), 20.0, 90.0))
@@ -207,7 +209,7 @@ def _gantry(mechanism: Kinematics, ranges: Array) -> Solids:
 
 
 def _travel(mechanism: Kinematics, ranges: Array) -> tuple[Array, Array]:
-    """The least and the largest X, Y, Z of the tool."""
+    """Returns the smallest and the largest X, Y, Z of the tool."""
     known = np.where(np.isfinite(ranges), ranges, np.array([-TRAVEL, TRAVEL]))
     corners = np.array(list(itertools.product(*known)))
     places = mechanism.forward(corners)[:, :3]

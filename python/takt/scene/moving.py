@@ -1,4 +1,4 @@
-"""Where what moves is: poses of links by the kinematics of the group, of everything else by what it publishes.
+"""Poses of moving nodes: of links by the kinematics of the group, of others by published fields.
 
 A pose is seven numbers: X, Y, Z in mm and a unit quaternion x, y, z, w. Pages apply such poses and have no kinematics.
 """
@@ -15,12 +15,12 @@ from takt.kinematics import Kinematics, KinematicsError, pose_to_matrix
 from takt.recording import Array, Recording
 
 POSE = 7  # numbers
-Values = Callable[[str, str], float]  # of a component and one of its fields
+Values = Callable[[str, str], float]  # component, field -> value
 
 
 def link_poses(mechanism: Kinematics, base: Array, joints: Array) -> Array:
-    """(n, links, 7): poses of the links in the world, for rows of positions of the axes; NaN where the links cannot be
-    said to be anywhere."""
+    """Returns the poses (n, links, 7) of the links in the world, for rows of positions of the axes; NaN where the
+    kinematics have no solution."""
     try:
         frames = mechanism.link_frames(joints)
     except (KinematicsError, ValueError):
@@ -32,8 +32,8 @@ def link_poses(mechanism: Kinematics, base: Array, joints: Array) -> Array:
 
 
 def poses_of(matrices: Array) -> Array:
-    """(..., 7) of homogeneous matrices (..., 4, 4). Shepperd's method: the largest of the four is taken from the
-    diagonal, so that none of the others is divided by something small."""
+    """Returns the poses (..., 7) of homogeneous matrices (..., 4, 4). Shepperd's method: the largest of the four
+    components comes from the diagonal, so that none of the others is divided by a small number."""
     m = matrices[..., :3, :3]
     xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
     squares = np.stack([1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz, 1 + xx + yy + zz], axis=-1)
@@ -55,12 +55,12 @@ def poses_of(matrices: Array) -> Array:
 
 
 def rounded_poses(poses: Array) -> Array:
-    """To 0.01 mm, and 0.01 mm on 1 m: what pictures need."""
+    """Returns poses rounded to 0.01 mm, and 0.01 mm on 1 m: the accuracy of pictures."""
     return np.concatenate([np.round(poses[..., :3], 2), np.round(poses[..., 3:], 5)], axis=-1)
 
 
 def held(recording: Recording, component: str, field: str, times: Array) -> Array:
-    """The last sample at or before each time; before all of them the first one."""
+    """Returns the last sample at or before each time; before all samples the first one."""
     table = recording[component]
     rows = np.searchsorted(table["time_s"], times + 1e-9, side="right") - 1
     column: Array = table[field][np.maximum(rows, 0)].astype(np.float64)
@@ -68,7 +68,7 @@ def held(recording: Recording, component: str, field: str, times: Array) -> Arra
 
 
 def matrix_of(pose: Array) -> Array:
-    """The homogeneous matrix (4, 4) of a pose."""
+    """Returns the homogeneous matrix (4, 4) of a pose."""
     x, y, z, w = pose[3:]
     matrix = np.eye(4)
     matrix[:3, 3] = pose[:3]
@@ -81,8 +81,9 @@ def matrix_of(pose: Array) -> Array:
 
 
 def node_pose(scene: Mapping[str, Any], node: Mapping[str, Any], links: Mapping[str, Array], value: Values) -> Array:
-    """The matrix (4, 4) of a node of a scene in the world: what `space.js` does with the same description. `links`: of
-    each group the poses (links, 7); `value` says what a component publishes. NaN where that is not known."""
+    """Returns the matrix (4, 4) of a node of a scene in the world, as `space.js` computes it from the same description.
+    `links`: poses (links, 7) of each group; `value` returns a published field of a component. NaN where that is
+    unknown."""
     rest = np.eye(4)
     if "at" in node:
         rest[:3] = np.reshape(node["at"], (3, 4))
@@ -102,13 +103,14 @@ def node_pose(scene: Mapping[str, Any], node: Mapping[str, Any], links: Mapping[
 
 
 def is_shown(node: Mapping[str, Any], value: Values) -> bool:
-    """Whether a node is there at all."""
+    """Returns whether a node is visible."""
     shown = node.get("shown")
     return shown is None or value(shown["component"], shown["field"]) > 0
 
 
 def height_of(scene: Mapping[str, Any], system: float) -> float:
-    """How high a coordinate system is drawn, by its number from 1; machines without any have one."""
+    """Returns the height [mm] at which a coordinate system is drawn, by its number from 1; 0 if there is none of this
+    number."""
     heights = scene["heights"]
     return float(heights[int(system) - 1]) if math.isfinite(system) and 1 <= system <= len(heights) else 0.0
 

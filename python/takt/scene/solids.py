@@ -1,5 +1,5 @@
-"""Simple solids, as scenes have them. Lengths in mm; the colour is what the solid is, and the page's theme says how
-that looks."""
+"""Simple solids of scenes. Lengths in mm; `colour` names the role of the solid, and the page's theme gives its
+colour."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from takt.recording import Array
 
 Solid = dict[str, Any]
 Place = Sequence[float] | Array
-MOST_TRIANGLES = 6000  # of one mesh; more are made fewer
-CELLS = 48  # along the longest edge of a mesh whose vertices are gathered
+MOST_TRIANGLES = 6000  # of one mesh; larger ones are simplified
+CELLS = 48  # along the longest edge of a mesh whose vertices are merged
 
 
 def box(size: Place, at: Place, colour: str, **more: Any) -> Solid:
-    """Edges along X, Y, Z and where its middle is."""
+    """Returns a box from its edges along X, Y, Z and its centre."""
     return {"kind": "box", "size": rounded(size), "at": rounded(shift(*at)), "colour": colour, **more}
 
 
 def cylinder(radius: float, start: Place, end: Place, colour: str, **more: Any) -> Solid:
-    """From the middle of one face to that of the other."""
+    """Returns a cylinder between the centres of its faces."""
     length = float(np.linalg.norm(np.subtract(end, start)))
     return {
         **{"kind": "cylinder", "size": rounded([radius, length]), "at": rounded(along(start, end)[:3].ravel())},
@@ -36,7 +36,7 @@ def cylinder(radius: float, start: Place, end: Place, colour: str, **more: Any) 
 
 
 def capsule(radius: float, start: Place, end: Place, colour: str, **more: Any) -> Solid:
-    """A cylinder with half a ball on both ends, which are behind `start` and `end`."""
+    """Returns a cylinder with hemispheres on both ends, beyond `start` and `end`."""
     return {**cylinder(radius, start, end, colour, **more), "kind": "capsule"}
 
 
@@ -47,9 +47,9 @@ def ball(radius: float, at: Place, colour: str, **more: Any) -> Solid:
 def from_file(
     solid: Mapping[str, Any], folder: Path | None, colour: str, span: Place = (0, 0, 0), **more: Any
 ) -> Solid | None:
-    """What the machine file gives as a shape, placed on what carries it; None where its file is not to be had.
+    """Returns a shape of the machine file, placed on its link; None if its file is not available.
 
-    span: where the next axis is, for capsules without a length."""
+    span: position of the next axis, for capsules without a length."""
     at = rounded(pose_matrix(solid["pose"])[:3].ravel())
     placed: Solid = {"at": at, "colour": colour, **more}
     if given := solid.get("box"):
@@ -72,7 +72,8 @@ def from_file(
 
 
 def thinned(vertices: Array, triangles: Any) -> tuple[Array, Any]:
-    """A surface of few enough triangles: vertices in one cell of a grid become one, triangles without an area go."""
+    """Returns a surface of at most MOST_TRIANGLES triangles: vertices in one cell of a grid are merged, triangles
+    without area removed."""
     if len(triangles) <= MOST_TRIANGLES:
         return vertices, triangles
     lower = vertices.min(axis=0)
@@ -93,7 +94,7 @@ def shift(x: float, y: float, z: float) -> list[float]:
 
 
 def along(start: Place, end: Place) -> Array:
-    """The frame in the middle of two places whose Z leads from one to the other."""
+    """Returns the frame in the middle of two points whose Z points from the first to the second."""
     a, b = np.asarray(start, float), np.asarray(end, float)
     length = float(np.linalg.norm(b - a))
     z = (b - a) / length if length > 1e-9 else np.array([0.0, 0.0, 1.0])
