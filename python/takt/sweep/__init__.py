@@ -1,9 +1,9 @@
-"""Sweeps: a scenario run by the thousand, with other values of its parameters and of the machine file each time.
+"""Sweeps: a scenario run by the thousand, each time with other values of its parameters and of the machine file.
 
     sweep("scenario.py", grid=["velocity=100:500:9"], sample=["axes.x.limits.jerk=uniform:1e4:1e5:100"])
 
-Runs go to worker processes that are started once; rows stand in the order of the runs in one table, whoever ran them,
-and a sweep that was interrupted goes on where it was. `takt sweep` is the same on the command line.
+Worker processes, started once, make the runs; one table holds their rows in the order of the runs, whichever worker
+made them, and an interrupted sweep can be continued. `takt sweep` is the same on the command line.
 """
 
 from takt.sweep.design import Design, SweepError

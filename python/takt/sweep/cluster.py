@@ -1,5 +1,5 @@
-"""The runs of a sweep on a cluster: workers of Dask distributed, wherever a scheduler has them. The rows
-are those that local processes make. Dask is an extra: pip install "takt-motion[cluster]"."""
+"""The runs of a sweep on a cluster: workers of Dask distributed, wherever a scheduler has them. The rows equal those of
+local processes. Dask is an extra: pip install "takt-motion[cluster]"."""
 
 from __future__ import annotations
 
@@ -20,28 +20,28 @@ import takt
 from takt.sweep.design import Design, SweepError
 from takt.sweep.runs import Job, Row
 
-AT_ONCE = 16  # runs that a worker is given, at most
-AHEAD = 3  # ranges of runs that the scheduler has, for each thread of a worker
+AT_ONCE = 16  # most runs that a worker is given at once
+AHEAD = 3  # pending ranges of runs per thread of the workers
 CONNECT_S = 10.0
-LOOK_S = 1.0  # from one look at the scheduler to the next
-GONE_S = 10.0  # without a scheduler, after which a sweep ends
+LOOK_S = 1.0  # interval of checks of the scheduler
+GONE_S = 10.0  # time without a scheduler after which a sweep ends
 ADDRESS = re.compile(r"[a-z][a-z0-9+]*://[^\s/]+(/\S*)?")
 _alone = threading.Lock()
 
 
 @dataclass
 class Range:
-    """Runs that a worker is given at once."""
+    """Consecutive runs that a worker is given at once."""
 
     first: int
     end: int
     at: int = -1  # the run in progress
-    worker: str = ""  # address of the one that makes it
-    since: float | None = None  # s, when it began; None: none has begun
+    worker: str = ""  # address of its worker
+    since: float | None = None  # time.monotonic() [s] at which the run began; None: no run is in progress
 
 
 def make(job: Job, design: Design, first: int, end: int, topic: str, token: int) -> list[Row]:
-    """On a worker: the rows of some runs. Scenarios are modules, so one at a time in each process."""
+    """Runs on a worker: returns the rows of some runs. Scenarios are modules, so only one at a time in each process."""
     rows = []
     with _alone:
         for number in range(first, end):
@@ -51,7 +51,7 @@ def make(job: Job, design: Design, first: int, end: int, topic: str, token: int)
 
 
 def tell(topic: str, token: int, number: int) -> None:
-    """On a worker: a run begins."""
+    """Runs on a worker: reports that a run begins."""
     from distributed import get_worker
 
     worker = get_worker()
@@ -59,23 +59,23 @@ def tell(topic: str, token: int, number: int) -> None:
 
 
 def version() -> str:
-    """On a worker: that of its takt."""
+    """Runs on a worker: returns the version of its takt."""
     return takt.__version__
 
 
 class Cluster:
-    """As `pool.Pool`, on the workers of a scheduler."""
+    """Like `pool.Pool`, on the workers of a scheduler."""
 
     def __init__(self, job: Job, design: Design, address: str, timeout_s: float) -> None:
         self._job, self._design, self._address, self._timeout_s = job, design, address, timeout_s
         self._made = 0
-        self._topic = f"takt-sweep-{uuid.uuid4().hex}"  # of events with which workers say that a run begins
+        self._topic = f"takt-sweep-{uuid.uuid4().hex}"  # topic of the events that report the beginning of a run
         self._tokens = itertools.count()
         self._given: WeakValueDictionary[int, Range] = WeakValueDictionary()  # by token
         self._heard = time.monotonic()  # when a run last began or ended
-        self._held: set[str] = set()  # addresses of workers with a run that was given up, and may go on
-        self._free: list[str] = []  # of all others, once there are such
-        if not ADDRESS.fullmatch(address):  # Dask would take it for the name of a host, and look for it for long
+        self._held: set[str] = set()  # addresses of workers with an abandoned run, which may continue
+        self._free: list[str] = []  # addresses of the others, once a run was abandoned
+        if not ADDRESS.fullmatch(address):  # Dask would take it for a host name, and search for it for a long time
             raise SweepError(f"expected the address of a scheduler as tcp://host:8786, found '{address}'")
         try:
             import distributed
@@ -88,7 +88,7 @@ class Cluster:
 
     @property
     def keys(self) -> list[str]:
-        """What the runs vary."""
+        """The varied keys."""
         return self._design.keys
 
     def run(self, first: int, end: int, take: Callable[[Row], None]) -> None:
@@ -110,7 +110,7 @@ class Cluster:
         pending: dict[Any, Range] = {}
         rows: dict[int, Row] = {}
         following = oldest = first
-        answered = time.monotonic()  # the scheduler was there
+        answered = time.monotonic()  # time of the last contact with the scheduler
         while oldest < end:
             self._give_again(client, pending)
             while following < end and len(pending) < AHEAD * threads:
@@ -124,7 +124,7 @@ class Cluster:
             for future in done:
                 span = pending.pop(future)
                 self._heard = time.monotonic()
-                if future.status == "error" and span.end - span.first > 1:  # which of them it was is not known
+                if future.status == "error" and span.end - span.first > 1:  # which run failed is unknown
                     for number in range(span.first, span.end):
                         self._give(client, pending, number, number + 1)
                     continue
@@ -151,23 +151,23 @@ class Cluster:
         token = next(self._tokens)
         self._given[token] = span
         arguments = (self._job, self._design, first, end, self._topic, token)
-        # Dask takes workers for free whose run was cancelled, though it goes on.
+        # Dask takes workers whose run was cancelled for free, though it continues.
         where = {"workers": self._free, "allow_other_workers": True} if self._free else {}
         pending[client.submit(make, *arguments, pure=False, **where)] = span
 
     def _give_again(self, client: Any, pending: dict[Any, Range]) -> None:
-        """Runs that a scheduler took with it when it went away, once one answers again."""
+        """Resubmits runs that a scheduler lost, once one answers again."""
         if client.status != "running":
             return
         lost = [future for future in pending if future.status in ("cancelled", "lost")]
         if lost:
-            client.subscribe_topic(self._topic, self._hear)  # a scheduler that was started again does not know of it
+            client.subscribe_topic(self._topic, self._hear)  # a restarted scheduler does not know the subscription
         for future in lost:
             span = pending.pop(future)
             self._give(client, pending, span.first, span.end)
 
     def _hear(self, event: tuple[float, tuple[int, int, str]]) -> None:
-        """A worker begins a run."""
+        """Records that a worker begins a run."""
         _, (token, number, worker) = event
         span = self._given.get(token)
         if span is not None:
@@ -175,7 +175,8 @@ class Cluster:
             self._heard = time.monotonic()
 
     def _give_up(self, client: Any, pending: dict[Any, Range]) -> Iterator[Row]:
-        """The rows of runs that take too long. Others of their ranges, and those behind them, are given again."""
+        """Yields the rows of runs that take too long. The other runs of their ranges, and those that wait, are
+        resubmitted."""
         now = time.monotonic()
         late = [
             future
@@ -189,7 +190,7 @@ class Cluster:
             span = pending[future]
             if future.status != "pending":
                 continue
-            if span.worker not in workers:  # it has ended, and Dask gives the range to another one
+            if span.worker not in workers:  # it has ended; Dask reassigns the range
                 span.since = None
                 continue
             del pending[future]
@@ -207,7 +208,7 @@ class Cluster:
             self._give(client, pending, span.first, span.end)
 
     def _waits_in_vain(self, pending: dict[Any, Range]) -> bool:
-        """Whether no run is in progress, and none has begun or ended for long."""
+        """Returns whether no run is in progress, and none has begun or ended for a long time."""
         idle = all(future.status == "pending" and span.since is None for future, span in pending.items())
         return idle and time.monotonic() - self._heard > max(GONE_S, self._timeout_s)
 
@@ -227,7 +228,7 @@ class Cluster:
         return [future for future in ended if future.status in ("finished", "error")]
 
     def _rows(self, future: Any, span: Range) -> list[Row]:
-        """What became of a range of runs."""
+        """Returns the rows of a finished range of runs."""
         if future.status == "finished":
             found: list[Row] = future.result()
             return found
@@ -243,7 +244,8 @@ class Cluster:
         return self._job.row(number, self._design.point(number), f"no result: {why}", {}, {})
 
     def _check(self, client: Any) -> int:
-        """Threads of all workers, which have to be there and to have this takt."""
+        """Returns the number of threads of all workers. Raises SweepError if there are none, or one has another version
+        of takt."""
         workers = client.scheduler_info(n_workers=-1)["workers"]
         if not workers:
             raise SweepError(f"the scheduler at {self._address} has no workers: dask worker {self._address}")
@@ -261,7 +263,7 @@ class Cluster:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """What Dask logs of a connection that is lost, with where in its own code, a sweep says in a sentence."""
+    """Suppresses Dask's log of lost connections, with its traces: a sweep reports them in a sentence."""
     loggers = [logging.getLogger(name) for name in ("distributed.client", "distributed.core", "distributed.comm")]
     before = [logger.level for logger in loggers]
     for logger in loggers:

@@ -1,8 +1,8 @@
-"""What a sweep varies: grids of values, and samples that are drawn.
+"""The design of a sweep: grids of values, and random samples.
 
-A sweep of grids a and b and of n samples has the runs a x b x n: at each point of the grid the same n draws. What run i
-has is computed from i alone, so that nothing of a sweep of ten million runs is held in memory, and any worker can make
-any run. Drawn numbers come from the bits of PCG64, which NumPy keeps as they are from version to version.
+A sweep of grids a and b and of n samples has a x b x n runs: the same n draws at each point of the grid. The values of
+run i are computed from i alone, so that even a sweep of ten million runs needs no memory for them, and any worker can
+make any run. Random numbers come from the bits of PCG64, which NumPy keeps the same from version to version.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from takt.changes import Value, value_of
 from takt.errors import TaktError
 from takt.names import names_in
 
-COLUMNS = ("run", "passed", "failed", "engine_s", "hash", "command")  # that every row of the table has
-BLOCK = 1024  # draws that are made at once
-LAWS = {  # of samples: what stands behind them
+COLUMNS = ("run", "passed", "failed", "engine_s", "hash", "command")  # columns of every row of the table
+BLOCK = 1024  # number of draws computed at once
+LAWS = {  # of samples, with their syntax
     "uniform": "uniform:LOW:HIGH:COUNT",
     "log_uniform": "log_uniform:LOW:HIGH:COUNT",
     "normal": "normal:MEAN:DEVIATION:COUNT",
@@ -33,12 +33,12 @@ LAWS = {  # of samples: what stands behind them
 
 
 class SweepError(TaktError):
-    """A sweep cannot be made as wanted; the text is one sentence for people."""
+    """A sweep cannot be made as requested; the text is one sentence for readers."""
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Values at even distances, both ends included, or values that are listed."""
+    """Evenly spaced values, including both ends, or listed values."""
 
     key: str
     text: str
@@ -49,7 +49,8 @@ class Grid:
 
     @staticmethod
     def of(text: str, texts: Collection[str] = ()) -> Grid:
-        """NAME=LOW:HIGH:COUNT or NAME=A,B,C. texts: keys whose listed values are texts."""
+        """Returns the grid of NAME=LOW:HIGH:COUNT or NAME=A,B,C. texts: keys whose listed values are texts. Raises
+        SweepError."""
         key, said = _split(text, "--grid", "velocity=100:500:9 or mode=slow,fast")
         if ":" not in said:
             listed = _listed(said, key in texts)
@@ -70,7 +71,7 @@ class Grid:
 
 @dataclass(frozen=True)
 class Sample:
-    """Values that are drawn."""
+    """Random values."""
 
     key: str
     text: str
@@ -80,7 +81,7 @@ class Sample:
 
     @staticmethod
     def of(text: str, texts: Collection[str] = ()) -> Sample:
-        """NAME=LAW:...:COUNT. texts: keys whose listed values are texts."""
+        """Returns the sample of NAME=LAW:...:COUNT. texts: keys whose listed values are texts. Raises SweepError."""
         key, said = _split(text, "--sample", "mass=uniform:1:2:100")
         law, *parts = said.split(":")
         if law not in LAWS:
@@ -131,7 +132,8 @@ class Design:
 
     @staticmethod
     def of(grid: Sequence[str], sample: Sequence[str], seed: int = 0, texts: Collection[str] = ()) -> Design:
-        """texts: keys whose listed values are texts. Raises SweepError where there is no run in it."""
+        """Returns the design of grids and samples. texts: keys whose listed values are texts. Raises SweepError if it
+        has no runs, or keys or counts conflict."""
         grids = tuple(Grid.of(one, texts) for one in names_in(grid, "grid", "key", "texts"))
         samples = tuple(Sample.of(one, texts) for one in names_in(sample, "sample", "key", "texts"))
         design = Design(grids, samples, seed)
@@ -159,13 +161,13 @@ class Design:
 
     @property
     def size(self) -> int:
-        """How many runs there are."""
+        """Number of runs."""
         return math.prod(one.count for one in self.grids) * self.draws
 
     @property
     def kinds(self) -> Iterator[tuple[str, Value]]:
-        """Keys with values that stand for all that they have: what is listed, the first two and the last one of even
-        distances (whole numbers where these are), the first one that is drawn."""
+        """Keys with representative values: all listed ones, the first two and the last of evenly spaced ones (integers
+        among them), the first random one."""
         for grid in self.grids:
             for i in range(grid.count) if grid.listed else sorted({0, min(1, grid.count - 1), grid.count - 1}):
                 yield grid.key, grid.value(i)
@@ -175,11 +177,11 @@ class Design:
 
     @property
     def draws(self) -> int:
-        """At each point of the grid."""
+        """Number of draws at each point of the grid."""
         return self.samples[0].count if self.samples else 1
 
     def point(self, run: int) -> dict[str, Value]:
-        """What one run has. The last grid changes before those in front of it, draws before the grid."""
+        """Returns the values of one run. Draws change fastest, then the last grid."""
         place, draw = divmod(run, self.draws)
         found: dict[str, Value] = {}
         for grid in reversed(self.grids):
@@ -191,14 +193,14 @@ class Design:
 
 @functools.lru_cache(maxsize=64)
 def _shares(seed: int, key: int, block: int) -> list[float]:
-    """Numbers evenly distributed above 0 and below 1."""
+    """Returns uniformly distributed numbers above 0 and below 1."""
     bits = np.random.PCG64([seed, key, block]).random_raw(BLOCK)
     shares: list[float] = (((bits >> np.uint64(12)).astype(np.float64) + 0.5) * 2.0**-52).tolist()
     return shares
 
 
 def _listed(said: str, as_texts: bool) -> tuple[Value, ...]:
-    """The values of A,B,C."""
+    """Returns the values of A,B,C."""
     given = [one.strip() for one in said.split(",") if one.strip()]
     return tuple(one if as_texts else value_of(one) for one in given)
 

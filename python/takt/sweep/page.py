@@ -1,5 +1,5 @@
-"""The page of a sweep: what failed, distributions, how numbers hang on what was varied, the worst runs with the
-commands that make them again. One HTML file with everything inside."""
+"""The page of a sweep: failures, distributions, dependence of numbers on the varied keys, the worst runs with the
+commands that repeat them. One self-contained HTML file."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from takt.sweep.summary import Column, Summary
 from takt.written import write_text
 
 BINS = 40  # of a distribution
-STEPS = 24  # of a key with more values than that
+STEPS = 24  # groups of a key with more values
 WIDTH, HEIGHT = 420, 120  # of a drawing, without the numbers below
 CSS = """
 .sweep { display: grid; grid-template-columns: repeat(auto-fill, minmax(430px, 1fr)); gap: 12px; }
@@ -35,14 +35,14 @@ td.number { font-variant-numeric: tabular-nums; white-space: nowrap; }
 
 
 def write_page(summary: Summary, directory: Path, title: str, about: Path) -> Path:
-    """Writes sweep.html."""
+    """Writes sweep.html. Returns its path."""
     target = directory / "sweep.html"
     write_text(target, render(summary, title, json.loads(about.read_text(encoding="utf-8"))))
     return target
 
 
 def render(summary: Summary, title: str, about: dict[str, object]) -> str:
-    """The page as text."""
+    """Returns the page as text."""
     colour = "bad" if summary.failed else "good" if summary.runs else ""
     pill = f"{summary.failed:,} of {summary.runs:,} failed" if summary.failed else f"all {summary.runs:,} passed"
     if not summary.runs:
@@ -82,7 +82,7 @@ def _failures(summary: Summary) -> str:
 
 
 def _worst(outputs: Sequence[Column]) -> Iterable[str]:
-    """Of margins the least, of other numbers both ends."""
+    """Yields the ends of each number: the smallest values of margins, both ends of other numbers."""
     for one in outputs:
         ends = [("least", one.low[:5])] if one.name.rstrip("0123456789 ").endswith(")") else []
         ends = ends or [("least", one.low[:3]), ("greatest", one.high[:3])]
@@ -112,7 +112,7 @@ def _section(title: str, figures: Iterable[str]) -> str:
 
 
 def _distribution(column: Column, values: FloatArray) -> str:
-    """How often which value: red below 0, where a verdict failed."""
+    """Returns a histogram; margins below 0 are red: there a verdict failed."""
     good = values[np.isfinite(values)]
     if not len(good):
         return ""
@@ -131,7 +131,7 @@ def _distribution(column: Column, values: FloatArray) -> str:
 
 
 def _groups(values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Which group each row is in, and the middles of the groups: the values themselves where they are few."""
+    """Returns the group of each row, and the centres of the groups: the values themselves if they are few."""
     good = values[np.isfinite(values)]
     known = np.unique(good)
     if len(known) <= STEPS:
@@ -163,7 +163,7 @@ def _shares(summary: Summary) -> Iterable[str]:
 
 
 def _dependences(summary: Summary, outputs: Sequence[Column]) -> Iterable[str]:
-    """Least, median and greatest value of a number, by what was varied."""
+    """Yields the smallest, median and largest value of each number, by varied key."""
     for one in outputs:
         for key in summary.keys:
             of = summary.columns.get(key)

@@ -1,5 +1,5 @@
-"""The workers of a sweep: processes that are started once and given ranges of runs. One that dies is replaced; the run
-that it died in is tried once more, and says so in its row if another one dies in it, too."""
+"""The workers of a sweep: processes that are started once and given ranges of runs. A worker that dies is replaced; the
+run in which it died is tried once more, and reported as failed in its row if another worker dies in it, too."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from typing import IO, Any
 from takt.sweep.design import Design, SweepError
 from takt.sweep.runs import Job, Row
 
-AT_ONCE = 16  # runs that a worker is given, at most
-AHEAD = 4096  # runs that may be made before the oldest one that is missing
-TRIES = 2  # of a run that a worker dies in
-# The memory of an engine is 40 MB; glibc gives it back after each run unless told otherwise, and half of the time of a
-# run went into getting it again.
+AT_ONCE = 16  # most runs that a worker is given at once
+AHEAD = 4096  # how far runs may be ahead of the oldest missing one
+TRIES = 2  # of a run in which a worker dies
+# The memory of an engine is 40 MB; by default glibc returns it after each run, and half of the time of a run was spent
+# on allocating it again.
 KEEP_MEMORY = {"MALLOC_MMAP_MAX_": "0", "MALLOC_TRIM_THRESHOLD_": str(2**33), "MALLOC_TOP_PAD_": str(2**26)}
-LOOK_S = 1.0  # from one look at the clock to the next
+LOOK_S = 1.0  # interval of checks of the timeout
 
 
 class Worker:
@@ -48,7 +48,7 @@ class Worker:
         self.connection = Connection(ours.detach())
         self.connection.send((job, design))
         self.ready = False
-        self.at = self.end = 0  # the run that it makes, and the end of its range
+        self.at = self.end = 0  # run in progress, and the end of its range
         self.since = time.monotonic()
 
     @property
@@ -80,7 +80,7 @@ class Worker:
 
 
 class Pool:
-    """Makes the runs from `first` to `end` and hands on their rows in order."""
+    """Makes the runs from `first` to `end` and passes on their rows in order."""
 
     def __init__(self, job: Job, design: Design, workers: int, timeout_s: float) -> None:
         self._job, self._design, self._timeout_s = job, design, timeout_s
@@ -88,12 +88,12 @@ class Pool:
         self._workers: list[Worker] = []
         self._again: list[tuple[int, int]] = []  # ranges of workers that died
         self._tries: Counter[int] = Counter()
-        self._rows: dict[int, Row] = {}  # that wait for one before them
+        self._rows: dict[int, Row] = {}  # rows that wait for an earlier one
         self._next = self._end = self._oldest = 0
 
     @property
     def keys(self) -> list[str]:
-        """What the runs vary."""
+        """The varied keys."""
         return self._design.keys
 
     def run(self, first: int, end: int, take: Callable[[Row], None]) -> None:
@@ -124,7 +124,7 @@ class Pool:
                 self._next = span[1]
             else:
                 continue
-            with contextlib.suppress(OSError):  # it has died; hearing it says so
+            with contextlib.suppress(OSError):  # it has died: `_hear` detects that
                 worker.give(*span)
 
     def _hear(self) -> None:
@@ -143,7 +143,7 @@ class Pool:
                 self._rows[number] = row
         for worker in list(self._workers):
             if worker.ready and not worker.idle and time.monotonic() - worker.since > self._timeout_s:
-                self._tries[worker.at] = TRIES  # it would take as long again
+                self._tries[worker.at] = TRIES  # it would take too long again
                 self._replace(worker, f"it took longer than {self._timeout_s:g} s")
 
     def _replace(self, worker: Worker, why: str) -> None:

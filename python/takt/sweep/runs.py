@@ -18,18 +18,18 @@ from takt.scenario import Outcome, Played, load_scenario, run_scenario, with_set
 from takt.sweep.design import COLUMNS
 
 Row = dict[str, Any]
-TEXT = 300  # letters of a sentence
+TEXT = 300  # longest text in a cell
 
 
 @dataclass(frozen=True)
 class Job:
-    """What all runs of a sweep have in common."""
+    """The common data of all runs of a sweep."""
 
     scenario: str
-    machine: str  # as it was given; empty: the one beside the scenario
+    machine: str  # as given; empty: the one beside the scenario
 
     def command(self, point: Mapping[str, Value]) -> str:
-        """The command that makes a run again."""
+        """Returns the command that repeats a run."""
         words = ["takt", "run", self.scenario]
         words += ["--machine", self.machine] if self.machine else []
         for key, value in point.items():
@@ -37,7 +37,7 @@ class Job:
         return shown(shlex.join(words))
 
     def run(self, number: int, point: Mapping[str, Value]) -> Row:
-        """Makes a run. Whatever goes wrong in it is said in its row."""
+        """Makes a run. Returns its row, which also reports any failure."""
         found: Row = {"engine_s": "", "hash": ""}
         failed = ""
         more: Row = {}
@@ -50,13 +50,13 @@ class Job:
         return self.row(number, point, failed, found, more)
 
     def row(self, number: int, point: Mapping[str, Value], failed: str, found: Row, more: Row) -> Row:
-        """The columns of all rows first, then what this one has besides."""
+        """Returns a row: the common columns first, then its own."""
         said = " ".join(shown(failed).split())
         head = {"run": number, **point, "passed": int(not failed), "failed": said[:TEXT]}
         return {**head, "engine_s": "", "hash": "", **found, "command": self.command(point), **more}
 
     def _outcome(self, point: Mapping[str, Value], found: Row) -> tuple[str, Row]:
-        # Loaded each time: what a scenario keeps in its module would otherwise depend on the runs before.
+        # Loaded each time: the state of its module would otherwise depend on earlier runs.
         scenario, changes = with_settings(load_scenario(self.scenario), point)
         with Engine(self.machine or scenario.machine, changes=changes) as session:
             try:
@@ -74,21 +74,21 @@ class Job:
 
 
 def is_same(row: Row, other: Row) -> bool:
-    """Whether two rows have the same columns and values; NaN is the same as NaN."""
+    """Returns whether two rows have the same columns and values; NaN equals NaN."""
     return row.keys() == other.keys() and all(
         row[name] == other[name] or (row[name] != row[name] and other[name] != other[name]) for name in row
     )
 
 
 def _why(outcome: Outcome) -> str:
-    """What failed first, in a sentence; empty: nothing."""
+    """Returns the first failure as a sentence; empty if nothing failed."""
     if outcome.assertion is not None:
         return outcome.complaint
     return next((f"{v.title}: {v.sentence}" for v in outcome.verdicts if not v.passed), "")
 
 
 def _margins(outcome: Outcome) -> Row:
-    """By how much each verdict passed; below 0: by how much it failed."""
+    """Returns by how much each verdict passed; below 0: by how much it failed."""
     found: Row = {}
     seen: Counter[str] = Counter()
     for verdict in outcome.verdicts:
@@ -101,7 +101,7 @@ def _margins(outcome: Outcome) -> Row:
 
 
 def _plain(value: Any) -> Any:
-    """As a table holds it: Python's own number, or a text."""
+    """Returns a value for a table: a Python number, or a text."""
     value = value.item() if hasattr(value, "item") and getattr(value, "ndim", 0) == 0 else value
     if isinstance(value, bool):
         return int(value)

@@ -1,4 +1,4 @@
-"""What the rows of a sweep come to: how many passed, how numbers are distributed, which runs are the worst."""
+"""The summary of a sweep's rows: number of passed runs, distributions of numbers, worst runs."""
 
 from __future__ import annotations
 
@@ -15,28 +15,28 @@ from takt.counted import counted
 from takt.recording import FloatArray
 from takt.sweep.design import COLUMNS, Design
 
-KEPT = 100_000  # rows whose numbers are kept for distributions, evenly chosen
-WORST = 10  # rows kept of each number, at either end
-REASONS = 1000  # kept of failures
+KEPT = 100_000  # most rows whose numbers are kept for distributions, evenly chosen
+WORST = 10  # rows kept for each number, at either end
+REASONS = 1000  # most different failures that are kept
 FIGURE = re.compile(r"(?<![\w.])-?\d[\d.]*(e[+-]?\d+)?(?![\w.])")
 FIXED = {*COLUMNS} - {"engine_s"}
 
 
 @dataclass
 class Column:
-    """A number of all rows."""
+    """A number over all rows."""
 
     name: str
     count: int = 0
     least: float = math.inf
     most: float = -math.inf
-    low: list[tuple[float, int, str]] = field(default_factory=list)  # (value, run, command), the least first
-    high: list[tuple[float, int, str]] = field(default_factory=list)  # the greatest first
+    low: list[tuple[float, int, str]] = field(default_factory=list)  # (value, run, command), smallest first
+    high: list[tuple[float, int, str]] = field(default_factory=list)  # largest first
 
     def take(self, value: float, run: int, command: str) -> None:
         self.count += 1
         self.least, self.most = min(self.least, value), max(self.most, value)
-        for heap, key in ((self.low, -value), (self.high, value)):  # the one to be given up first lies at the top
+        for heap, key in ((self.low, -value), (self.high, value)):  # the entry to be dropped first is at the top
             entry = (key, -run, command)
             if len(heap) < WORST:
                 heapq.heappush(heap, entry)
@@ -52,12 +52,12 @@ class Column:
 class Summary:
     size: int  # runs of the sweep
     keys: list[str]
-    runs: int = 0  # that were made
+    runs: int = 0  # finished runs
     passed: int = 0
-    reasons: dict[str, tuple[int, int, str]] = field(default_factory=dict)  # by what failed: how often, first run
+    reasons: dict[str, tuple[int, int, str]] = field(default_factory=dict)  # by failure: count, first run, command
     columns: dict[str, Column] = field(default_factory=dict)  # numbers
-    texts: set[str] = field(default_factory=lambda: {"failed", "hash", "command"})  # columns that are none
-    kept: dict[str, FloatArray] = field(default_factory=dict)  # numbers of every n-th row, NaN where there is none
+    texts: set[str] = field(default_factory=lambda: {"failed", "hash", "command"})  # columns that are not numbers
+    kept: dict[str, FloatArray] = field(default_factory=dict)  # numbers of every n-th row, NaN where missing
 
     def __repr__(self) -> str:
         return f"<Summary: {self.runs:,} of {counted(self.size, 'run')}, {self.passed:,} passed>"
@@ -114,7 +114,7 @@ class Summary:
 
 
 def _reason(sentence: str) -> str:
-    """What failed, without the figures of the one run."""
+    """Returns the reason of a failure, without the figures of the single run."""
     title, colon, _ = sentence.partition(": ")
     if colon and title.endswith(")"):
         return title

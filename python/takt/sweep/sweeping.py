@@ -25,15 +25,15 @@ TIMEOUT_S = 600.0
 
 @dataclass(frozen=True)
 class Result:
-    """What a sweep has come to."""
+    """The result of a sweep."""
 
     table: Path  # runs.csv
     page: Path  # sweep.html
     parquet: Path | None  # runs.parquet, where pyarrow is installed
     summary: Summary
-    made: int  # runs of this call; the others were there
+    made: int  # runs of this call; the others existed before
     elapsed_s: float
-    repeats: bool  # the first run had the same state when it was made again
+    repeats: bool  # the first run of this call had the same row when it was repeated
 
     def __repr__(self) -> str:
         rest = self.summary.size - self.summary.runs
@@ -65,18 +65,20 @@ def sweep(
     fresh: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> Result:
-    """Runs a scenario at all points of a grid and of samples, in virtual time.
+    """Runs a scenario at all points of a grid and of samples, in virtual time. Raises SweepError if the sweep cannot be
+    made.
 
     grid: "velocity=100:500:9" or "mode=slow,fast"; sample: "mass=uniform:1:2:100". Keys are parameters of the scenario,
         or, with a dot, paths of the machine file.
-    directory: where the table and the page go [sweeps/SCENARIO]; a sweep that is there goes on.
-    workers: processes [as many as there are processors].
+    directory: of the table and the page [sweeps/SCENARIO]; an existing sweep is continued.
+    workers: number of processes [number of processors].
     scheduler: address of a scheduler of Dask distributed, "tcp://host:8786", whose workers make the runs instead.
-    stop_after: so many runs now; the next call goes on.
-    timeout_s: s of this host's time that a run may take.
-    fresh: begins again.
+    stop_after: number of runs in this call; the next call continues. None: all.
+    timeout_s: longest time [s] of a run by the clock of this host.
+    fresh: starts over.
+    progress: called with the finished share, 0 to 1, after each run.
     """
-    from takt.sweep.page import write_page  # what draws takes long to import, and workers need none of it
+    from takt.sweep.page import write_page  # drawing takes long to import, and workers do not need it
 
     job = Job(str(scenario), str(machine or ""))
     design = Design.of(grid, sample, seed, load_scenario(scenario).texts)
@@ -134,7 +136,7 @@ def _make(
 
 
 def _check(job: Job, design: Design) -> None:
-    """Refuses what no run could be made with, and values that are not of the kind of their parameters."""
+    """Refuses a design with which no run could be made, and values whose types do not match their parameters."""
     scenario = load_scenario(job.scenario)
     _, changes = with_settings(scenario, design.point(0))
     for key, value in design.kinds:

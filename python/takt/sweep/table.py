@@ -1,5 +1,5 @@
-"""The table of a sweep: runs.csv, a row a run in their order, and sweep.json, which says what made it. It is appended
-to as rows come, so that a sweep that was interrupted, by whatever, goes on where it was."""
+"""The table of a sweep: runs.csv, one row per run in their order, and sweep.json, which describes its origin. Rows are
+appended as they are made, so that an interrupted sweep can be continued."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TABLE, ABOUT, LOCK = "runs.csv", "sweep.json", ".lock"
 
 
 def about(job: Job, design: Design) -> dict[str, Any]:
-    """What makes the rows of a sweep what they are."""
+    """Returns all that determines the rows of a sweep."""
     scenario = Path(job.scenario)
     machine = Path(job.machine) if job.machine else scenario.parent / "machine.yaml"
     return {
@@ -54,7 +54,7 @@ WORDS = {
 
 
 class Table:
-    """The rows of a sweep on the disk. `count` of them are there."""
+    """The rows of a sweep on disk; `count`: their number."""
 
     def __init__(self, directory: Path, facts: Mapping[str, Any], fresh: bool = False) -> None:
         self.path = directory / TABLE
@@ -101,7 +101,7 @@ class Table:
             self._lock.close()
 
     def _check(self, facts: Mapping[str, Any]) -> None:
-        """Refuses to add to a table that other runs made."""
+        """Refuses to extend a table that a different sweep made."""
         try:
             known = json.loads(self._about.read_text(encoding="utf-8"))
             differing = [name for name in WORDS if known.get(name) != facts[name]]
@@ -120,7 +120,7 @@ class Table:
             )
 
     def _take_up(self) -> None:
-        """Counts the rows that are whole, and cuts off what was not written to its end."""
+        """Counts the complete rows, and cuts off an incomplete last one."""
         with self.path.open("rb+") as file:
             size = commas = 0
             for number, line in enumerate(file):
@@ -139,7 +139,7 @@ class Table:
             file.truncate(size)
 
     def _widen(self, new: list[str]) -> None:
-        """Writes the table with more columns, empty in the rows before."""
+        """Writes the table with more columns, empty in the existing rows."""
         fresh = not self.columns
         self.columns += new
         if fresh:
@@ -159,20 +159,20 @@ class Table:
 
 
 def _is_whole(line: bytes, commas: int) -> bool:
-    """Whether a row has as many cells as there are columns."""
+    """Returns whether a row has a cell for each column."""
     if b'"' not in line:
         return line.count(b",") == commas
     return len(next(csv.reader([line.decode("utf-8", "replace")]))) == commas + 1
 
 
 def rows_of(path: Path) -> Iterator[dict[str, str]]:
-    """The rows of a table as texts."""
+    """Yields the rows of a table as texts."""
     with path.open(newline="", encoding="utf-8") as file:
         yield from csv.DictReader(file)
 
 
 def to_parquet(path: Path, texts: set[str]) -> Path:
-    """The same table as Parquet; `texts`: columns that are no numbers. Needs pyarrow."""
+    """Writes the same table as Parquet; `texts`: columns that are not numbers. Requires pyarrow. Returns its path."""
     arrow, arrow_csv, parquet = map(importlib.import_module, ("pyarrow", "pyarrow.csv", "pyarrow.parquet"))
     target = path.with_suffix(".parquet")
     with path.open(newline="", encoding="utf-8") as file:

@@ -1,4 +1,4 @@
-"""A worker of a sweep: a process that makes runs as long as it is asked for some. Started by `pool`."""
+"""A worker of a sweep: a process that makes runs as long as they are requested. Started by `pool`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from takt.sweep.runs import Job
 
 
 def work(connection: Connection) -> None:
-    """Takes what all runs have in common, then ranges of runs; sends each run's number and its row."""
+    """Receives the common data of all runs, then ranges of runs; sends the number and the row of each run."""
     job: Job
     design: Design
     job, design = connection.recv()
@@ -24,6 +24,6 @@ def work(connection: Connection) -> None:
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all processes of a terminal; the first one decides
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all processes of a terminal; the main process decides
     with contextlib.suppress(EOFError, BrokenPipeError, ConnectionResetError):  # the sweep has ended, or its process
         work(Connection(int(sys.argv[1])))
