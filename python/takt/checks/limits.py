@@ -103,10 +103,10 @@ def continuous(
         measured (with noise and quantisation). None: bounds follow from the limits, given or known of the component,
         over the time dt between two samples:
 
-    - position changes by at most velocity * dt, and by the mean of its two velocities times dt, give or take jerk *
-      dt³/12 (without a jerk limit: acceleration * dt²/4), the error of the trapezoidal rule;
-    - velocity changes by at most acceleration * dt, and by the mean of its two accelerations times dt, give or take
-      jerk * dt²/4;
+    - position changes by at most velocity * dt, and by the mean of its two velocities times dt, give or take
+      jerk * dt³/12 (without a jerk limit: acceleration * dt²/4), the error of the trapezoidal rule;
+    - velocity changes by at most acceleration * dt, and by the mean of its two accelerations times dt, give
+      or take jerk * dt²/4;
     - acceleration changes by at most jerk * dt.
 
     So a jump of a micrometre is found in a set point, although the axis could have moved further in that time.

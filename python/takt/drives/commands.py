@@ -236,7 +236,7 @@ def _described(machine: Path) -> tuple[bytes, str, Mapping[str, Any]]:
     "--watchdog", default=WATCHDOG, show_default=True, type=click.IntRange(1), help="Periods without a set point."
 )
 def run(machine: Path, bus: str | None, url: str | None, key: Path | None, watchdog: int) -> int:
-    """Be the process of the drives of a machine file: its field buses for the engine (taktd MACHINE)."""
+    """Run the drives of a machine file: the process of its field buses for the engine (taktd MACHINE)."""
     _, file_name, described = _described(machine)
     buses: list[CanopenBus | EthercatBus] = []
     try:
@@ -260,10 +260,10 @@ def run(machine: Path, bus: str | None, url: str | None, key: Path | None, watch
 @click.option("--bus", metavar="BUS", help="Only this bus of the machine file [all]; without a file: where.")
 @click.option("--nodes", default=1, show_default=True, type=click.IntRange(1, 126), help="Without a file: how many.")
 def emulate(machine: Path | None, bus: str | None, nodes: int) -> int:
-    """Be the drives themselves, without metal: those of a machine file, or as many as one likes.
+    """Emulate drives without hardware: those of a machine file, or a number of them on a bus.
 
-    Commands are read from standard input: fault NODE CODE [lasting], clear NODE, cut NODE|all, join NODE|all,
-    power NODE off|on, stall NODE, jump NODE INCREMENTS, show, quit; on EtherCAT lose PERCENT, too, and a NODE is a
+    Commands are read from standard input: fault NODE CODE [lasting], clear NODE, cut NODE|all, join NODE|all, power
+    NODE off|on, stall NODE, jump NODE INCREMENTS, show, quit; on EtherCAT lose PERCENT, too, and a NODE is a
     position."""
     if machine is None:
         if bus is None:

@@ -726,8 +726,8 @@ class EthercatBus(FieldBus):
 
 
 def drift_of(clocks: Sequence[tuple[float, float]]) -> float | None:
-    """Returns by which factor minus 1 a second clock runs faster than the first, from readings of both [s]; None if
-    there are too few.
+    """Returns the relative drift of a second clock against the first (above 0: it is faster), from readings of both
+    [s]; None if there are too few.
 
     The second clock is read with the delay of a frame; the quickest frames of the first and the last fifth are used.
     """

@@ -18,7 +18,7 @@ class SelectedCam:
     MC_CamIn."""
 
     cam: str
-    periodic: bool | None = None  # None: if the cam is cyclic
+    periodic: bool | None = None  # None: periodic if the cam is cyclic
     master_absolute: bool = True
     slave_absolute: bool = True
 
