@@ -21,10 +21,7 @@ MODES = {
     drive.CYCLIC_VELOCITY: Mode.CYCLIC_VELOCITY,
     drive.CYCLIC_TORQUE: Mode.CYCLIC_TORQUE,
 }
-AXIS_MODES = {
-    "cyclic_position": Mode.CYCLIC_POSITION,
-    "cyclic_velocity": Mode.CYCLIC_VELOCITY,
-}  # names in a machine file
+AXIS_MODES = {"cyclic_position": Mode.CYCLIC_POSITION, "cyclic_velocity": Mode.CYCLIC_VELOCITY}  # of a machine file
 FOLLOWING = 0x8611
 CODE_WITHIN_S = 0.2  # time after a fault in which its error code is expected
 MANY_RESETS = 3

@@ -54,11 +54,8 @@ LATE_CYCLES: Final = 50  # after a lost frame, in which it may still arrive
 SILENT: Final = 20  # frames lost in a row: the wire itself is interrupted
 RX_MAP, TX_MAP, RX_ASSIGNED, TX_ASSIGNED = 0x1600, 0x1A00, 0x1C12, 0x1C13
 AL_CONTROL, AL_STATUS = 0x0120, 0x0130
-FMMUS, MAILBOX_MANAGERS, DATA_MANAGERS = (
-    (0x0600, 64),
-    (0x0800, 16),
-    (0x0810, 16),
-)  # registers that are written again when a slave returns
+# Registers (address, bytes) that are written again when a slave returns.
+FMMUS, MAILBOX_MANAGERS, DATA_MANAGERS = (0x0600, 64), (0x0800, 16), (0x0810, 16)
 
 # Mapped objects, the last ones only if the drive has them. Objects of 8 bits last: some drives require even addresses.
 OUTPUTS: Final = (od.CONTROL_WORD, None, od.TARGET_TORQUE, od.MAX_TORQUE, od.MODE)  # None: the target of the mode

@@ -36,9 +36,7 @@ class Difference:
     field: str
     unit: str
     samples: int  # number of compared times
-    largest: (
-        float | None
-    )  # largest absolute difference; None: states, integers without a unit, or no finite number in both
+    largest: float | None  # absolute difference; None: states, integers without a unit, or no finite number in both
     largest_s: float | None  # when
     rms: float | None
     first_s: float | None  # first time at which they differ; None: they do not
