@@ -32,7 +32,7 @@ class CouplingBlock(MotionBlock):
 
 class MC_GearIn(CouplingBlock, UpdatedBlock):  # noqa: N801
     """Follows the velocity of Master times RatioNumerator / RatioDenominator; from InGear on, its position, too. InGear
-    falls while the limits of the axis prevent it."""
+    falls when the limits of the axis prevent this."""
 
     VERB = "gear_in"
     Master = Input[Axis | str]("", "master")

@@ -76,7 +76,7 @@ def with_numbers(arguments: Mapping[str, Any], numbers: Numbers) -> dict[str, An
 
 
 class MC_AddAxisToGroup(GroupSetting):  # noqa: N801
-    """Adds an axis to a group at position IdentInGroup. Axis may be its name."""
+    """Adds an axis to a group with number IdentInGroup (1 is a1). Axis may be its name."""
 
     VERB = "add_axis"
     Axis = Input[AxisOrName]("", "axis")  # type: ignore[assignment]
@@ -87,7 +87,7 @@ class MC_AddAxisToGroup(GroupSetting):  # noqa: N801
 
 
 class MC_RemoveAxisFromGroup(GroupSetting):  # noqa: N801
-    """Removes the axis at position IdentInGroup from a group."""
+    """Removes the axis with number IdentInGroup from a group."""
 
     VERB = "remove_axis"
     IdentInGroup = Input(1, "ident")
@@ -100,7 +100,7 @@ class MC_UngroupAllAxes(GroupSetting):  # noqa: N801
 
 
 class MC_GroupReadConfiguration(GroupBlock, ReadBlock):  # noqa: N801
-    """Shows the axis at position IdentInGroup; an Error if there is no such axis. Axis is an output."""
+    """Shows the axis with number IdentInGroup; an Error if there is no such axis. Axis is an output."""
 
     IdentInGroup = Input(1)
     Axis = Output["Axis | None"](None)  # type: ignore[assignment]

@@ -35,8 +35,8 @@ class SearchBlock(HomingBlock):
 
 
 class MC_StepAbsSwitch(SearchBlock):  # noqa: N801
-    """Searches the reference switch and returns to the position of the edge. The axis stays in Homing for the next
-    step."""
+    """Searches the reference switch and returns to the position at which it was found. The axis stays in Homing for the
+    next step."""
 
     VERB = "step_abs_switch"
     Direction = Input(_commands.HomingDirection.SWITCH_NEGATIVE, "direction")
@@ -45,7 +45,8 @@ class MC_StepAbsSwitch(SearchBlock):  # noqa: N801
 
 
 class MC_StepLimitSwitch(SearchBlock):  # noqa: N801
-    """Searches a limit switch and returns to the position of the edge. The axis stays in Homing for the next step."""
+    """Searches a limit switch and returns to the position at which it was found. The axis stays in Homing for the next
+    step."""
 
     VERB = "step_limit_switch"
     Direction = Input(_commands.HomingDirection.NEGATIVE, "direction")

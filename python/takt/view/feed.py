@@ -118,7 +118,7 @@ class Feed:
 
     @property
     def gone(self) -> bool:
-        """No engine has been heard for SILENCE_S."""
+        """No machine is known, or its engine has been silent for SILENCE_S."""
         return self.machine is None or time.monotonic() - self._heard > SILENCE_S
 
     @property
