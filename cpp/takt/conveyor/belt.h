@@ -1,5 +1,4 @@
-// One belt, stage by stage of the cycle. Free functions over plain state; nothing here allocates, locks, throws or
-// reads a clock.
+// The stages of a belt in the cycle: free functions over plain state that do not allocate, lock, throw or read a clock.
 #pragma once
 
 #include "takt/axis/axis.h"

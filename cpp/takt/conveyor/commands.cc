@@ -8,20 +8,20 @@ namespace {
 
 template <typename T>
 void DescribePose(Description<T>& d) {
-  d.template defaulted<&T::x>(unit::mm, kPlaces, "X of where it lay when it was detected, from the belt's origin.");
-  d.template defaulted<&T::y>(unit::mm, kPlaces, "Y of it.");
-  d.template defaulted<&T::z>(unit::mm, kPlaces, "Z of it.");
-  d.template defaulted<&T::a>(unit::deg, kAngles, "Turned about X.");
-  d.template defaulted<&T::b>(unit::deg, kAngles, "Turned about Y.");
-  d.template defaulted<&T::c>(unit::deg, kAngles, "Turned about Z.");
-  d.template defaulted<&T::kind>("What it is: a number of your own.");
-  d.template defaulted<&T::colour>("Its colour: a number of your own.");
-  d.template defaulted<&T::quality>(unit::one, kPlaces, "How good it is: a number of your own.");
+  d.template defaulted<&T::x>(unit::mm, kPlaces, "X of the object when it was detected, from the belt's origin.");
+  d.template defaulted<&T::y>(unit::mm, kPlaces, "Y of the object.");
+  d.template defaulted<&T::z>(unit::mm, kPlaces, "Z of the object.");
+  d.template defaulted<&T::a>(unit::deg, kAngles, "Rotation about X.");
+  d.template defaulted<&T::b>(unit::deg, kAngles, "Rotation about Y.");
+  d.template defaulted<&T::c>(unit::deg, kAngles, "Rotation about Z.");
+  d.template defaulted<&T::kind>("Kind of the object, a user-defined number.");
+  d.template defaulted<&T::colour>("Colour of the object, a user-defined number.");
+  d.template defaulted<&T::quality>(unit::one, kPlaces, "Quality of the object, a user-defined number.");
 }
 
 template <typename T>
 void DescribeNumber(Description<T>& d) {
-  d.template required<&T::number>(between(1, 4294967295.0), "Of the object.");
+  d.template required<&T::number>(between(1, 4294967295.0), "Number of the object.");
 }
 
 }  // namespace
@@ -29,13 +29,15 @@ void DescribeNumber(Description<T>& d) {
 void describe(Description<Detect>& d) {
   using D = Detect;
   d.about(
-      "An object is on the belt: it is latched where the belt is now, or was. Given any of x to c it is visible at "
-      "once, the others being 0; else locate has to follow. The value of the feedback is its number.");
-  d.defaulted<&D::recorded_position>(unit::u, kAxisPositions,
-                                     "Position of the belt's axis when it was seen, from a touch probe; unset: now.");
+      "Adds an object to the belt, latched at the belt's present or a recorded position. Given any of x to c it is "
+      "visible at once, with the others 0; else locate has to follow. The value of the feedback is the object's "
+      "number.");
+  d.defaulted<&D::recorded_position>(
+      unit::u, kAxisPositions,
+      "Position of the belt's axis at the detection, from a touch probe; unset: the present one.");
   d.defaulted<&D::latched_with>(
       between(1, 4294967295.0),
-      "It was seen together with the object of that number, which is still there; unset: not.");
+      "Number of an object still on the belt that was detected at the same instant; unset: none.");
   DescribePose(d);
   d.rule<&D::latched_with>("must not be given besides recorded_position",
                            [](const D& c) { return !c.latched_with || !c.recorded_position; });
@@ -44,20 +46,20 @@ void describe(Description<Detect>& d) {
 void describe(Description<Locate>& d) {
   using L = Locate;
   d.about(
-      "Tells where an object lay when it was detected, and makes it visible; what the belt has travelled since is "
-      "made good.");
+      "Gives the pose that an object had when it was detected, and makes the object visible; the belt's travel since "
+      "then is compensated.");
   d.defaulted<&L::number>(between(1, 4294967295.0),
-                          "Of the object; unset: of those that were not located yet the first one.");
+                          "Number of an object that has not been taken; unset: the first one not located yet.");
   DescribePose(d);
 }
 
 void describe(Description<TakeObject>& d) {
-  d.about("Marks a visible object as somebody's: nobody else can take it, and it does not get lost.");
+  d.about("Reserves a visible object: it cannot be taken again, and is not deleted beyond the work range.");
   DescribeNumber(d);
 }
 
 void describe(Description<GiveBackObject>& d) {
-  d.about("Lets others take an object again.");
+  d.about("Makes an object that was taken available again.");
   DescribeNumber(d);
 }
 

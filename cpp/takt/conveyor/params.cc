@@ -34,35 +34,38 @@ trajectory::TrackingFilter FilterOf(const BeltParams& params, double step, doubl
 }
 
 void describe(Enumeration<BeltKind>& e) {
-  e.about("How a belt carries.");
+  e.about("Direction in which a belt carries objects.");
   e.value(BeltKind::kStraight, "straight", "Along X of its origin.");
   e.value(BeltKind::kTurning, "turning", "About Z of its origin: a table.");
 }
 
 void describe(Description<BeltParams>& d) {
   using P = BeltParams;
-  d.about("A belt, or a table that turns: it carries workpieces through the cell, and groups can go along with it.");
-  d.required<&P::name>("Of the belt; commands go to it.");
-  d.defaulted<&P::kind>("How it carries.");
-  d.required<&P::axis>("Name of the axis that moves it, or that only measures it.");
-  d.defaulted<&P::source>("Whether the axis' set position or its measured one counts.");
+  d.about(
+      "A belt or a rotary table: it carries workpieces through the cell, and the tools of groups can synchronise with "
+      "it.");
+  d.required<&P::name>("Name of the belt, to which commands are addressed.");
+  d.defaulted<&P::kind>("Direction in which it carries objects.");
+  d.required<&P::axis>("Name of the axis that moves the belt, or only measures it.");
+  d.defaulted<&P::source>("Position of the axis that counts: the set value or the actual value.");
   d.defaulted<&P::ratio>(Unit{"mm/u", "deg of a table per axis' unit"}, kRatios,
-                         "How far it goes while the axis goes one unit; below 0: against the axis.");
-  d.defaulted<&P::origin>("In the world. X is the direction of travel; a table turns about Z.");
-  d.defaulted<&P::lower_limit>(kAlong, kPlaces, "Where the work range begins, seen from the origin; unset: nowhere.");
-  d.defaulted<&P::upper_limit>(kAlong, kPlaces,
-                               "Where it ends; an object beyond it that nobody has taken is deleted. Unset: nowhere.");
-  d.defaulted<&P::filter_s>(
-      unit::s, between(0, 10),
-      "Time constant of the filter; a constant speed and acceleration pass without lag. Unset: where the axis is "
-      "measured 5 ms, or as many as its encoder's steps need not to shake the tool, and a fifth where the speed "
-      "changes; else 0. A set position is not filtered with 0, a measured one as little as can be.");
+                         "Travel of the belt per unit of the axis; negative: opposite to the axis.");
+  d.defaulted<&P::origin>("Pose in the world. X is the direction of travel; a table turns about Z.");
+  d.defaulted<&P::lower_limit>(kAlong, kPlaces, "Start of the work range, from the origin; unset: unlimited.");
+  d.defaulted<&P::upper_limit>(
+      kAlong, kPlaces,
+      "End of the work range, from the origin. A visible, untaken object beyond it is deleted. Unset: unlimited.");
+  d.defaulted<&P::filter_s>(unit::s, between(0, 10),
+                            "Time constant of the filter; constant speeds and accelerations pass without lag. Unset: "
+                            "for an actual position 5 ms, or more where the resolution of its encoder requires it for "
+                            "smooth motion, and down to a fifth while the speed changes; for a set position 0. With 0 "
+                            "a set position is not filtered, an actual one as little as possible.");
   d.defaulted<&P::dead_time_s>(unit::s, between(0, 1),
-                               "The belt is taken to be so much further on than its axis says, at its speed and "
-                               "acceleration. The cycle that passes anyway is made good without it.");
+                               "Age of the axis' position, by which the belt is extrapolated at its speed and "
+                               "acceleration. The cycle that every actual position takes is compensated without it.");
   d.defaulted<&P::forget_after>(
       kAlong, between(0, 1e9),
-      "An object that was detected but not located is deleted once it has travelled so far; unset: never.");
+      "Travel after which an object that was detected but not located is deleted; unset: never.");
   d.rule<&P::ratio>("must not be 0", [](const P& p) { return p.ratio != 0; });
   d.rule<&P::upper_limit>("must lie above lower_limit", [](const P& p) {
     return !p.lower_limit || !p.upper_limit || *p.lower_limit < *p.upper_limit;

@@ -64,45 +64,48 @@ void Publish(const PoseParams& p, const Cycle& cycle, const PoseState& s, PoseOu
 
 void describe(Description<PoseParams>& d) {
   using P = PoseParams;
-  d.about("A pose that programs and other processes give, for groups to go along with: of a mover, of another robot.");
-  d.required<&P::name>("Of the pose; commands go to it.");
-  d.defaulted<&P::goes_on_s>(unit::s, between(0, 3600),
-                             "It goes on as it moved for so long after it was given last; then it stands.");
+  d.about("A pose given by programs or other processes, which groups can follow: that of a mover or of another robot.");
+  d.required<&P::name>("Name of the pose, to which commands are addressed.");
+  d.defaulted<&P::goes_on_s>(
+      unit::s, between(0, 3600),
+      "Time after the last given pose for which the motion is extrapolated; then the pose is at rest.");
 }
 
 void describe(Description<SetPose>& d) {
   using S = SetPose;
-  d.about("Gives a pose in the world and how it moves. It goes on so until it is given anew, or is too old.");
+  d.about(
+      "Gives a pose in the world and its velocity. The motion is extrapolated until a new pose is given, or this one "
+      "is too old.");
   d.defaulted<&S::x>(unit::mm, kPlaces, "Along X.");
   d.defaulted<&S::y>(unit::mm, kPlaces, "Along Y.");
   d.defaulted<&S::z>(unit::mm, kPlaces, "Along Z.");
-  d.defaulted<&S::a>(unit::deg, kAngles, "Turned about X.");
-  d.defaulted<&S::b>(unit::deg, kAngles, "Turned about Y.");
-  d.defaulted<&S::c>(unit::deg, kAngles, "Turned about Z.");
+  d.defaulted<&S::a>(unit::deg, kAngles, "Rotation about X.");
+  d.defaulted<&S::b>(unit::deg, kAngles, "Rotation about Y.");
+  d.defaulted<&S::c>(unit::deg, kAngles, "Rotation about Z.");
   d.defaulted<&S::vx>(unit::mm_s, kSpeeds, "Velocity along X.");
   d.defaulted<&S::vy>(unit::mm_s, kSpeeds, "Velocity along Y.");
   d.defaulted<&S::vz>(unit::mm_s, kSpeeds, "Velocity along Z.");
-  d.defaulted<&S::wx>(unit::deg_s, kAngles, "Turns about X of the world.");
-  d.defaulted<&S::wy>(unit::deg_s, kAngles, "Turns about Y of the world.");
-  d.defaulted<&S::wz>(unit::deg_s, kAngles, "Turns about Z of the world.");
-  d.defaulted<&S::age_s>(unit::s, between(0, 3600), "Since it was so.");
+  d.defaulted<&S::wx>(unit::deg_s, kAngles, "Angular velocity about X of the world.");
+  d.defaulted<&S::wy>(unit::deg_s, kAngles, "Angular velocity about Y of the world.");
+  d.defaulted<&S::wz>(unit::deg_s, kAngles, "Angular velocity about Z of the world.");
+  d.defaulted<&S::age_s>(unit::s, between(0, 3600), "Age of the pose on arrival.");
 }
 
 void describe(Description<PoseState>& d) {
-  d.about("A pose from elsewhere.");
-  d.internal<&PoseState::last>("As it was given last.");
-  d.internal<&PoseState::cycle>("When.");
-  d.internal<&PoseState::known>("It was given.");
+  d.about("State of an external pose.");
+  d.internal<&PoseState::last>("The last given pose.");
+  d.internal<&PoseState::cycle>("Cycle in which it was given.");
+  d.internal<&PoseState::known>("A pose has been given.");
 }
 
 void describe(Description<PoseOutputs>& d) {
   using O = PoseOutputs;
-  d.about("State of a pose from elsewhere after a cycle, when the axes are at their set points.");
-  d.internal<&O::pose>("In the world; nan before it was given.");
-  d.internal<&O::velocity>(unit::mm_s, "How fast it moves.");
-  d.internal<&O::turning>(unit::deg_s, "How fast it turns.");
-  d.internal<&O::age_s>(unit::s, "Since it was as it was given last; inf before.");
-  d.internal<&O::fresh>("It goes on as it moved; else it stands.");
+  d.about("State of an external pose after a cycle, at the instant for which the axes have their set points.");
+  d.internal<&O::pose>("Pose in the world; nan before one was given.");
+  d.internal<&O::velocity>(unit::mm_s, "Magnitude of the velocity.");
+  d.internal<&O::turning>(unit::deg_s, "Magnitude of the angular velocity.");
+  d.internal<&O::age_s>(unit::s, "Age of the last given pose; inf before.");
+  d.internal<&O::fresh>("The motion is extrapolated; false: the pose is at rest, or none was given.");
 }
 
 }  // namespace takt::conveyor

@@ -48,7 +48,7 @@ std::string WhyNotTransition(const T& c) {
 template <typename T>
 std::string WhyNotAPlace(const T& c) {
   if (c.coordinate_system != CoordinateSystem::kAcs) return {};
-  return "coordinate_system: expected mcs, wcs or pcs, found acs: axes alone make no such path";
+  return "coordinate_system: expected mcs, wcs or pcs, found acs: such a path needs a tool";
 }
 
 template <typename T>
@@ -128,7 +128,7 @@ std::string WhyNotThis(const Calibrate& c) {
   const auto wanted = given(seen) != 0 ? fourth : 0;
   if (fourth_seen != wanted) {
     return wanted != 0 ? "seen_x4: expected the numbers of all places in the system, or none"
-                       : "seen_x4: expected nothing, without x4, y4, z4 and all other seen ones";
+                       : "seen_x4: expected no value without x4, y4, z4 and all other seen values";
   }
   return {};
 }

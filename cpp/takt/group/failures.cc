@@ -31,7 +31,7 @@ bool ValueOf(std::size_t configuration, std::size_t name) {
 
 std::string Why(std::uint8_t code, std::span<const std::string> axes) {
   if (code == kOutOfReach) return "out of reach";
-  if (code == kOrientation) return "the tool cannot be turned so";
+  if (code == kOrientation) return "the tool cannot take this orientation";
   if (code == kSingular) return "singular";
   const std::size_t axis = (code - kLimits) / 2;
   const std::string name = axis < axes.size() ? "axis '" + axes[axis] + "'" : "an axis";

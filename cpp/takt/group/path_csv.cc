@@ -97,7 +97,7 @@ class Reader {
     if (!Fits(TypeOf<PathElement>(), &element, cells[kX].place)) return;
     if (spline && !csv_.elements.empty() && csv_.elements.back().shape == ElementShape::kSpline) {
       if (element.velocity) {
-        problems_.Add(cells[kVelocity].place, {}, "expected none: the first line of a spline says its velocity");
+        problems_.Add(cells[kVelocity].place, {}, "expected none: the first line of a spline gives its velocity");
       }
       csv_.elements.back().points.push_back(pose);
       csv_.lines.back().push_back(line);

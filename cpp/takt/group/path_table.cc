@@ -102,7 +102,7 @@ class TableMaker {
     const bool before = at_ && at_->turned;
     const bool any = pose.a || pose.b || pose.c;
     if (any && !before && !(pose.a && pose.b && pose.c)) {
-      return Fail(path, "expected a, b and c, or none of them, since no orientation came before");
+      return Fail(path, "expected a, b and c, or none of them, since no orientation was given before");
     }
     const kinematics::Pose old = before ? at_->pose : kinematics::Pose{};
     to = {{pose.x, pose.y, pose.z, pose.a.value_or(old.a), pose.b.value_or(old.b), pose.c.value_or(old.c)},

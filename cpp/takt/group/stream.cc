@@ -314,17 +314,17 @@ Joints JointsBraked(const Context& c, const State& s) noexcept {
 void describe(Description<StreamState>& d) {
   using K = StreamState;
   d.about("Set points of a group that are streamed from outside.");
-  d.internal<&K::ticket>("0: none.");
-  d.internal<&K::key>("That set points must carry.");
-  d.internal<&K::delay>(unit::s, "After which the first one is due.");
-  d.internal<&K::timeout>(unit::s, "Longest time without one.");
-  d.internal<&K::velocity_factor>("Of the axes' limits, to catch up.");
-  d.internal<&K::acceleration_factor>("The same.");
-  d.internal<&K::jerk_factor>("The same.");
-  d.internal<&K::reached>("All axes were on their curves once.");
-  d.internal<&K::of>("Of each member.");
-  d.internal<&K::zones_until>("Set points lead into these zones until then.");
-  d.internal<&K::zones>("That it has so, a mask.");
+  d.internal<&K::ticket>("Ticket of the command; 0: none.");
+  d.internal<&K::key>("Key that set points must carry.");
+  d.internal<&K::delay>(unit::s, "Time from the arrival of the first set point until it is due.");
+  d.internal<&K::timeout>(unit::s, "Longest time without a set point.");
+  d.internal<&K::velocity_factor>("Factor of the axes' velocity limits for catching up.");
+  d.internal<&K::acceleration_factor>("Factor of the axes' acceleration limits for catching up.");
+  d.internal<&K::jerk_factor>("Factor of the axes' jerk limits for catching up.");
+  d.internal<&K::reached>("All axes have been on their curves once.");
+  d.internal<&K::of>("State of the stream of each member.");
+  d.internal<&K::zones_until>("End of the set points in each zone.");
+  d.internal<&K::zones>("Zones claimed for set points, a mask.");
 }
 
 }  // namespace takt::group

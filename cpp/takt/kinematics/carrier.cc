@@ -43,11 +43,11 @@ Carrier Ahead(const Carrier& carrier, double time_s) noexcept {
 }
 
 void describe(Enumeration<CarrierKind>& e) {
-  e.about("What carries something.");
-  e.value(CarrierKind::kNone, "none", "Nothing that moves.");
+  e.about("Kind of carrier.");
+  e.value(CarrierKind::kNone, "none", "No carrier: at rest.");
   e.value(CarrierKind::kStraight, "straight", "A belt, along X of its origin.");
   e.value(CarrierKind::kTurning, "turning", "A table, about Z of its origin.");
-  e.value(CarrierKind::kFree, "free", "A pose that comes from elsewhere.");
+  e.value(CarrierKind::kFree, "free", "A pose from another source.");
 }
 
 }  // namespace takt::kinematics

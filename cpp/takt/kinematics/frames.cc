@@ -80,7 +80,9 @@ KDL::RotationAcc Along(const GreatArc& arc, const Share& share) noexcept {
 }
 
 void describe(Description<Pose>& d) {
-  d.about("A place and an orientation: turned by A about X, then by B about Y, then by C about Z, all standing still.");
+  d.about(
+      "A position and an orientation: rotated by A about X, then by B about Y, then by C about Z, all of them fixed "
+      "axes.");
   d.defaulted<&Pose::x>(unit::mm, "Along X.");
   d.defaulted<&Pose::y>(unit::mm, "Along Y.");
   d.defaulted<&Pose::z>(unit::mm, "Along Z.");

@@ -23,42 +23,42 @@ std::string_view Text(Reason reason) noexcept {
 }
 
 void describe(Enumeration<Reason>& e) {
-  e.about("Why a pose has no position of the axes.");
-  e.value(Reason::kNone, "none", "It has one.");
-  e.value(Reason::kNotFinite, "not_finite", "A number given is NaN or infinite.");
-  e.value(Reason::kOutOfReach, "out_of_reach", "No position of the axes leads there.");
-  e.value(Reason::kOrientation, "orientation", "The place can be reached, but not turned so.");
+  e.about("Reason why no position of the axes gives a pose.");
+  e.value(Reason::kNone, "none", "There is a position.");
+  e.value(Reason::kNotFinite, "not_finite", "A given number is NaN or infinite.");
+  e.value(Reason::kOutOfReach, "out_of_reach", "The position is out of reach of the axes.");
+  e.value(Reason::kOrientation, "orientation", "The position can be reached, but not in this orientation.");
   e.value(Reason::kSingular, "singular", "The axes cannot move the tool in every direction there.");
   e.value(Reason::kAxisLimit, "axis_limit", "An axis would leave its range.");
 }
 
 void describe(Enumeration<Shoulder>& e) {
-  e.about("Which way an articulated arm faces.");
+  e.about("Side to which an articulated arm faces.");
   e.value(Shoulder::kKeep, "keep", "As it is.");
   e.value(Shoulder::kFront, "front", "The wrist is in front of axis 1.");
   e.value(Shoulder::kBack, "back", "The wrist is behind axis 1: the arm leans over backwards.");
 }
 
 void describe(Enumeration<Elbow>& e) {
-  e.about("Which way the elbow of an arm is bent.");
+  e.about("Direction in which the elbow of an arm is bent.");
   e.value(Elbow::kKeep, "keep", "As it is.");
-  e.value(Elbow::kPositive, "positive", "In the positive sense of the elbow's axis. SCARA: a right arm.");
-  e.value(Elbow::kNegative, "negative", "In the negative sense. SCARA: a left arm.");
+  e.value(Elbow::kPositive, "positive", "In the positive direction of the elbow's axis. SCARA: a right arm.");
+  e.value(Elbow::kNegative, "negative", "In the negative direction. SCARA: a left arm.");
 }
 
 void describe(Enumeration<Wrist>& e) {
-  e.about("Which way the wrist of an articulated arm is bent.");
+  e.about("Direction in which the wrist of an articulated arm is bent.");
   e.value(Wrist::kKeep, "keep", "As it is.");
-  e.value(Wrist::kPositive, "positive", "Axis 5 is bent in the positive sense (no flip).");
-  e.value(Wrist::kNegative, "negative", "Axis 5 is bent in the negative sense (flip).");
+  e.value(Wrist::kPositive, "positive", "Axis 5 is bent in the positive direction (no flip).");
+  e.value(Wrist::kNegative, "negative", "Axis 5 is bent in the negative direction (flip).");
 }
 
 void describe(Description<Configuration>& d) {
   using C = Configuration;
-  d.about("Which of several positions of the axes for one pose.");
-  d.defaulted<&C::shoulder>("Articulated arms.");
-  d.defaulted<&C::elbow>("SCARA and articulated arms.");
-  d.defaulted<&C::wrist>("Articulated arms.");
+  d.about("Choice between several positions of the axes for one pose.");
+  d.defaulted<&C::shoulder>("Side to which the arm faces; articulated arms.");
+  d.defaulted<&C::elbow>("Direction in which the elbow is bent; SCARA and articulated arms.");
+  d.defaulted<&C::wrist>("Direction in which the wrist is bent; articulated arms.");
 }
 
 }  // namespace takt::kinematics

@@ -10,7 +10,7 @@ namespace takt::kinematics {
 void describe(Description<GantryParams>& d) {
   using G = GantryParams;
   d.about("A gantry: each axis moves one coordinate of the tool.");
-  d.required<&G::axes>("What each axis moves, in the order of the group's axes: x, y, z, c.");
+  d.required<&G::axes>("Coordinate that each axis moves, in the order of the group's axes: x, y, z, c.");
   d.rule<&G::axes>("must name x, y or z, and nothing twice", [](const G& g) {
     const auto count = [&](Coordinate c) { return std::count(g.axes.begin(), g.axes.end(), c); };
     const auto linear = count(Coordinate::kX) + count(Coordinate::kY) + count(Coordinate::kZ);
@@ -22,7 +22,7 @@ void describe(Description<CoreXyParams>& d) {
   using C = CoreXyParams;
   d.about("A gantry on two crossed belts (CoreXY, H-bot). X is (A1 + A2) / 2, Y is (A1 - A2) / 2; A3 on are Z and C.");
   d.defaulted<&C::with_z>("There is a Z axis.");
-  d.defaulted<&C::with_c>("There is a C axis, behind Z.");
+  d.defaulted<&C::with_c>("There is a C axis, after Z.");
 }
 
 void describe(Description<ScaraParams>& d) {
@@ -35,15 +35,16 @@ void describe(Description<ScaraParams>& d) {
 
 void describe(Description<DeltaParams>& d) {
   using D = DeltaParams;
-  d.about("A Delta robot. Axes: three arms, at 0 level and positive downwards, then C where there is one.");
-  d.required<&D::base_radius>(unit::mm, not_negative, "From Z to the axes of the arms.");
-  d.required<&D::platform_radius>(unit::mm, not_negative, "From the tool to the joints on the platform.");
-  d.required<&D::upper_arm>(unit::mm, positive, "Length of the upper arms, which the motors turn.");
+  d.about("A Delta robot. Axes: three arms, level at 0 and positive downwards, then C if there is one.");
+  d.required<&D::base_radius>(unit::mm, not_negative, "Distance from Z to the axes of the arms.");
+  d.required<&D::platform_radius>(unit::mm, not_negative, "Distance from the tool to the joints on the platform.");
+  d.required<&D::upper_arm>(unit::mm, positive, "Length of the upper arms, driven by the motors.");
   d.required<&D::lower_arm>(unit::mm, positive, "Length of the lower arms, which carry the platform.");
-  d.defaulted<&D::rod_spacing>(unit::mm, not_negative,
-                               "Between the two rods of a lower arm. Moves nothing; for checks of the workspace.");
-  d.defaulted<&D::first_arm_deg>(unit::deg, "Where arm 1 stands, from X about Z; the others follow by 120 and 240.");
-  d.defaulted<&D::rotary>("There is a C axis, through a telescopic shaft.");
+  d.defaulted<&D::rod_spacing>(
+      unit::mm, not_negative,
+      "Distance between the two rods of a lower arm. Only for checks of the workspace; no effect on the motion.");
+  d.defaulted<&D::first_arm_deg>(unit::deg, "Angle of arm 1 from X about Z; the other arms are 120 and 240 further.");
+  d.defaulted<&D::rotary>("There is a C axis, driven through a telescopic shaft.");
   d.rule<&D::lower_arm>(
       "must be long enough for the arms to meet: upper_arm + lower_arm above base_radius - platform_radius",
       [](const D& p) { return std::abs(p.base_radius - p.platform_radius) < p.upper_arm + p.lower_arm; });
@@ -65,29 +66,30 @@ void describe(Description<SixAxisParams>& d) {
 
 void describe(Description<SerialParams>& d) {
   using S = SerialParams;
-  d.about("Any chain of up to eight axes out of a URDF file, solved step by step.");
-  d.required<&S::urdf>("The file; its place is seen from the machine file. Or the text itself, which begins with <.");
-  d.defaulted<&S::base>("The link where the chain begins; empty: the root.");
-  d.defaulted<&S::tip>("The link that is the tool; empty: the only end.");
+  d.about("Any chain of up to eight axes from a URDF file, solved numerically.");
+  d.required<&S::urdf>("The URDF file, relative to the machine file, or its text, which begins with <.");
+  d.defaulted<&S::base>("Link at which the chain begins; empty: the root.");
+  d.defaulted<&S::tip>("Link that carries the tool; empty: the only end.");
 }
 
 void describe(Description<JointParams>& d) {
   using J = JointParams;
-  d.about("How an axis counts, where that is not as its mechanism does.");
-  d.defaulted<&J::zero>(unit::u, "What the axis reads where the mechanism's own angle or way is 0.");
-  d.defaulted<&J::invert>("The axis counts the other way round.");
+  d.about("Zero and direction of an axis, where they differ from those of its mechanism.");
+  d.defaulted<&J::zero>(unit::u, "Position of the axis at which the mechanism's own angle or position is 0.");
+  d.defaulted<&J::invert>("The axis counts in the opposite direction.");
 }
 
 void describe(Description<KinematicsParams>& d) {
   using K = KinematicsParams;
-  d.about("How the axes of a group move its tool: exactly one mechanism.");
+  d.about("Kinematics of a group: exactly one mechanism that moves its tool.");
   d.defaulted<&K::gantry>("A gantry of one to three linear axes, with or without C.");
   d.defaulted<&K::core_xy>("A gantry on two crossed belts.");
   d.defaulted<&K::scara>("A SCARA.");
   d.defaulted<&K::delta>("A Delta robot.");
   d.defaulted<&K::six_axis>("An articulated arm with a spherical wrist.");
   d.defaulted<&K::serial>("Any serial chain from URDF.");
-  d.defaulted<&K::joints>("How each axis counts; empty: as the mechanism does. Lengths in mm, angles in deg.");
+  d.defaulted<&K::joints>(
+      "Zero and direction of each axis; empty: those of the mechanism. Lengths in mm, angles in deg.");
 }
 
 }  // namespace takt::kinematics

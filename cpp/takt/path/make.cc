@@ -233,26 +233,27 @@ Problem MakeArc(const Point& from, const Circle& circle, const Point& to, Segmen
 
 void describe(Description<Circle>& d) {
   d.about("A circular arc.");
-  d.internal<&Circle::mode>("How it is given.");
-  d.internal<&Circle::auxiliary_point>("Border point, centre, or vector of the radius.");
-  d.internal<&Circle::choice>("Which of several.");
-  d.internal<&Circle::normal>("Of its plane.");
-  d.internal<&Circle::turns>("Whole turns on top.");
+  d.internal<&Circle::mode>("Definition of the arc.");
+  d.internal<&Circle::auxiliary_point>("Border point, centre, or vector of the radius, by mode.");
+  d.internal<&Circle::choice>("Choice between several arcs.");
+  d.internal<&Circle::normal>("Normal of the plane.");
+  d.internal<&Circle::turns>("Additional whole turns.");
 }
 
 void describe(Enumeration<CircMode>& e) {
-  e.about("How a circular arc is given.");
-  e.value(CircMode::kBorder, "border", "By a point that it goes through.");
+  e.about("Definition of a circular arc.");
+  e.value(CircMode::kBorder, "border", "By a point on the arc.");
   e.value(CircMode::kCenter, "center", "By its centre.");
-  e.value(CircMode::kRadius, "radius", "By a vector normal to its plane that is as long as its radius.");
+  e.value(CircMode::kRadius, "radius", "By a vector normal to its plane, as long as its radius.");
 }
 
 void describe(Enumeration<PathChoice>& e) {
-  e.about("Which of several arcs.");
-  e.value(PathChoice::kCounterclockwise, "counterclockwise", "Counterclockwise, seen with the normal at the eye.");
-  e.value(PathChoice::kClockwise, "clockwise", "Clockwise, seen with the normal at the eye.");
-  e.value(PathChoice::kShort, "short", "Up to half a turn, where a radius is given.");
-  e.value(PathChoice::kLong, "long", "Half a turn or more, where a radius is given.");
+  e.about("Choice between several arcs.");
+  e.value(PathChoice::kCounterclockwise, "counterclockwise",
+          "Counterclockwise, seen with the normal pointing at the eye.");
+  e.value(PathChoice::kClockwise, "clockwise", "Clockwise, seen with the normal pointing at the eye.");
+  e.value(PathChoice::kShort, "short", "Up to half a turn, with a radius.");
+  e.value(PathChoice::kLong, "long", "Half a turn or more, with a radius.");
 }
 
 }  // namespace takt::path

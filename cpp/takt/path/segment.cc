@@ -86,11 +86,11 @@ std::string_view Text(Problem problem) noexcept {
     case Problem::kTurns:
       return "whole turns must be a whole number of at least 0";
     case Problem::kChoice:
-      return "this choice of the arc does not belong to the way it is given";
+      return "this choice of the arc does not belong to its mode";
     case Problem::kMeasure:
       return "there is no blend between a motion of the tool and a turn on the spot";
     case Problem::kReversal:
-      return "the path goes back the way it came: there is no blend";
+      return "the path reverses at the corner: there is no blend";
     case Problem::kTooSharp:
       return "the path bends too much within the blend, which would make a loop";
     case Problem::kApart:
@@ -104,62 +104,64 @@ std::string_view Text(Problem problem) noexcept {
 }
 
 void describe(Enumeration<Problem>& e) {
-  e.about("Why there is no stretch of path.");
-  e.value(Problem::kNone, "none", "There is one.");
+  e.about("Reason why a segment of a path cannot be made.");
+  e.value(Problem::kNone, "none", "No problem.");
   e.value(Problem::kNotFinite, "not_finite", "A number is not finite, or the orientation is no rotation.");
-  e.value(Problem::kLengthZero, "length_zero", "Nothing moves.");
+  e.value(Problem::kLengthZero, "length_zero", "Nothing moves: start and end are the same.");
   e.value(Problem::kCoincide, "coincide", "Two points that must differ are the same.");
   e.value(Problem::kCollinear, "collinear", "The three points of an arc lie on a line.");
   e.value(Problem::kRadiusZero, "radius_zero", "The radius is 0.");
-  e.value(Problem::kNotOnCircle, "not_on_circle", "The end does not lie on the circle.");
-  e.value(Problem::kNoPlane, "no_plane", "The plane of the arc is not determined.");
-  e.value(Problem::kTurns, "turns", "Whole turns are below 0 or no whole number.");
+  e.value(Problem::kNotOnCircle, "not_on_circle", "The end of the arc does not lie on the circle.");
+  e.value(Problem::kNoPlane, "no_plane", "The plane of the arc is not determined, or its normal is invalid.");
+  e.value(Problem::kTurns, "turns", "The number of whole turns is negative, fractional or too large.");
   e.value(Problem::kChoice, "choice", "The choice of the arc does not belong to its mode.");
-  e.value(Problem::kMeasure, "measure", "One moves the tool, the other does not.");
-  e.value(Problem::kReversal, "reversal", "The path goes back the way it came.");
+  e.value(Problem::kMeasure, "measure",
+          "One segment moves the tool, the other only turns it or only moves auxiliary axes.");
+  e.value(Problem::kReversal, "reversal", "The path reverses at the corner.");
   e.value(Problem::kTooSharp, "too_sharp", "The segments bend too much within a blend.");
   e.value(Problem::kApart, "apart", "One segment does not begin where the other ends.");
-  e.value(Problem::kOutside, "outside", "A blend begins or ends outside of its segments.");
-  e.value(Problem::kTooFew, "too_few", "A spline of fewer than two points.");
+  e.value(Problem::kOutside, "outside", "A blend begins or ends outside its segments.");
+  e.value(Problem::kTooFew, "too_few", "A spline has fewer than two points.");
 }
 
 void describe(Enumeration<Shape>& e) {
-  e.about("How the tool's place runs along a stretch of path.");
-  e.value(Shape::kLine, "line", "Straight, or not at all.");
-  e.value(Shape::kArc, "arc", "Along a circle or a helix.");
-  e.value(Shape::kQuintic, "quintic", "Along a polynomial of the fifth degree.");
+  e.about("Curve of the tool's position along a segment of a path.");
+  e.value(Shape::kLine, "line", "A straight line, or no displacement.");
+  e.value(Shape::kArc, "arc", "A circular arc or a helix.");
+  e.value(Shape::kQuintic, "quintic", "A polynomial of the fifth degree.");
 }
 
 void describe(Enumeration<Measure>& e) {
-  e.about("What the length of a stretch of path counts.");
-  e.value(Measure::kWay, "way", "The tool's way in mm.");
-  e.value(Measure::kTurn, "turn", "The tool's turn in deg.");
-  e.value(Measure::kAuxiliaries, "auxiliaries", "The largest way of an auxiliary axis in its unit.");
+  e.about("Quantity that the length of a segment counts.");
+  e.value(Measure::kWay, "way", "Path length of the tool in mm.");
+  e.value(Measure::kTurn, "turn", "Angle by which the tool turns, in deg.");
+  e.value(Measure::kAuxiliaries, "auxiliaries", "Path length of the auxiliary axis that moves farthest, in its unit.");
 }
 
 void describe(Enumeration<Course>& e) {
-  e.about("How the orientation runs along a stretch of path.");
-  e.value(Course::kStill, "still", "Not at all.");
-  e.value(Course::kEven, "even", "Evenly.");
-  e.value(Course::kCurved, "curved", "By a polynomial of the fifth degree.");
+  e.about("Course of the orientation along a segment of a path.");
+  e.value(Course::kStill, "still", "Constant.");
+  e.value(Course::kEven, "even", "Linear, about a fixed axis.");
+  e.value(Course::kCurved, "curved", "A polynomial of the fifth degree.");
 }
 
 void describe(Description<Segment>& d) {
   using S = Segment;
-  d.about("A stretch of the way of a tool, by arc length.");
-  d.internal<&S::length>("How long it is, as measure says.");
-  d.internal<&S::measure>("What the length counts.");
-  d.internal<&S::shape>("How the place runs.");
-  d.internal<&S::turning>("How the orientation runs.");
-  d.internal<&S::auxiliary_count>("How many auxiliary axes move or stand elsewhere than at 0.");
-  d.internal<&S::cells>("How many cells a quintic has.");
-  d.internal<&S::place>(unit::mm, "The place: what the shape needs.");
-  d.internal<&S::rate>("Angle of an arc by its length, rad/mm.");
-  d.internal<&S::cell_parameter>("Where the cells of a quintic end: parameter.");
-  d.internal<&S::cell_length>(unit::mm, "Where the cells of a quintic end: length.");
-  d.internal<&S::base>("The orientation that is turned: quaternion x, y, z, w.");
-  d.internal<&S::turn>("What it is turned by: axis times angle in rad, coefficients over the share of the length.");
-  d.internal<&S::auxiliaries>("Auxiliary axes: coefficients over the share of the length.");
+  d.about("A segment of a tool path, by arc length.");
+  d.internal<&S::length>("Length in the unit of measure.");
+  d.internal<&S::measure>("Quantity that the length counts.");
+  d.internal<&S::shape>("Curve of the position.");
+  d.internal<&S::turning>("Course of the orientation.");
+  d.internal<&S::auxiliary_count>("Number of the last auxiliary axis that is not 0 throughout; 0: none.");
+  d.internal<&S::cells>("Number of cells of a quintic.");
+  d.internal<&S::place>(unit::mm, "Coefficients of the position, by shape.");
+  d.internal<&S::rate>("Angle of an arc per length, rad/mm.");
+  d.internal<&S::cell_parameter>("Parameters at the ends of the cells of a quintic.");
+  d.internal<&S::cell_length>(unit::mm, "Arc lengths at the ends of the cells of a quintic.");
+  d.internal<&S::base>("Orientation before the turn: quaternion x, y, z, w.");
+  d.internal<&S::turn>(
+      "Turn of the orientation: axis times angle in rad, coefficients over the fraction of the length.");
+  d.internal<&S::auxiliaries>("Auxiliary axes: coefficients over the fraction of the length.");
 }
 
 }  // namespace takt::path

@@ -132,9 +132,9 @@ Problem MakeSpline(std::span<const Point> points, const SplineOptions& options, 
 }
 
 void describe(Enumeration<Spacing>& e) {
-  e.about("What the parameter of a spline advances by from point to point.");
-  e.value(Spacing::kCentripetal, "centripetal", "The square root of their distance.");
-  e.value(Spacing::kChord, "chord", "Their distance.");
+  e.about("Increment of a spline's parameter from point to point.");
+  e.value(Spacing::kCentripetal, "centripetal", "The square root of the distance between them.");
+  e.value(Spacing::kChord, "chord", "The distance between them.");
 }
 
 }  // namespace takt::path

@@ -43,24 +43,24 @@ std::string DiagnoseLeave(const BeltSettings& settings, const conveyor::BeltPara
 void describe(Description<PickPlaceBelt>& d) {
   d.about("A belt as a pick and place module uses it.");
   d.required<&PickPlaceBelt::belt>("Name of the belt.");
-  d.defaulted<&PickPlaceBelt::settings>("What is set for it at the start.");
+  d.defaulted<&PickPlaceBelt::settings>("Initial settings for the belt.");
 }
 
 void describe(Description<AxisHoming>& d) {
   d.named("PickPlaceHoming");
-  d.about("How an axis looks for its reference when settings say home_by_module.");
+  d.about("Homing of an axis if the setting home_by_module is true.");
   d.required<&AxisHoming::axis>("Name of an axis of the group.");
-  d.required<&AxisHoming::homing>("How it does.");
+  d.required<&AxisHoming::homing>("Parameters of its homing.");
 }
 
 void describe(Description<PickPlaceParams>& d) {
   using P = PickPlaceParams;
-  d.about("A pick and place module: it moves a group between static places and workpieces on belts.");
-  d.required<&P::name>("Of the module; commands go to it.");
+  d.about("A pick and place module: it moves a group between static targets and workpieces on belts.");
+  d.required<&P::name>("Name of the module, to which commands are addressed.");
   d.required<&P::group>("Name of the group that it moves.");
-  d.defaulted<&P::belts>("Belts that it picks from and places on, in the order of their numbers.");
-  d.defaulted<&P::settings>("Settings at the start.");
-  d.defaulted<&P::homing>("Homing of axes other than they do by themselves.");
+  d.defaulted<&P::belts>("Belts from which it picks and onto which it places, in the order of their numbers.");
+  d.defaulted<&P::settings>("Initial settings.");
+  d.defaulted<&P::homing>("Homing of axes that differs from their own.");
   d.rule<&P::settings>("workpiece_pcs1 and workpiece_pcs2 must be different: places on two belts are seen from them",
                        [](const P& p) { return WorkpieceSystemsFit(p.settings); });
   d.rule<&P::settings>(

@@ -180,38 +180,38 @@ group::MoveArch ArchOf(const Leg& leg, const PathRamps& ramps, bool keep_orienta
 }
 
 void describe(Description<Place>& d) {
-  d.about("Where the tool is to be.");
-  d.internal<&Place::system>("What it is seen from.");
-  d.internal<&Place::pcs>("Which product coordinate system.");
-  d.internal<&Place::pose>("There.");
-  d.internal<&Place::aux1>(unit::u, "Of the auxiliary axis.");
-  d.internal<&Place::parks>("A parking position.");
+  d.about("A pose of the tool, with the position of Aux1.");
+  d.internal<&Place::system>("Coordinate system.");
+  d.internal<&Place::pcs>("Number of the product coordinate system.");
+  d.internal<&Place::pose>("Pose in that system.");
+  d.internal<&Place::aux1>(unit::u, "Position of the auxiliary axis.");
+  d.internal<&Place::parks>("It is a parking position.");
 }
 
 void describe(Description<Shape>& d) {
-  d.about("How a profile runs.");
-  d.internal<&Shape::mode>("Between its points.");
-  d.internal<&Shape::start_distance>(unit::mm, "From the start to point 1.");
-  d.internal<&Shape::target_distance>(unit::mm, "From point 2 to the target.");
-  d.internal<&Shape::height>(unit::mm, "Of the ellipse.");
-  d.internal<&Shape::radius>(unit::mm, "Of the rounding.");
+  d.about("Parameters of a profile.");
+  d.internal<&Shape::mode>("Shape between its points.");
+  d.internal<&Shape::start_distance>(unit::mm, "Distance from the start to point 1.");
+  d.internal<&Shape::target_distance>(unit::mm, "Distance from point 2 to the target.");
+  d.internal<&Shape::height>(unit::mm, "Height of the ellipse.");
+  d.internal<&Shape::radius>(unit::mm, "Radius of the rounding.");
   d.internal<&Shape::keep_orientation>("The tool is not turned.");
 }
 
 void describe(Description<Leg>& d) {
   d.about("One move of a profile.");
-  d.internal<&Leg::to>("Where it ends.");
-  d.internal<&Leg::arch>("Along half an ellipse.");
-  d.internal<&Leg::turns>("Orientation and Aux1 change on it.");
-  d.internal<&Leg::height>(unit::mm, "Of the ellipse.");
-  d.internal<&Leg::radius>(unit::mm, "Of the rounding where it begins.");
+  d.internal<&Leg::to>("End of the move.");
+  d.internal<&Leg::arch>("The move is half an ellipse.");
+  d.internal<&Leg::turns>("Orientation and Aux1 change during the move.");
+  d.internal<&Leg::height>(unit::mm, "Height of the ellipse.");
+  d.internal<&Leg::radius>(unit::mm, "Radius of the rounding at its start.");
 }
 
 void describe(Description<Profile>& d) {
   d.about("The moves of a profile.");
-  d.internal<&Profile::legs>("In their order.");
-  d.internal<&Profile::count>("How many.");
-  d.internal<&Profile::error>("Why there are none.");
+  d.internal<&Profile::legs>("Moves in order.");
+  d.internal<&Profile::count>("Number of moves.");
+  d.internal<&Profile::error>("Reason why there are no moves.");
 }
 
 void describe(Description<PathRamps>& d) {

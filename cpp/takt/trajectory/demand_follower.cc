@@ -157,8 +157,8 @@ LimitedBy Beyond(const Limits& own, const KinematicState& demand, bool in_step) 
 }
 
 void describe(Description<DemandFollowerState>& d) {
-  d.about("Following a demand.");
-  d.internal<&DemandFollowerState::offset>(unit::u, "Own position minus the demand's, in velocity mode.");
+  d.about("State of following a demand.");
+  d.internal<&DemandFollowerState::offset>(unit::u, "Own position minus that of the demand, in velocity mode.");
   d.internal<&DemandFollowerState::in_step>("The last set point was the demand itself.");
 }
 

@@ -14,11 +14,11 @@ double RampLength(double from, double to, double acceleration, double jerk) noex
 }
 
 void describe(Description<Limits>& d) {
-  d.about("How fast a motion may change.");
-  d.internal<&Limits::velocity>("u/s.");
-  d.internal<&Limits::acceleration>("u/s², while the speed grows.");
-  d.internal<&Limits::deceleration>("u/s², while the speed falls.");
-  d.internal<&Limits::jerk>("u/s³; 0: unlimited.");
+  d.about("Limits of a motion.");
+  d.internal<&Limits::velocity>("Largest velocity, u/s.");
+  d.internal<&Limits::acceleration>("Largest acceleration while the speed grows, u/s².");
+  d.internal<&Limits::deceleration>("Largest deceleration while the speed falls, u/s².");
+  d.internal<&Limits::jerk>("Largest jerk, u/s³; 0: unlimited.");
 }
 
 }  // namespace takt::trajectory

@@ -153,10 +153,10 @@ double JointSquare(const PathSlopes& before, const PathSlopes& after, const Coor
 
 void describe(Description<AlongPath>& d) {
   d.about("Limits along a path.");
-  d.internal<&AlongPath::velocity>("mm/s.");
-  d.internal<&AlongPath::acceleration>("mm/s².");
-  d.internal<&AlongPath::deceleration>("mm/s².");
-  d.internal<&AlongPath::jerk>("mm/s³.");
+  d.internal<&AlongPath::velocity>("Largest speed, mm/s.");
+  d.internal<&AlongPath::acceleration>("Largest acceleration, mm/s².");
+  d.internal<&AlongPath::deceleration>("Largest deceleration, mm/s².");
+  d.internal<&AlongPath::jerk>("Largest jerk, mm/s³.");
 }
 
 }  // namespace takt::trajectory

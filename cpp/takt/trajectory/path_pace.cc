@@ -173,32 +173,32 @@ bool Stands(const PathPace& pace) noexcept {
 
 void describe(Description<PathCycle>& d) {
   d.about("The raw motion in one cycle.");
-  d.internal<&PathCycle::position>("At its beginning.");
-  d.internal<&PathCycle::velocity>("The same.");
-  d.internal<&PathCycle::acceleration>("Its mean.");
-  d.internal<&PathCycle::ahead>("Mean of the position less that at the beginning.");
+  d.internal<&PathCycle::position>("Position at the beginning of the cycle.");
+  d.internal<&PathCycle::velocity>("Velocity at the beginning of the cycle.");
+  d.internal<&PathCycle::acceleration>("Mean acceleration over the cycle.");
+  d.internal<&PathCycle::ahead>("Mean position minus that at the beginning of the cycle.");
 }
 
 void describe(Description<PathBrake>& d) {
-  d.about("How a motion along a path is ended.");
-  d.internal<&PathBrake::deceleration>("0: as the path says.");
-  d.internal<&PathBrake::jerk>("The same.");
-  d.internal<&PathBrake::full>("As hard as the coordinates can.");
+  d.about("Limits with which a motion along a path is braked.");
+  d.internal<&PathBrake::deceleration>("Largest deceleration; 0: that of the path.");
+  d.internal<&PathBrake::jerk>("Largest jerk; 0: that of the path.");
+  d.internal<&PathBrake::full>("Braked as hard as the coordinates allow, whatever the limits along the path.");
 }
 
 void describe(Description<PathPace>& d) {
   using P = PathPace;
-  d.about("Motion along a path.");
-  d.internal<&P::now>("Along the path.");
-  d.internal<&P::raw>("What that is the mean of.");
-  d.internal<&P::node>("Of the window.");
-  d.internal<&P::passed>("Of the window, by the mean.");
-  d.internal<&P::entered>("Square of its speed there.");
-  d.internal<&P::raw_stands>("At a stop.");
-  d.internal<&P::eased>("Cycles left.");
-  d.internal<&P::cycles>("Of the mean.");
-  d.internal<&P::oldest>("Of them.");
-  d.internal<&P::last>("The raw motion in them.");
+  d.about("State of a motion along a path.");
+  d.internal<&P::now>("Motion along the path: the mean of the raw motion.");
+  d.internal<&P::raw>("Raw motion, ahead of the mean.");
+  d.internal<&P::node>("Last node of the window that the raw motion has reached.");
+  d.internal<&P::passed>("Last node of the window that the mean has reached.");
+  d.internal<&P::entered>("Squared speed of the raw motion at node.");
+  d.internal<&P::raw_stands>("The raw motion is at a stop or at the end of the known path.");
+  d.internal<&P::eased>("Cycles left before the full acceleration cap applies again.");
+  d.internal<&P::cycles>("Number of cycles in the mean.");
+  d.internal<&P::oldest>("Index of the oldest cycle.");
+  d.internal<&P::last>("Raw motion in the cycles of the mean.");
 }
 
 }  // namespace takt::trajectory

@@ -161,20 +161,20 @@ Profile::Range Profile::AccelerationRange() const noexcept {
 }
 
 void describe(Description<Piece>& d) {
-  d.about("A stretch of motion with constant jerk.");
+  d.about("A piece of a motion with constant jerk.");
   d.internal<&Piece::position>(unit::u, "Position at its beginning.");
   d.internal<&Piece::velocity>(unit::u_s, "Velocity at its beginning.");
   d.internal<&Piece::acceleration>(unit::u_s2, "Acceleration at its beginning.");
-  d.internal<&Piece::jerk>(unit::u_s3, "Jerk during it.");
+  d.internal<&Piece::jerk>(unit::u_s3, "Jerk throughout the piece.");
 }
 
 void describe(Description<Profile>& d) {
   d.about("A motion known from beginning to end.");
   d.internal<&Profile::start_state>("State at time 0.");
   d.internal<&Profile::end_state>("State at the end.");
-  d.internal<&Profile::piece_count>("How many pieces it has.");
-  d.internal<&Profile::piece_ends_s>(unit::s, "When each piece ends, from the start.");
-  d.internal<&Profile::pieces>("The pieces, one after the other.");
+  d.internal<&Profile::piece_count>("Number of pieces.");
+  d.internal<&Profile::piece_ends_s>(unit::s, "End of each piece, from the start.");
+  d.internal<&Profile::pieces>("The pieces in order.");
 }
 
 }  // namespace takt::trajectory

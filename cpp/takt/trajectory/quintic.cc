@@ -16,9 +16,9 @@ Quintic Connect(double length, const KinematicState& begin, const KinematicState
 }
 
 void describe(Description<Quintic>& d) {
-  d.about("A curve of the fifth degree.");
-  d.internal<&Quintic::c>("Coefficients over the share of its length.");
-  d.internal<&Quintic::length>("Its length.");
+  d.about("A polynomial of the fifth degree.");
+  d.internal<&Quintic::c>("Coefficients over the fraction of the length.");
+  d.internal<&Quintic::length>("Length of the curve; negative: the variable falls along it.");
 }
 
 }  // namespace takt::trajectory

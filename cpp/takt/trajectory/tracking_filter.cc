@@ -75,17 +75,17 @@ KinematicState Track(const TrackingFilter& filter, double period_s, double posit
 }
 
 void describe(Description<TrackingEstimate>& d) {
-  d.about("Where something was when it was measured.");
-  d.internal<&TrackingEstimate::state>("There.");
-  d.internal<&TrackingEstimate::jerk>("There.");
+  d.about("Estimated motion at the time of the measurement.");
+  d.internal<&TrackingEstimate::state>("Position, velocity and acceleration.");
+  d.internal<&TrackingEstimate::jerk>("Jerk.");
 }
 
 void describe(Description<TrackingFilterState>& d) {
-  d.about("A filter for a measured position.");
-  d.internal<&TrackingFilterState::slow>("By the slow estimate, or the only one.");
-  d.internal<&TrackingFilterState::fast>("By the fast one.");
-  d.internal<&TrackingFilterState::state>("Where it is.");
-  d.internal<&TrackingFilterState::running>("It has seen a first value.");
+  d.about("State of the filter of a measured position.");
+  d.internal<&TrackingFilterState::slow>("The slow estimate, or the only one.");
+  d.internal<&TrackingFilterState::fast>("The fast estimate.");
+  d.internal<&TrackingFilterState::state>("Estimate of the present motion.");
+  d.internal<&TrackingFilterState::running>("A first value has been received.");
 }
 
 }  // namespace takt::trajectory
