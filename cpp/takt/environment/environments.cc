@@ -168,12 +168,12 @@ std::uint32_t StatorOf(double value) noexcept {
 void describe(Description<State>& d) {
   using S = State;
   d.named("EnvironmentState");
-  d.about("An environment.");
-  d.internal<&S::stator_count>("Stators that it has.");
-  d.internal<&S::stator_hash>("Of the stators.");
-  d.internal<&S::border_count>("Straight pieces of its boundary.");
-  d.internal<&S::asked>("Number of the question whose answer is awaited.");
-  d.internal<&S::ticket>("Of the command that asked.");
+  d.about("State of an environment.");
+  d.internal<&S::stator_count>("Number of its stators.");
+  d.internal<&S::stator_hash>("Hash of the stators.");
+  d.internal<&S::border_count>("Number of straight sides of its boundary.");
+  d.internal<&S::asked>("Number of the request whose answer is awaited; 0: none.");
+  d.internal<&S::ticket>("Ticket of the command that made the request.");
 }
 
 }  // namespace takt::environment

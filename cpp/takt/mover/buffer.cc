@@ -344,26 +344,26 @@ AdmissionResult CarryOut(const CommandContext& g, const Release&) noexcept {
 }
 
 void describe(Description<Queued>& d) {
-  d.about("A command of a mover that waits for its turn.");
-  d.internal<&Queued::ticket>("Of the command.");
-  d.internal<&Queued::command>("It.");
-  d.internal<&Queued::beside>("Bits of slots that it does not wait for.");
+  d.about("A buffered command of a mover.");
+  d.internal<&Queued::ticket>("Ticket of the command.");
+  d.internal<&Queued::command>("Command and its arguments.");
+  d.internal<&Queued::beside>("Bits of the slots that the command does not wait for.");
 }
 
 void describe(Description<Buffer>& d) {
   using B = Buffer;
   d.named("MoverBuffer");
-  d.about("Commands of a mover that wait for their turn.");
-  d.internal<&B::waiting>("They, the next one first.");
-  d.internal<&B::count>("So many.");
-  d.internal<&B::releases>("That no wait has taken yet.");
-  d.internal<&B::until>("Cycle at which a wait is over.");
-  d.internal<&B::for_release>("It waits for a release, too.");
-  d.internal<&B::passing_at>("Where the way ends that went over into another one.");
-  d.internal<&B::direction>("Of that way.");
-  d.internal<&B::held_by>("What the next one waits for: a part, a mover or a track.");
-  d.internal<&B::held_at>("Where that stood, of a mover.");
-  d.internal<&B::held_since>("Cycle since which it waits for that.");
+  d.about("Buffered commands of a mover.");
+  d.internal<&B::waiting>("Buffered commands, the next one first.");
+  d.internal<&B::count>("Number of buffered commands.");
+  d.internal<&B::releases>("Number of releases that no wait has consumed.");
+  d.internal<&B::until>("Cycle in which the time of a wait is over.");
+  d.internal<&B::for_release>("True: the wait ends with a release only.");
+  d.internal<&B::passing_at>("End of the move along tracks that continued into the next one, over all tracks.");
+  d.internal<&B::direction>("Direction of that move.");
+  d.internal<&B::held_by>("Part, mover or track that blocks the next command.");
+  d.internal<&B::held_at>("Pose of that mover when the request was refused.");
+  d.internal<&B::held_since>("Cycle since which the next command is blocked.");
 }
 
 }  // namespace takt::mover

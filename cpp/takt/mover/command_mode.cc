@@ -6,15 +6,16 @@ namespace takt::mover {
 
 void describe(Enumeration<CommandMode>& e) {
   using M = CommandMode;
-  e.about("What kind of command a mover carries out.");
-  e.value(M::kFreeMovement, "FreeMovement", "It moves freely.");
-  e.value(M::kJoiningTrack, "JoiningTrack", "It is on its way to a track.");
-  e.value(M::kOnTrack, "OnTrack", "It moves along a track.");
-  e.value(M::kLeavingTrack, "LeavingTrack", "It is on its way from a track.");
-  e.value(M::kCRotationFreeMovement, "CRotationFreeMovement", "It is turned out of its windows: X and Y are locked.");
-  e.value(M::kCRotationOnTrack, "CRotationOnTrack", "The same on a track.");
-  e.value(M::kExternalSetpointGeneration, "ExternalSetpointGeneration", "It follows set points from outside.");
-  e.value(M::kFormation, "Formation", "It goes along with the star of its formation.");
+  e.about("Kind of command that a mover executes.");
+  e.value(M::kFreeMovement, "FreeMovement", "The mover moves freely.");
+  e.value(M::kJoiningTrack, "JoiningTrack", "The mover moves onto a track.");
+  e.value(M::kOnTrack, "OnTrack", "The mover moves along a track, or rests on it.");
+  e.value(M::kLeavingTrack, "LeavingTrack", "The mover moves off a track.");
+  e.value(M::kCRotationFreeMovement, "CRotationFreeMovement", "C is outside its windows: X and Y are locked.");
+  e.value(M::kCRotationOnTrack, "CRotationOnTrack", "C is outside its windows on a track: X and Y are locked.");
+  e.value(M::kExternalSetpointGeneration, "ExternalSetpointGeneration",
+          "The mover follows absolute external set points.");
+  e.value(M::kFormation, "Formation", "The mover follows the star of its formation.");
 }
 
 }  // namespace takt::mover

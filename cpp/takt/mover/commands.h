@@ -13,9 +13,11 @@
 
 namespace takt::mover {
 
+// Which target is meant where positions repeat: after a full turn of C (c_modulus), or after the length of a closed
+// track. MoveOnTrack on an open track: kPositive and kNegative allow one direction only, kShortestWay is as kNonModulo.
 enum class TurnDirection : std::uint8_t {
   kNonModulo,    // to the absolute position, over as many turns as needed
-  kPositive,     // upwards to the next equivalent position (equal but for whole turns)
+  kPositive,     // upwards to the next equivalent position
   kShortestWay,  // to the nearest equivalent position
   kNegative,     // downwards to the next equivalent position
 };
@@ -27,7 +29,7 @@ enum class SetpointMode : std::uint8_t {
 };
 
 enum class Buffering : std::uint8_t {
-  kAborting,  // at once; the buffer is aborted
+  kAborting,  // at once; if it takes over X or Y, the buffer is aborted
   kBuffered,  // when all commands before it are done
 };
 
@@ -35,7 +37,9 @@ struct Enable {};
 struct Disable {};
 struct Reset {};
 
-struct Halt {                            // dynamics of X and Y; all other coordinates stop with their standard dynamics
+// The dynamics are those of X and Y; all other coordinates stop with their standard dynamics. A planet brings its
+// formation to rest, with the maximum dynamics.
+struct Halt {
   std::optional<double> deceleration{};  // [mm/s²]
   std::optional<double> jerk{};          // [mm/s³]
 };
@@ -56,7 +60,8 @@ struct MoveToPosition {
   std::optional<double> jerk{};          // [mm/s³]
   Name reference{};                      // part or coordinate system that X and Y belong to
   Buffering buffer_mode = Buffering::kAborting;
-  double blending = 0;  // [mm] before the end of the preceding move, at which this one begins; needs kBuffered
+  // [mm] largest distance from the end of the preceding move at which this one takes over; needs kBuffered
+  double blending = 0;
 };
 inline bool HasOrientationTarget(const MoveToPosition& move) noexcept {
   return move.use_orientation && move.c.has_value();
@@ -141,7 +146,7 @@ struct MoveRelativeC {
   std::optional<double> jerk{};          // [deg/s³]
   Buffering buffer_mode = Buffering::kAborting;
 };
-// At a velocity, until the room is used up.
+// At a velocity, until the room is used up. 0: the coordinate stops.
 struct MoveVelocityX {
   double velocity = 0;                   // [mm/s] negative: towards smaller values
   std::optional<double> acceleration{};  // [mm/s²]
@@ -163,7 +168,8 @@ struct MoveVelocityC {
   std::optional<double> jerk{};          // [deg/s³]
   Buffering buffer_mode = Buffering::kAborting;
 };
-// One coordinate comes to rest; the others continue.
+// One coordinate comes to rest; the others continue. During a move of both X and Y, HaltX and HaltY stop both on their
+// line.
 struct HaltX {
   std::optional<double> deceleration{};  // [mm/s²]
   std::optional<double> jerk{};          // [mm/s³]
@@ -219,12 +225,13 @@ enum class DynamicsReduction : std::uint8_t {
   kNone,                         // as fast as the maxima of X and Y, as vectors, allow
 };
 struct MoveOnTrack {
-  double position = 0;          // [mm] along the track
+  double position = 0;          // [mm] along the track, within [0, length]; any on a closed loop with kNonModulo
   Name track{};                 // empty: the track of the mover
   std::optional<double> gap{};  // [mm] to the mover ahead, from centre to centre
   TurnDirection direction = TurnDirection::kNonModulo;
-  std::uint32_t additional_turns = 0;  // of a closed loop; with kPositive and kNegative only
-  double modulo_tolerance = 0;         // [mm] of a closed loop
+  std::uint32_t additional_turns = 0;  // on a closed loop, with kPositive and kNegative only
+  // [mm] on a closed loop, not with kNonModulo: a target within this distance is reached directly
+  double modulo_tolerance = 0;
   DynamicsReduction dynamics_reduction = DynamicsReduction::kAccelerationLimitedVelocity;
   std::optional<double> velocity{};      // [mm/s]
   std::optional<double> acceleration{};  // [mm/s²]
@@ -242,8 +249,8 @@ struct GearInPosOnTrack {  // along tracks, with an axis
   Name master{};
   double master_sync_position = 0;  // [u] of the master
   double slave_sync_position = 0;   // [mm] along the track
-  Name slave_sync_track{};          // empty: the track of the mover
-  Trail trail{};                    // empty: the track of the mover alone
+  Name slave_sync_track{};          // on the trail or just passed; empty: the present track of the mover
+  Trail trail{};                    // empty: the present track of the mover alone
   std::optional<double> gap{};      // [mm] to the mover ahead, from centre to centre
   double in_sync_tolerance = 0;     // [mm]
   TurnDirection direction_slave_sync_position = TurnDirection::kNonModulo;
@@ -259,8 +266,8 @@ struct GearInPosOnTrackWithMasterMover {
   double master_sync_position = 0;  // [mm] along the track
   Name master_sync_track{};         // empty: the track of the master
   double slave_sync_position = 0;   // [mm] along the track
-  Name slave_sync_track{};          // empty: the track of the mover
-  Trail trail{};                    // empty: the track of the mover alone
+  Name slave_sync_track{};          // on the trail or just passed; empty: the present track of the mover
+  Trail trail{};                    // empty: the present track of the mover alone
   std::optional<double> gap{};      // [mm] to the mover ahead, from centre to centre
   double in_sync_tolerance = 0;     // [mm]
   TurnDirection direction_slave_sync_position = TurnDirection::kNonModulo;
@@ -285,21 +292,21 @@ struct AdoptTrackOrientation {  // C turns to the orientation of the track, whic
   Buffering buffer_mode = Buffering::kAborting;
 };
 
-// Control of the buffer: Wait is always buffered, Release acts at once.
+// Control of the buffer: Wait is buffered, Release acts at once.
 struct Wait {
   double duration = 0;       // [s] at least
   bool for_release = false;  // wait for a release, and consume it
 };
-struct Release {};  // ends one Wait that waits for a release, the present or the next one
+struct Release {};  // adds one release; the current or a later Wait for a release consumes it
 
-struct StartExternalSetpointGeneration {
+struct StartExternalSetpointGeneration {  // the first set point is required in the same cycle
   SetpointMode mode = SetpointMode::kAbsolute;
 };
-struct SetExternalSetpoint {                              // for the end of the cycle that applies the command
-  double x = 0, y = 0, z = 0;                             // [mm]
-  double a = 0, b = 0, c = 0;                             // [deg]
-  double velocity_x = 0, velocity_y = 0, velocity_z = 0;  // [mm/s]
-  double velocity_a = 0, velocity_b = 0, velocity_c = 0;  // [deg/s]
+struct SetExternalSetpoint {   // for the end of the cycle that applies the command; required in every cycle
+  double x = 0, y = 0, z = 0;  // [mm]
+  double a = 0, b = 0, c = 0;  // [deg]
+  double velocity_x = 0, velocity_y = 0, velocity_z = 0;              // [mm/s]
+  double velocity_a = 0, velocity_b = 0, velocity_c = 0;              // [deg/s]
   double acceleration_x = 0, acceleration_y = 0, acceleration_z = 0;  // [mm/s²]
   double acceleration_a = 0, acceleration_b = 0, acceleration_c = 0;  // [deg/s²]
   Name reference{};                                                   // part or coordinate system, of absolute ones
@@ -317,7 +324,7 @@ struct JoinFormation {
 };
 struct LeaveFormation {};
 
-// A place on a route over the free surface, with its planned times [s] since the start of the routes.
+// A place on a route over the free surface, with its planned times [s], which count from StartRoutes.
 struct Visit {
   double x = 0, y = 0;                     // [mm] centre of the place
   std::uint32_t after = 0;                 // number, from 1, of the mover that visits the place before; 0: none
@@ -331,11 +338,14 @@ inline constexpr std::size_t kVisitsPerCommand = 48;
 
 // Sequence of places that the mover visits once its route is started (StartRoutes).
 struct SetRoute {
-  std::uint64_t first = 0;  // number of the first visit: where the mover is, or where its new route branches off
-  bool continues = false;   // the visits continue those of the preceding command
+  // number of the first visit: where the mover is at rest, or a visit of its present route where it can still come to
+  // rest; with `continues`, the number after the last visit
+  std::uint64_t first = 0;
+  bool continues = false;  // the visits continue those of the preceding SetRoute, which is not started yet
   InlineVector<Visit, kVisitsPerCommand> visits;
 };
-struct ContinueRoute {};  // resumes the route that a halt, a fault or another command has interrupted
+// Resumes the route that a halt, a fault or another command has interrupted; at rest, at most 0.05 mm off it.
+struct ContinueRoute {};
 
 using MoverNumbers = InlineVector<std::uint32_t, 1000>;  // from 1, in the order of the machine file
 

@@ -476,8 +476,8 @@ void Publish(const Context& c, const Inputs& inputs, const State& s, Outputs& ou
 
 void describe(Description<Inputs>& d) {
   d.named("MoverInputs");
-  d.about("What is measured of a mover.");
-  d.internal<&Inputs::actual>("Where it was when the cycle began.");
+  d.about("Measured values of a mover.");
+  d.internal<&Inputs::actual>("Actual pose at the beginning of the cycle.");
 }
 
 }  // namespace takt::mover

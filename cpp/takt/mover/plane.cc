@@ -356,15 +356,15 @@ bool PlanRest(Planner& planner, const PlaneState& from, const Limits& limits, Pl
 void describe(Description<PlaneMotion>& d) {
   using P = PlaneMotion;
   d.about("A motion of X and Y.");
-  d.internal<&P::origin_x>(unit::mm, "Where it begins.");
-  d.internal<&P::origin_y>(unit::mm, "Where it begins.");
-  d.internal<&P::direction_x>(unit::one, "Of along.");
-  d.internal<&P::direction_y>(unit::one, "Of along.");
-  d.internal<&P::share>(unit::one, "Of the limits, across.");
-  d.internal<&P::end_x>(unit::mm, "Where it ends.");
-  d.internal<&P::end_y>(unit::mm, "Where it ends.");
-  d.internal<&P::along>("Along the direction.");
-  d.internal<&P::across>("To the left of it.");
+  d.internal<&P::origin_x>(unit::mm, "X of the start.");
+  d.internal<&P::origin_y>(unit::mm, "Y of the start.");
+  d.internal<&P::direction_x>(unit::one, "X of the unit vector of the motion along.");
+  d.internal<&P::direction_y>(unit::one, "Y of the unit vector of the motion along.");
+  d.internal<&P::share>(unit::one, "Share of the limits for the motion across.");
+  d.internal<&P::end_x>(unit::mm, "X of the end.");
+  d.internal<&P::end_y>(unit::mm, "Y of the end.");
+  d.internal<&P::along>("Motion along the direction.");
+  d.internal<&P::across>("Motion across the direction, to its left.");
 }
 
 }  // namespace takt::mover

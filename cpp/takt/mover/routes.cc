@@ -337,15 +337,15 @@ std::string_view MessageOf(RouteProblem problem) noexcept {
     case RouteProblem::kTooMany:
       return "expected 512 visits at most";
     case RouteProblem::kNotNext:
-      return "what continues a route begins with the number behind its last visit";
+      return "expected as `first` of a continuation the number after the last visit";
     case RouteProblem::kNotBeside:
       return "expected each place beside the one before, along X or Y";
     case RouteProblem::kTimes:
       return "expected, for each straight motion, the times of departure and arrival, one after the other, or no times";
     case RouteProblem::kNoMover:
-      return "there is no mover of the number that `after` says";
+      return "no mover has the number `after`";
     case RouteProblem::kNoVisit:
-      return "the mover that `after` says has no visit of the number that `after_visit` says";
+      return "the mover `after` has no visit with the number `after_visit`";
     case RouteProblem::kNumber:
       return "expected as the first visit that where the mover is, or one ahead on its route";
     case RouteProblem::kElsewhere:
@@ -359,7 +359,7 @@ std::string_view MessageOf(RouteProblem problem) noexcept {
     case RouteProblem::kNoneTold:
       return "no mover was told a route";
     case RouteProblem::kMoves:
-      return "the mover moves, and not on a route";
+      return "the mover is not at rest, and not on a route";
     case RouteProblem::kNoRoute:
       return "the mover has no route";
     default:
@@ -369,7 +369,7 @@ std::string_view MessageOf(RouteProblem problem) noexcept {
 
 void describe(Description<RouteDynamics>& d) {
   using R = RouteDynamics;
-  d.about("Dynamics of a route; unset: the mover's standard.");
+  d.about("Dynamics of the motions on a route; unset: the mover's standard.");
   d.internal<&R::velocity>(unit::mm_s, "Largest speed.");
   d.internal<&R::acceleration>(unit::mm_s2, "Largest acceleration.");
   d.internal<&R::deceleration>(unit::mm_s2, "Largest deceleration.");
@@ -379,26 +379,26 @@ void describe(Description<RouteDynamics>& d) {
 void describe(Description<SurfaceRoute>& d) {
   using R = SurfaceRoute;
   d.named("MoverRoute");
-  d.about("A route of a mover over the free surface, but for its visits.");
-  d.internal<&R::dynamics>("Of its motions.");
-  d.internal<&R::started>("Cycle in which it was started.");
-  d.internal<&R::begin>("The first visit that is known.");
-  d.internal<&R::passed>("The last place whose middle it has reached.");
-  d.internal<&R::granted>("The last place that is its turn.");
-  d.internal<&R::sent>("The last place that it was told.");
-  d.internal<&R::aims>("Its motion ends at a place that is known.");
-  d.internal<&R::aim_x>(unit::mm, "X of that.");
-  d.internal<&R::aim_y>(unit::mm, "Y of it.");
+  d.about("State of a route of a mover over the free surface, without its visits.");
+  d.internal<&R::dynamics>("Dynamics of its motions.");
+  d.internal<&R::started>("Cycle of its start.");
+  d.internal<&R::begin>("First known visit.");
+  d.internal<&R::passed>("Last visit whose place the mover has reached with its centre.");
+  d.internal<&R::granted>("Last visit whose place is granted.");
+  d.internal<&R::sent>("Visit to whose place the mover was last sent.");
+  d.internal<&R::aims>("True: the motion ends at the known position.");
+  d.internal<&R::aim_x>(unit::mm, "X of that position.");
+  d.internal<&R::aim_y>(unit::mm, "Y of that position.");
   d.internal<&R::system>("Coordinate system of the places.");
-  d.internal<&R::pause>("Cycles until it is tried again.");
-  d.internal<&R::rests_since>("Cycle since which it rests before a place of another mover; 0: it does not.");
-  d.internal<&R::held>("No place is granted.");
-  d.internal<&R::timed>("There are times.");
-  d.internal<&R::leg>("Visit where its present planned motion begins.");
-  d.internal<&R::leaves>("That motion has begun.");
-  d.internal<&R::late>(unit::s, "By which it began late.");
-  d.internal<&R::look_again>("Cycle in which it is asked anew when that may begin.");
-  d.internal<&R::draft_ticket>("Of the command that told it the next one; 0: none.");
+  d.internal<&R::pause>("Cycles until a refused move is tried again.");
+  d.internal<&R::rests_since>("Cycle since which the mover rests before a place that is not granted; 0: it does not.");
+  d.internal<&R::held>("True: no further place is granted.");
+  d.internal<&R::timed>("True: the visits have planned times.");
+  d.internal<&R::leg>("Visit at which the present planned motion begins.");
+  d.internal<&R::leaves>("True: that motion has begun.");
+  d.internal<&R::late>(unit::s, "Delay with which that motion began.");
+  d.internal<&R::look_again>("Cycle in which the start of that motion is computed anew.");
+  d.internal<&R::draft_ticket>("Ticket of the command that gave the next route; 0: none.");
 }
 
 }  // namespace takt::mover

@@ -79,7 +79,7 @@ CoordinateParams ParamsOf(const Context& c, const State& s, std::size_t other) n
 
 namespace {
 
-// The stops of X and Y, and of the others.
+// The stops of X and Y, and of the other coordinates.
 struct Rest {
   PlaneMove plane;
   std::array<CoordinateMove, kOthers.size()> others;

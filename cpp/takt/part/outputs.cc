@@ -8,15 +8,15 @@ void describe(Description<Outputs>& d) {
   using O = Outputs;
   d.named("PartOutputs");
   d.about("State of a part of the surface after a cycle.");
-  d.internal<&O::state>("What it can do.");
-  d.internal<&O::error>("Of the last fault; 0 without one.");
-  d.internal<&O::disable_forced>("It must not be enabled.");
-  d.internal<&O::position_index>("Index of the position where it is, from 1; 0: it is on its way.");
-  d.internal<&O::commanded_index>("Index of the position where it is to be.");
-  d.internal<&O::coordinate_system>("Number of the coordinate system it is in, from 1; 0: it is on its way.");
-  d.internal<&O::x>(unit::mm, "X of its origin in that.");
-  d.internal<&O::y>(unit::mm, "Y of it.");
-  d.internal<&O::mover_count>("Movers whose middle is on it.");
+  d.internal<&O::state>("State of the part.");
+  d.internal<&O::error>("Error of the last fault; 0: none.");
+  d.internal<&O::disable_forced>("True: it must not be enabled.");
+  d.internal<&O::position_index>("Index of its position, from 1; 0: at no position.");
+  d.internal<&O::commanded_index>("Index of its commanded position, from 1.");
+  d.internal<&O::coordinate_system>("Number of its coordinate system, from 1; 0: at no position.");
+  d.internal<&O::x>(unit::mm, "X of its origin in the coordinate system, at its present or last position.");
+  d.internal<&O::y>(unit::mm, "Y of its origin in the coordinate system, at its present or last position.");
+  d.internal<&O::mover_count>("Number of movers with their centre on it.");
 }
 
 }  // namespace takt::part

@@ -39,30 +39,30 @@ planar::Parts Make(const std::vector<CoordinateSystemParams>& systems, const std
 
 void describe(Description<CoordinateSystemParams>& d) {
   d.named("PlanarCoordinateSystem");
-  d.about("A plane of its own, in which parts lie.");
-  d.required<&CoordinateSystemParams::name>("Of the coordinate system; positions refer to it.");
+  d.about("A plane with coordinates of its own, in which parts lie.");
+  d.required<&CoordinateSystemParams::name>("Name of the coordinate system, to which positions refer.");
 }
 
 void describe(Description<PositionParams>& d) {
   using P = PositionParams;
   d.named("PartPosition");
-  d.about("Where a part can be.");
+  d.about("A position of a part.");
   d.required<&P::coordinate_system>("Name of the coordinate system.");
-  d.defaulted<&P::x>(unit::mm, between(-1e6, 1e6), "X of the part's origin in it.");
-  d.defaulted<&P::y>(unit::mm, between(-1e6, 1e6), "Y of it.");
+  d.defaulted<&P::x>(unit::mm, between(-1e6, 1e6), "X of the origin of the part in the coordinate system.");
+  d.defaulted<&P::y>(unit::mm, between(-1e6, 1e6), "Y of the origin of the part in the coordinate system.");
 }
 
 void describe(Description<PartParams>& d) {
   using P = PartParams;
-  d.about("A part of the surface that movers float on: stators that hang together.");
-  d.required<&P::name>("Of the part; commands go to it, and positions refer to it.");
-  d.defaulted<&P::columns>(between(1, 1000), "So many stators side by side, squares of 240 mm.");
-  d.defaulted<&P::rows>(between(1, 1000), "So many such rows, from the part's origin upwards.");
-  d.defaulted<&P::stators>("Instead of columns and rows: lower left corners of its stators, from the part's origin.");
-  d.required<&P::positions>("Where it can be; the first has the index 1.");
-  d.defaulted<&P::initial_position>(between(1, 1000), "Index of that where it is at the start.");
-  d.defaulted<&P::travel_time_s>(unit::s, between(0, 3600),
-                                 "So long a simulated part takes from position to position.");
+  d.about("A part of the surface that movers float on: stators connected by their sides.");
+  d.required<&P::name>("Name of the part, to which commands are addressed and positions refer.");
+  d.defaulted<&P::columns>(between(1, 1000), "Number of stators in a row, squares of 240 mm.");
+  d.defaulted<&P::rows>(between(1, 1000), "Number of rows, from the origin of the part upwards.");
+  d.defaulted<&P::stators>(
+      "Lower left corners of the stators in the coordinates of the part, instead of columns and rows.");
+  d.required<&P::positions>("Positions that the part can take; the first has the index 1.");
+  d.defaulted<&P::initial_position>(between(1, 1000), "Index of the position at the start.");
+  d.defaulted<&P::travel_time_s>(unit::s, between(0, 3600), "Travel time of a simulated part between two positions.");
 }
 
 }  // namespace takt::part

@@ -169,9 +169,9 @@ void Publish(const planar::Spot& spot, std::uint32_t movers, const State& s, Out
 
 void describe(Description<Inputs>& d) {
   d.named("PartInputs");
-  d.about("What is reported of a part.");
-  d.internal<&Inputs::position>("Index of the position where it was when the cycle began, from 1; 0: none.");
-  d.internal<&Inputs::fault>("It has one.");
+  d.about("Reported inputs of a part.");
+  d.internal<&Inputs::position>("Index of its position at the beginning of the cycle, from 1; 0: none.");
+  d.internal<&Inputs::fault>("True: it reports a fault.");
 }
 
 }  // namespace takt::part

@@ -27,18 +27,18 @@ planar::PartNow Show(const State& s) noexcept {
 void describe(Description<State>& d) {
   using S = State;
   d.named("PartState");
-  d.about("A part of the surface.");
-  d.internal<&S::state>("What it can do.");
-  d.internal<&S::since>("Cycle in which it came to be so.");
-  d.internal<&S::forced>("It must not be enabled.");
-  d.internal<&S::error>("Of the fault.");
-  d.internal<&S::position>("Where it is, or was last.");
-  d.internal<&S::commanded>("Where it is to be.");
-  d.internal<&S::went>("Cycle in which it was commanded there.");
-  d.internal<&S::away>("It is not there.");
-  d.internal<&S::going>("Command that brings it somewhere.");
-  d.internal<&S::disabling>("Command that disables it.");
-  d.internal<&S::resetting>("Command that resets it.");
+  d.about("State of a part of the surface.");
+  d.internal<&S::state>("State of the part.");
+  d.internal<&S::since>("Cycle in which the state was entered.");
+  d.internal<&S::forced>("True: it must not be enabled.");
+  d.internal<&S::error>("Error of the fault.");
+  d.internal<&S::position>("Index of its present or last position.");
+  d.internal<&S::commanded>("Index of its commanded position.");
+  d.internal<&S::went>("Cycle of the command to that position.");
+  d.internal<&S::away>("True: it is reported neither at that position nor at the last one.");
+  d.internal<&S::going>("Ticket of the command that moves it.");
+  d.internal<&S::disabling>("Ticket of the command that disables it.");
+  d.internal<&S::resetting>("Ticket of the command that resets it.");
 }
 
 }  // namespace takt::part

@@ -231,15 +231,15 @@ bool Near(const Area& a, const Area& b, double clearance) noexcept {
 }
 
 void describe(Description<Pose>& d) {
-  d.about("Where a mover is in the plane, and how it is turned.");
-  d.required<&Pose::place>("Its centre.");
-  d.defaulted<&Pose::c>(unit::deg, "Its angle, counterclockwise.");
+  d.about("Position and angle of a mover in the plane.");
+  d.required<&Pose::place>("Position of its centre.");
+  d.defaulted<&Pose::c>(unit::deg, "Angle, counterclockwise.");
 }
 
 void describe(Description<Extent>& d) {
-  d.about("The sides of a rectangle along X and Y.");
-  d.internal<&Extent::lower>("Its corner at the least X and Y.");
-  d.internal<&Extent::upper>("Its corner at the largest X and Y.");
+  d.about("Bounding rectangle along X and Y.");
+  d.internal<&Extent::lower>("Corner at the least X and Y.");
+  d.internal<&Extent::upper>("Corner at the largest X and Y.");
 }
 
 }  // namespace takt::planar

@@ -208,10 +208,10 @@ double ReachFromEnd(const std::vector<Range>& ranges, double length) noexcept {
 }
 
 void describe(Description<Footprint>& d) {
-  d.about("What a mover covers: a rectangle.");
-  d.required<&Footprint::width>(unit::mm, positive, "Along its own x.");
-  d.required<&Footprint::height>(unit::mm, positive, "Across that.");
-  d.defaulted<&Footprint::any_angle>("Whether it may be turned at will: then it covers the circle around it.");
+  d.about("Rectangular area that a mover covers.");
+  d.required<&Footprint::width>(unit::mm, positive, "Size along its own x.");
+  d.required<&Footprint::height>(unit::mm, positive, "Size along its own y.");
+  d.defaulted<&Footprint::any_angle>("True: it may be at any angle, and covers the circle around it.");
 }
 
 }  // namespace takt::planar

@@ -196,8 +196,8 @@ bool Crosses(const Environment& environment, const Area& area, const Extent& ext
 }
 
 void describe(Enumeration<StatorProblem>& e) {
-  e.about("Why there is no surface of some stators.");
-  e.value(StatorProblem::kNone, "none", "There is.");
+  e.about("Why stators do not make a surface.");
+  e.value(StatorProblem::kNone, "none", "No problem.");
   e.value(StatorProblem::kEmpty, "empty", "There are no stators.");
   e.value(StatorProblem::kTooMany, "too_many", "There are too many stators.");
   e.value(StatorProblem::kNotFinite, "not_finite", "A corner is not finite, or too far away.");

@@ -243,24 +243,24 @@ bool TakeMastersRoute(const Network& network, const Rider& master, Rider& r) noe
 }
 
 void describe(Enumeration<GearEnd>& e) {
-  e.about("What else became of a mover that goes along with a master.");
-  e.value(GearEnd::kNot, "not", "It goes along.");
-  e.value(GearEnd::kWay, "way", "Its way ends where the master leads it.");
+  e.about("How a geared motion ended.");
+  e.value(GearEnd::kNot, "not", "It has not ended.");
+  e.value(GearEnd::kWay, "way", "The route ends short of the position that the master demands.");
 }
 
 void describe(Description<Gear>& d) {
   using G = Gear;
-  d.about("A mover that goes along with a master.");
-  d.internal<&G::master>("Number of the mover that is the master; none: an axis.");
-  d.internal<&G::offset>(unit::mm, "Own place minus the master's.");
-  d.internal<&G::tolerance>(unit::mm, "Within which it counts as in step.");
-  d.internal<&G::sense>("The only way it may go until it has been in step.");
-  d.internal<&G::takes_masters_way>("Its route is the master's.");
-  d.internal<&G::apart>(unit::mm, "The same place as this mover counts it minus as the master does.");
-  d.internal<&G::was_in_step>("It has been in step.");
-  d.internal<&G::in_step>("It is where it should be.");
-  d.internal<&G::error>(unit::mm, "Own place minus where it should be.");
-  d.internal<&G::end>("What else became of it.");
+  d.about("Coupling of a mover on tracks to a master.");
+  d.internal<&G::master>("Index of the mover that is the master; none: an axis.");
+  d.internal<&G::offset>(unit::mm, "Own position minus the master's.");
+  d.internal<&G::tolerance>(unit::mm, "Largest error that counts as in sync.");
+  d.internal<&G::sense>("Only direction of motion until it has been in sync; 0: either.");
+  d.internal<&G::takes_masters_way>("True: it takes the route of the master.");
+  d.internal<&G::apart>(unit::mm, "Position of a point as this mover counts it minus as the master counts it.");
+  d.internal<&G::was_in_step>("True: it has been in sync.");
+  d.internal<&G::in_step>("True: it is in sync.");
+  d.internal<&G::error>(unit::mm, "Own position minus the demanded one.");
+  d.internal<&G::end>("How the motion ended.");
 }
 
 }  // namespace takt::planar

@@ -299,10 +299,10 @@ void AdvanceTracks(GroupRegistry& g) noexcept {
 }
 
 void describe(Description<GroupReservations>& d) {
-  d.about("What a group of movers has reserved.");
-  d.internal<&GroupReservations::watches>("Only then it has.");
-  d.internal<&GroupReservations::waits>("Moves wait in it instead of being refused.");
-  d.internal<&GroupReservations::reserved>("For whom what.");
+  d.about("Reservations of a group of movers.");
+  d.internal<&GroupReservations::watches>("True: the group is enabled, and areas are reserved.");
+  d.internal<&GroupReservations::waits>("True: moves wait for their area instead of being refused.");
+  d.internal<&GroupReservations::reserved>("Reserved areas.");
 }
 
 }  // namespace takt::planar

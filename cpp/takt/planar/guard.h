@@ -8,9 +8,9 @@
 //
 // It holds by induction, like that of traffic.h. A mover that brakes keeps it: the rest of a course is part of the
 // course. So each mover is first assumed to brake; then one after the other, in a fixed order, may take its step if the
-// course from there keeps the invariant against all others as assumed at that time; else it brakes. A motion that needs
-// an area which braking does not free (a rotation, a part with movers) is refused unless that area is free, and keeps
-// it until its end.
+// course from there keeps the invariant against all other movers as assumed at that time; else it brakes. A motion that
+// needs an area which braking does not free (a rotation, a part with movers) is refused unless that area is free, and
+// keeps it until its end.
 //
 // The broad phase is a grid whose squares are hashed: only movers near the course are tested. The narrow phase uses
 // separating axes (area.h). All memory is allocated by the constructor.

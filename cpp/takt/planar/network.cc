@@ -229,9 +229,9 @@ bool FindRoute(const Network& network, std::uint32_t from, std::uint32_t to, Rou
 }
 
 void describe(Description<Route>& d) {
-  d.about("Tracks one after the other.");
-  d.internal<&Route::tracks>("Their numbers; the first one is where the mover is.");
-  d.internal<&Route::count>("So many.");
+  d.about("Sequence of linked tracks.");
+  d.internal<&Route::tracks>("Indices of the tracks, the present one of the mover first.");
+  d.internal<&Route::count>("Number of tracks.");
 }
 
 }  // namespace takt::planar

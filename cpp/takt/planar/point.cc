@@ -34,17 +34,17 @@ bool Same(const TrackPoint& a, const TrackPoint& b) noexcept {
 }
 
 void describe(Description<Place>& d) {
-  d.about("A place in the plane.");
+  d.about("A point in the plane.");
   d.required<&Place::x>(unit::mm, "X.");
   d.required<&Place::y>(unit::mm, "Y.");
 }
 
 void describe(Description<TrackPoint>& d) {
-  d.about("How a track runs through a place.");
-  d.internal<&TrackPoint::place>("The place.");
+  d.about("A point of a track, with direction and curvature.");
+  d.internal<&TrackPoint::place>("Position of the point.");
   d.internal<&TrackPoint::direction>("Direction in rad, counterclockwise from x.");
   d.internal<&TrackPoint::curvature>("Curvature in 1/mm, above 0 to the left.");
-  d.internal<&TrackPoint::curvature_rate>("How the curvature changes, 1/mm².");
+  d.internal<&TrackPoint::curvature_rate>("Rate of the curvature by arc length in 1/mm².");
 }
 
 }  // namespace takt::planar

@@ -9,7 +9,7 @@ std::string_view Text(Problem problem) noexcept {
     case Problem::kNone:
       return "";
     case Problem::kNotFinite:
-      return "a number of the track is not finite, or a place is more than 1 km away";
+      return "a number of the track is not finite, or a position is more than 1 km away";
     case Problem::kLengthZero:
       return "a line begins where it ends, or a position is where its neighbour is";
     case Problem::kRadiusZero:
@@ -55,7 +55,7 @@ std::string_view Text(Problem problem) noexcept {
     case Problem::kNotDisabled:
       return "the geometry of a track can be changed only while it is disabled";
     case Problem::kBusy:
-      return "too many changes of tracks wait to be made";
+      return "too many changes of tracks are pending";
     case Problem::kApart:
       return "the parts of the tracks are not in one coordinate system";
     case Problem::kNotOnBorder:
@@ -83,33 +83,36 @@ Problem FromPath(path::Problem problem) noexcept {
 }
 
 void describe(Enumeration<Problem>& e) {
-  e.about("Why a track cannot be as it is wished.");
-  e.value(Problem::kNone, "none", "It can.");
+  e.about("Why a track cannot be made.");
+  e.value(Problem::kNone, "none", "No problem.");
   e.value(Problem::kNotFinite, "not_finite", "A number is not finite, or too large.");
-  e.value(Problem::kLengthZero, "length_zero", "A line begins where it ends, or a position is where its neighbour is.");
-  e.value(Problem::kRadiusZero, "radius_zero", "An arc begins at its centre.");
-  e.value(Problem::kNotOnCircle, "not_on_circle", "Start and end of an arc are not equally far from its centre.");
+  e.value(Problem::kLengthZero, "length_zero", "A line ends at its start, or a position coincides with its neighbour.");
+  e.value(Problem::kRadiusZero, "radius_zero", "An arc starts at its centre.");
+  e.value(Problem::kNotOnCircle, "not_on_circle",
+          "Start and end of an arc are not at the same distance from its centre.");
   e.value(Problem::kTooTight, "too_tight", "A radius is too small.");
-  e.value(Problem::kKink, "kink", "Two pieces touch where their directions differ.");
-  e.value(Problem::kCurvatureJump, "curvature_jump", "Two pieces touch where their curvatures differ.");
+  e.value(Problem::kKink, "kink", "Two pieces join with different directions.");
+  e.value(Problem::kCurvatureJump, "curvature_jump", "Two pieces join with different curvatures.");
   e.value(Problem::kTooSharp, "too_sharp", "The radius of a transition would be too small.");
-  e.value(Problem::kReversal, "reversal", "A transition would go back the way it came.");
+  e.value(Problem::kReversal, "reversal", "A transition would have to reverse the direction.");
   e.value(Problem::kLoop, "loop", "A transition would make a loop.");
   e.value(Problem::kEmpty, "empty", "The track has no length.");
   e.value(Problem::kClosed, "closed", "The track is a closed loop.");
-  e.value(Problem::kEnded, "ended", "The track ends at another one.");
-  e.value(Problem::kLinked, "linked", "A track with links cannot be a closed loop.");
-  e.value(Problem::kNotItsStart, "not_its_start", "The track starts elsewhere than the other one ends.");
-  e.value(Problem::kNotItsEnd, "not_its_end", "The track ends elsewhere than the other one starts.");
-  e.value(Problem::kCrosses, "crosses", "The track crosses itself.");
-  e.value(Problem::kTooMany, "too_many", "A track cannot have so many elements or links.");
+  e.value(Problem::kEnded, "ended", "The track ends at another track.");
+  e.value(Problem::kLinked, "linked", "A track linked with another one cannot be a closed loop.");
+  e.value(Problem::kNotItsStart, "not_its_start",
+          "The track does not start where the other track ends, or joins it with another direction or curvature.");
+  e.value(Problem::kNotItsEnd, "not_its_end",
+          "The track does not end where the other track starts, or joins it with another direction or curvature.");
+  e.value(Problem::kCrosses, "crosses", "The track crosses or touches itself.");
+  e.value(Problem::kTooMany, "too_many", "Too many elements or links.");
   e.value(Problem::kOtherEmpty, "other_empty", "The other track has no length.");
   e.value(Problem::kOtherClosed, "other_closed", "The other track is a closed loop.");
-  e.value(Problem::kInUse, "in_use", "Other tracks start from it or end at it.");
+  e.value(Problem::kInUse, "in_use", "Other tracks start from the track or end at it.");
   e.value(Problem::kNotDisabled, "not_disabled", "The track is not disabled.");
-  e.value(Problem::kBusy, "busy", "Too many changes wait.");
+  e.value(Problem::kBusy, "busy", "Too many changes of tracks are pending.");
   e.value(Problem::kApart, "apart", "The parts of the tracks are not in one coordinate system.");
-  e.value(Problem::kNotOnBorder, "not_on_border", "The tracks do not meet on the border of their parts.");
+  e.value(Problem::kNotOnBorder, "not_on_border", "The tracks do not meet on the border of both parts.");
   e.value(Problem::kOffPart, "off_part", "The track leaves its part.");
 }
 

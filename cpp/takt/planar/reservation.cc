@@ -204,49 +204,50 @@ void EndTrack(std::uint32_t track, Reservations& r) noexcept {
 }
 
 void describe(Description<Move>& d) {
-  d.about("Where a mover is to go.");
-  d.internal<&Move::target>("The end.");
-  d.internal<&Move::over>("Where it may come on its way to the line to the target.");
-  d.internal<&Move::over_c>(unit::deg, "An angle that it may come to on its way.");
-  d.internal<&Move::corners>("Of what a curve onto the line keeps within.");
-  d.internal<&Move::corner_count>("So many.");
-  d.internal<&Move::on_track>("It stays on a track.");
-  d.internal<&Move::kept_by_gaps>("Those of its network keep away from it by their gaps.");
+  d.about("A move of a mover that needs an area.");
+  d.internal<&Move::target>("Target pose.");
+  d.internal<&Move::over>("Position of rest on the old line, before the line to the target.");
+  d.internal<&Move::over_c>(unit::deg, "Angle that it may reach before it turns to that of the target.");
+  d.internal<&Move::corners>("Further corners of the hull that the move stays within.");
+  d.internal<&Move::corner_count>("Number of these corners.");
+  d.internal<&Move::on_track>("True: it stays on its track.");
+  d.internal<&Move::kept_by_gaps>("True: movers of its network keep clear of it by their gaps.");
 }
 
 void describe(Description<Turn>& d) {
   d.named("MoverTurn");
   d.about("A move of a mover that waits for its area.");
-  d.internal<&Turn::since>("Cycle from which on it has waited; 0: none waits.");
-  d.internal<&Turn::blocker>("The mover in its way.");
-  d.internal<&Turn::asks>("It asks just now.");
-  d.internal<&Turn::move>("Where it is to go.");
+  d.internal<&Turn::since>("Cycle since which it has waited; 0: no move waits.");
+  d.internal<&Turn::blocker>("Mover in its way.");
+  d.internal<&Turn::asks>("True: the move is being checked.");
+  d.internal<&Turn::move>("Move that waits.");
 }
 
 void describe(Description<Reservation>& d) {
-  d.about("What a mover has reserved.");
-  d.internal<&Reservation::present>("Whether it is in the group.");
-  d.internal<&Reservation::moving>("Whether it is on its way.");
-  d.internal<&Reservation::linked>("Whether it goes along tracks.");
-  d.internal<&Reservation::network>("Of which network.");
-  d.internal<&Reservation::level>("Its coordinate system: those of different ones never meet.");
-  d.internal<&Reservation::body>("Of movers that move as one: those of the same never meet.");
-  d.internal<&Reservation::mover>("What it covers.");
-  d.internal<&Reservation::pose>("Where it is.");
-  d.internal<&Reservation::move>("Where it goes.");
-  d.internal<&Reservation::extent>("Of its area.");
+  d.about("Area that a mover has reserved.");
+  d.internal<&Reservation::present>("True: the mover is in the group.");
+  d.internal<&Reservation::moving>("True: it moves to the target of its move.");
+  d.internal<&Reservation::linked>("True: it moves along tracks.");
+  d.internal<&Reservation::network>("Network of those tracks.");
+  d.internal<&Reservation::level>("Coordinate system; movers in different ones never meet.");
+  d.internal<&Reservation::body>(
+      "Number of the formation that it moves with, whose movers never meet; 0: it moves alone.");
+  d.internal<&Reservation::mover>("Area that it covers.");
+  d.internal<&Reservation::pose>("Present pose.");
+  d.internal<&Reservation::move>("Move in progress.");
+  d.internal<&Reservation::extent>("Bounding rectangle of its area.");
 }
 
 void describe(Description<TrackReservation>& d) {
-  d.about("What a track has reserved.");
-  d.internal<&TrackReservation::moving>("Whether it is Moving: then all that its movers may cover.");
+  d.about("Area that a track has reserved.");
+  d.internal<&TrackReservation::moving>("True: the track is Moving, and all that its movers may cover is reserved.");
 }
 
 void describe(Description<Reservations>& d) {
-  d.about("The areas of a group of movers.");
-  d.internal<&Reservations::movers>("Of movers.");
+  d.about("Reserved areas of a group of movers.");
+  d.internal<&Reservations::movers>("Reservations of movers.");
   d.internal<&Reservations::turns>("Moves that wait for their area.");
-  d.internal<&Reservations::tracks>("Of tracks.");
+  d.internal<&Reservations::tracks>("Reservations of tracks.");
 }
 
 }  // namespace takt::planar

@@ -28,68 +28,68 @@ Route RemainingTracks(const Rider& r) noexcept {
 }
 
 void describe(Enumeration<Aim>& e) {
-  e.about("What a mover on a track is about.");
-  e.value(Aim::kRest, "rest", "Come to rest and stay.");
-  e.value(Aim::kTarget, "target", "Go to a place on its route.");
-  e.value(Aim::kFollow, "follow", "Go along with a master.");
+  e.about("Task of a mover on a track.");
+  e.value(Aim::kRest, "rest", "To come to rest and stay.");
+  e.value(Aim::kTarget, "target", "To move to a position on its route.");
+  e.value(Aim::kFollow, "follow", "To follow a master.");
 }
 
 void describe(Enumeration<Waits>& e) {
-  e.about("Why a mover does not go on.");
-  e.value(Waits::kNot, "not", "It does, or has nothing to do.");
+  e.about("Why a mover on a track does not move on.");
+  e.value(Waits::kNot, "not", "It moves on, or has no task.");
   e.value(Waits::kMover, "mover", "Another mover is in its way.");
   e.value(Waits::kRoute, "route", "Its route ends here.");
-  e.value(Waits::kMaster, "master", "Its master, an axis, is where it may not go.");
+  e.value(Waits::kMaster, "master", "Its master, an axis, is at a position that the mover may not take.");
 }
 
 void describe(Description<Brakes>& d) {
-  d.about("How hard a mover brakes.");
+  d.about("Limits of braking.");
   d.internal<&Brakes::deceleration>(unit::mm_s2, "Deceleration.");
   d.internal<&Brakes::jerk>(unit::mm_s3, "Jerk.");
 }
 
 void describe(Description<Pace>& d) {
-  d.about("How fast a mover may go.");
-  d.internal<&Pace::limits>("Along the way.");
-  d.internal<&Pace::lateral>(unit::mm_s2, "Across it, in curves.");
+  d.about("Limits of the motion of a mover along tracks.");
+  d.internal<&Pace::limits>("Limits along the route.");
+  d.internal<&Pace::lateral>(unit::mm_s2, "Largest lateral acceleration in curves.");
   d.internal<&Pace::vector_acceleration>(unit::mm_s2, "Largest length of the acceleration in the plane.");
   d.internal<&Pace::vector_jerk>(unit::mm_s3, "Largest length of the jerk in the plane.");
 }
 
 void describe(Description<Rider>& d) {
   using R = Rider;
-  d.about("A mover on a track.");
-  d.internal<&R::on>("It is on a track.");
-  d.internal<&R::at>("On the first track of the route.");
-  d.internal<&R::route>("The tracks it goes along.");
-  d.internal<&R::passed>("Those it has come from, the last one first.");
-  d.internal<&R::passed_count>("So many.");
-  d.internal<&R::direction>("Of its way.");
-  d.internal<&R::aim>("What it is about.");
-  d.internal<&R::softly>("It comes to rest as its pace says.");
-  d.internal<&R::target>(unit::mm, "On the last track of the route.");
-  d.internal<&R::gear>("Whom it goes along with, and how.");
-  d.internal<&R::demand>("Where that one is, over all tracks.");
-  d.internal<&R::pace>("As commanded.");
-  d.internal<&R::brakes>("Its greatest.");
-  d.internal<&R::share>("Number of the share of its dynamics that it brakes with, by the bends on its way to rest.");
-  d.internal<&R::top_speed>(unit::mm_s, "Its greatest.");
-  d.internal<&R::gap>(unit::mm, "To the mover before it.");
-  d.internal<&R::zone>(unit::mm, "So near to a node it is active there, at the least.");
-  d.internal<&R::off>(unit::mm, "So far from its place it may be.");
-  d.internal<&R::planned>("It has a plan.");
-  d.internal<&R::plan>("Along the way.");
-  d.internal<&R::plan_from>(unit::mm, "Where that began.");
-  d.internal<&R::plan_time>(unit::s, "Since that began.");
-  d.internal<&R::plan_ends>("It goes all the way to the target.");
-  d.internal<&R::there>("It rests at its target.");
-  d.internal<&R::calm_cycles>("So long it does not speed up more, having had to brake.");
-  d.internal<&R::eased>(unit::mm_s2, "What following asks for, without the shaking of those before it.");
-  d.internal<&R::origin>(unit::mm, "Of all tracks it has left behind.");
-  d.internal<&R::held_by>("The mover that is across its way.");
-  d.internal<&R::waits>("Why it does not go on.");
-  d.internal<&R::waits_for>("The mover that is in its way.");
-  d.internal<&R::waits_since>("Cycle since when.");
+  d.about("State of a mover on a track.");
+  d.internal<&R::on>("True: it is on a track.");
+  d.internal<&R::at>("Position on the first track of the route, and its derivatives.");
+  d.internal<&R::route>("Tracks of the route, the present one first.");
+  d.internal<&R::passed>("Tracks before the present one, the latest first.");
+  d.internal<&R::passed_count>("Number of these tracks.");
+  d.internal<&R::direction>("Direction of its motion.");
+  d.internal<&R::aim>("Task of the mover.");
+  d.internal<&R::softly>("True: it comes to rest with the commanded limits.");
+  d.internal<&R::target>(unit::mm, "Target position on the last track of the route.");
+  d.internal<&R::gear>("Coupling to its master.");
+  d.internal<&R::demand>("State of the master, over all tracks.");
+  d.internal<&R::pace>("Commanded limits.");
+  d.internal<&R::brakes>("Maximum dynamics of braking.");
+  d.internal<&R::share>("Index of the share of its dynamics for braking in the bends ahead.");
+  d.internal<&R::top_speed>(unit::mm_s, "Maximum speed.");
+  d.internal<&R::gap>(unit::mm, "Gap to the mover ahead, from centre to centre.");
+  d.internal<&R::zone>(unit::mm, "Least distance from nodes within which it is active there.");
+  d.internal<&R::off>(unit::mm, "Largest displacement from its position on the track.");
+  d.internal<&R::planned>("True: it has a plan.");
+  d.internal<&R::plan>("Planned motion along the route.");
+  d.internal<&R::plan_from>(unit::mm, "Start of the plan on the first track.");
+  d.internal<&R::plan_time>(unit::s, "Time since the start of the plan.");
+  d.internal<&R::plan_ends>("True: the plan reaches the target.");
+  d.internal<&R::there>("True: it is at rest at its target.");
+  d.internal<&R::calm_cycles>("Cycles left in which its acceleration does not grow, after it had to brake.");
+  d.internal<&R::eased>(unit::mm_s2, "Smoothed acceleration that following asks for.");
+  d.internal<&R::origin>(unit::mm, "Length of all tracks left behind.");
+  d.internal<&R::held_by>("Mover across its path, for which it brakes.");
+  d.internal<&R::waits>("Why it does not move on.");
+  d.internal<&R::waits_for>("Mover in its way.");
+  d.internal<&R::waits_since>("Cycle since which it does not move on.");
 }
 
 }  // namespace takt::planar

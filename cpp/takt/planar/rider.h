@@ -83,7 +83,6 @@ inline Brakes BrakesOf(const Rider& r) noexcept {
 // Returns the limits in force: those commanded, but with its maximum jerk as long as the commanded jerk would let the
 // current acceleration make it faster than commanded (than its speed, if that is higher), or drive it back after
 // braking.
-// than commanded (than it is, if that is more), or drive it back from braking, its greatest jerk, until that is over.
 trajectory::Limits LimitsNow(const Rider& r) noexcept;
 
 inline bool Rests(const KinematicState& x) noexcept {

@@ -87,19 +87,20 @@ double PeakCurvature(const Track& track, double from, double to) noexcept {
 }
 
 void describe(Enumeration<ElementShape>& e) {
-  e.about("What a track is given by.");
-  e.value(ElementShape::kPosition, "position", "A place to go through.");
+  e.about("Shape of an element of a track.");
+  e.value(ElementShape::kPosition, "position",
+          "A point that the track passes through, in the direction that its neighbours require.");
   e.value(ElementShape::kLine, "line", "A straight line.");
-  e.value(ElementShape::kArc, "circle", "A circular arc; a whole circle where it ends where it starts.");
+  e.value(ElementShape::kArc, "circle", "A circular arc; a full circle if it ends at its start.");
 }
 
 void describe(Description<Element>& d) {
-  d.about("A piece that a track is given by.");
-  d.defaulted<&Element::shape>("What it is.");
-  d.defaulted<&Element::start>("Where a line or an arc begins.");
-  d.defaulted<&Element::end>("Where it ends; the place of a position.");
-  d.defaulted<&Element::center>("Of an arc.");
-  d.defaulted<&Element::clockwise>("Which way round an arc goes.");
+  d.about("An element of a track.");
+  d.defaulted<&Element::shape>("Shape of the element.");
+  d.defaulted<&Element::start>("Start of a line or an arc.");
+  d.defaulted<&Element::end>("End of a line or an arc; the point of a position.");
+  d.defaulted<&Element::center>("Centre of an arc.");
+  d.defaulted<&Element::clockwise>("True: an arc runs clockwise.");
 }
 
 }  // namespace takt::planar

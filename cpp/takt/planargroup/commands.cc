@@ -7,14 +7,14 @@ namespace takt::planargroup {
 void describe(Description<Enable>& d) {
   d.named("EnablePlanarGroup");
   d.about(
-      "Lets the group refuse what would collide; done when it is Enabled. All that is in it has to rest, no mover may "
-      "touch another, and all have to stand within the border.");
+      "Lets the group refuse moves that would collide; done when it is Enabled. All its members must be at rest, no "
+      "movers may touch, and all must be within the border.");
 }
 
 void describe(Description<Disable>& d) {
   d.named("DisablePlanarGroup");
   d.about(
-      "Nothing is refused any more; done when it is Disabled. After a fault: a reset leads to Disabled instead of "
+      "Ends the refusal of moves; done when the group is Disabled. After a fault: a reset leads to Disabled instead of "
       "Enabled.");
 }
 

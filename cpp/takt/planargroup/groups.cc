@@ -154,12 +154,12 @@ void Publish(const Context& c) noexcept {
 void describe(Description<State>& d) {
   using S = State;
   d.named("PlanarGroupState");
-  d.about("A group of movers.");
-  d.internal<&S::state>("What it can do.");
-  d.internal<&S::since>("Cycle in which it came to be so.");
-  d.internal<&S::ticket>("Of the command that changes the state.");
-  d.internal<&S::error>("Of the fault.");
-  d.internal<&S::aborts>("A reset leads to Disabled.");
+  d.about("State of a group of movers.");
+  d.internal<&S::state>("State of the group.");
+  d.internal<&S::since>("Cycle in which the state was entered.");
+  d.internal<&S::ticket>("Ticket of the command that changes the state.");
+  d.internal<&S::error>("Error of the fault.");
+  d.internal<&S::aborts>("True: a reset leads to Disabled.");
 }
 
 }  // namespace takt::planargroup

@@ -55,12 +55,12 @@ std::uint32_t ElementOf(double value) noexcept {
 
 void describe(Description<Sketch>& d) {
   using S = Sketch;
-  d.about("What a track is given by.");
-  d.internal<&S::elements>("Its elements.");
-  d.internal<&S::count>("So many.");
-  d.internal<&S::closed>("It is a loop.");
-  d.internal<&S::from>("Where it starts, if another track ends there.");
-  d.internal<&S::to>("Where it ends, if another track starts there.");
+  d.about("Definition of a track.");
+  d.internal<&S::elements>("Elements of the track.");
+  d.internal<&S::count>("Number of elements.");
+  d.internal<&S::closed>("True: it is a closed loop.");
+  d.internal<&S::from>("End of another track at which it starts.");
+  d.internal<&S::to>("Start of another track at which it ends.");
 }
 
 }  // namespace takt::track
