@@ -52,14 +52,14 @@ std::optional<double> EndPassed(double from, double to) noexcept {
 
 void describe(Description<CamState>& d) {
   using C = CamState;
-  d.about("Where a cam lies.");
-  d.internal<&C::master>("Master's position where it begins.");
+  d.about("Position of a cam over its master.");
+  d.internal<&C::master>("Position of the master at which the cam begins.");
   d.internal<&C::slave>(unit::u, "Added to its y.");
-  d.internal<&C::share>("Where the master was, in cycles.");
-  d.internal<&C::end_axis>("Of this master's cam.");
-  d.internal<&C::end_master>("Where the master was at the end.");
-  d.internal<&C::end_slave>(unit::u, "Where this axis was at the end.");
-  d.internal<&C::over>("May be followed.");
+  d.internal<&C::share>("Position of the master in the cam, in cycles.");
+  d.internal<&C::end_axis>("Index of the master of the cam whose end was passed last.");
+  d.internal<&C::end_master>("Position of the master at that end.");
+  d.internal<&C::end_slave>(unit::u, "Position of this axis at that end.");
+  d.internal<&C::over>("A buffered command may take over.");
 }
 
 }  // namespace takt::axis

@@ -249,30 +249,30 @@ std::string DiagnoseCamSwitches(const CamSwitches& list, const AxisParams& param
 }
 
 void describe(Enumeration<CamDirection>& e) {
-  e.about("In which sense of travel a cam switch works.");
-  e.value(CamDirection::kBoth, "both", "Both.");
+  e.about("Sense of travel in which a cam switch acts.");
+  e.value(CamDirection::kBoth, "both", "In both senses.");
   e.value(CamDirection::kPositive, "positive", "Upwards only.");
   e.value(CamDirection::kNegative, "negative", "Downwards only.");
 }
 
 void describe(Enumeration<CamSwitchMode>& e) {
-  e.about("What ends a cam switch.");
-  e.value(CamSwitchMode::kPosition, "position", "The end of its range.");
-  e.value(CamSwitchMode::kTime, "time", "Its duration.");
+  e.about("Condition that ends a cam switch.");
+  e.value(CamSwitchMode::kPosition, "position", "The end of its range is reached.");
+  e.value(CamSwitchMode::kTime, "time", "Its duration has elapsed.");
 }
 
 void describe(Description<CamSwitch>& d) {
   using S = CamSwitch;
   d.about("A range of positions, or a position and a time, in which a track is on.");
-  d.required<&S::track>(between(1, kMaxTracks), "Which track: bit track - 1 of cam_outputs.");
+  d.required<&S::track>(between(1, kMaxTracks), "Number of the track: bit track - 1 of cam_outputs.");
   d.required<&S::first_on_position>(unit::u, "Lower end of the range.");
-  d.defaulted<&S::last_on_position>(unit::u,
-                                    "Upper end of the range; below the first, on rotary axes or with a modulus: "
-                                    "across 0. In time mode where it begins downwards; unset: at first_on_position "
-                                    "too.");
-  d.defaulted<&S::direction>("In which sense of travel.");
-  d.defaulted<&S::mode>("What ends it.");
-  d.defaulted<&S::duration_s>(unit::s, not_negative, "Time mode: how long it is on.");
+  d.defaulted<&S::last_on_position>(
+      unit::u,
+      "Upper end of the range; below the first, on rotary axes or with a modulus: the range includes 0. In time mode "
+      "the position at which it switches on downwards; unset: first_on_position.");
+  d.defaulted<&S::direction>("Sense of travel in which it acts.");
+  d.defaulted<&S::mode>("Condition that ends it.");
+  d.defaulted<&S::duration_s>(unit::s, not_negative, "Time mode: duration for which it is on.");
   d.rule<&S::last_on_position>("must be given, but in time mode",
                                [](const S& s) { return s.last_on_position || s.mode == CamSwitchMode::kTime; });
   d.rule<&S::duration_s>("must be above 0 in time mode",
@@ -282,44 +282,43 @@ void describe(Description<CamSwitch>& d) {
 void describe(Description<CamTrack>& d) {
   using T = CamTrack;
   d.about("Options of one track of cam switches.");
-  d.required<&T::track>(between(1, kMaxTracks), "Which track.");
-  d.defaulted<&T::on_lead_s>(unit::s, between(-10, 10), "Switches on so much earlier; negative: later.");
+  d.required<&T::track>(between(1, kMaxTracks), "Number of the track.");
+  d.defaulted<&T::on_lead_s>(unit::s, between(-10, 10), "Time by which it switches on earlier; negative: later.");
   d.defaulted<&T::off_lead_s>(unit::s, between(-10, 10),
-                              "Switches off so much earlier; negative: later. Not in time mode.");
-  d.defaulted<&T::hysteresis>(
-      unit::u, not_negative,
-      "Where the axis turns round after a switch has switched, it stays as it is until the axis is so far from there. "
-      "In time mode: the time does not begin again until then.");
+                              "Time by which it switches off earlier; negative: later. Unused in time mode.");
+  d.defaulted<&T::hysteresis>(unit::u, not_negative,
+                              "After the axis has reversed, a switch keeps its state until the axis is this far from "
+                              "its last switching position. In time mode: the time does not restart until then.");
 }
 
 void describe(Description<CamSwitches>& d) {
   using L = CamSwitches;
   d.about("A list of cam switches, for any axis (MC_DigitalCamSwitch).");
-  d.required<&L::name>("How commands call it.");
+  d.required<&L::name>("Name of the list in commands.");
   d.defaulted<&L::modulus>(unit::u, positive,
-                           "Positions repeat every so many; unset: as those of the axis. For linear axes, or for "
-                           "several times a turn.");
-  d.defaulted<&L::tracks>("Options of tracks, where they have any.");
-  d.required<&L::switches>("The switches, 64 at most.");
+                           "Distance after which positions repeat; unset: as for the axis. For linear axes, or for "
+                           "several repetitions in a turn.");
+  d.defaulted<&L::tracks>("Options of individual tracks.");
+  d.required<&L::switches>("Switches, 64 at most.");
   d.rule<&L::switches>("must be 64 at most", [](const L& l) { return l.switches.size() <= kMaxCamSwitches; });
 }
 
 void describe(Description<CamSwitchState>& d) {
   using S = CamSwitchState;
   d.about("Cam switches of an axis.");
-  d.internal<&S::ticket>("Of the command.");
-  d.internal<&S::list>("Which list of the machine; -1: off.");
-  d.internal<&S::enable_mask>("A bit for each track.");
+  d.internal<&S::ticket>("Ticket of the command.");
+  d.internal<&S::list>("Index among the machine's lists; -1: off.");
+  d.internal<&S::enable_mask>("Tracks that are enabled, a bit for each.");
   d.internal<&S::source>("Set point or measured position.");
-  d.internal<&S::started>("There was a cycle before.");
-  d.internal<&S::sense>("Of travel.");
-  d.internal<&S::extreme>(unit::u, "How far it got that way.");
-  d.internal<&S::closed>("A bit for each switch.");
-  d.internal<&S::marked>("A bit for each switch that has switched not far from where the axis is.");
-  d.internal<&S::turned>("A bit for each switch after which the axis has turned round.");
-  d.internal<&S::mark>("Where each switched.");
-  d.internal<&S::reach>("The furthest place compared in this sense of travel.");
-  d.internal<&S::end_cycle>("In which cycle each goes off.");
+  d.internal<&S::started>("A cycle has been computed before.");
+  d.internal<&S::sense>("Sense of travel.");
+  d.internal<&S::extreme>(unit::u, "Furthest position in this sense of travel.");
+  d.internal<&S::closed>("Switches that are on, a bit for each.");
+  d.internal<&S::marked>("Switches that have switched, with the axis still within the hysteresis, a bit for each.");
+  d.internal<&S::turned>("Switches after which the axis has reversed, a bit for each.");
+  d.internal<&S::mark>("Position at which each switch switched last.");
+  d.internal<&S::reach>("Furthest position compared in this sense of travel.");
+  d.internal<&S::end_cycle>("Time mode: cycle in which each switch switches off.");
 }
 
 }  // namespace takt::axis

@@ -63,43 +63,42 @@ void Step(const ControlLoop& p, const ControlLoopInputs& in, Cycle cycle, Contro
 void describe(Description<ControlLoop>& d) {
   using P = ControlLoop;
   d.about(
-      "The position loop: a sampled PID with velocity feed-forward. P, I and D are positions; their sum is what the "
-      "axis shall make up "
-      "for within one cycle of T seconds.");
+      "The position loop: a sampled PID with velocity feed-forward. P, I and D are positions; their sum is the "
+      "displacement to be made up for within one cycle of T seconds.");
   d.defaulted<&P::kp>(between(0, 1e6), "Proportional gain: P = kp e. In a speed gain Kv: kp = T Kv.");
   d.defaulted<&P::ki>(between(0, 1e6), "Integral gain: ki e is added to I each cycle. T / Ti.");
   d.defaulted<&P::kd>(between(0, 1e6), "Derivative gain: D = kd (e - e of the cycle before). Td / T.");
   d.defaulted<&P::kc>(
       between(0, 1),
-      "Share of what the limiters cut off that is taken back from I, as far as I has it; 0: I may wind up.");
+      "Share of the part cut off by the limiters that is subtracted from I, at most down to 0; 0: I may wind up.");
   d.defaulted<&P::ff>(between(0, 10), "Share of the set velocity that is fed forward.");
   d.defaulted<&P::velocity_at_10v>(unit::u_s, Range{.min = 0, .max = 1e9, .without_min = true},
-                                   "Largest speed the loop asks for; analogue drives: the speed at 10 V.");
+                                   "Velocity limit of the loop; analogue drives: the speed at 10 V.");
   constexpr Unit kMillivolt{"mV", ""};
   d.defaulted<&P::offset_mv>(kMillivolt, between(-10000, 10000),
-                             "Analogue drives: voltage added always, against the drive's own offset.");
+                             "Analogue drives: voltage that is always added, against the drive's own offset.");
   d.defaulted<&P::dead_band_plus_mv>(
       kMillivolt, between(0, 10000),
-      "Analogue drives: voltage added to positive ones, which the drive would not feel otherwise.");
+      "Analogue drives: voltage added to positive voltages, against the dead band of the drive.");
   d.defaulted<&P::dead_band_minus_mv>(kMillivolt, between(0, 10000),
-                                      "Analogue drives: voltage taken from negative ones.");
+                                      "Analogue drives: voltage subtracted from negative voltages.");
 }
 
 void describe(Description<ControlLoopState>& d) {
   using S = ControlLoopState;
-  d.about("The signals of the position loop, in the order of its block diagram, and what it remembers.");
-  d.internal<&S::error>(unit::u, "Set point less measured position.");
+  d.about("Signals of the position loop in the order of its block diagram, and its memory.");
+  d.internal<&S::error>(unit::u, "Set point minus measured position.");
   d.internal<&S::p>(unit::u, "Proportional term.");
   d.internal<&S::i>(unit::u, "Integral term.");
   d.internal<&S::d>(unit::u, "Derivative term.");
   d.internal<&S::sum>(unit::u, "Sum of the terms.");
-  d.internal<&S::limited>(unit::u, "The sum, limited to what Vmax allows.");
-  d.internal<&S::converted>("The limited sum in V, or u/s on csv drives.");
+  d.internal<&S::limited>(unit::u, "Sum, limited to Vmax.");
+  d.internal<&S::converted>("Limited sum in V, or u/s on csv drives.");
   d.internal<&S::feed_forward>("Velocity feed-forward in V, or u/s on csv drives.");
-  d.internal<&S::compensated>("Both, with dead band and offset made up for, in V; or u/s on csv drives.");
-  d.internal<&S::output>("What the drive is told, in V; or u/s on csv drives.");
-  d.internal<&S::integral>(unit::u, "What the next cycle's integral term starts from.");
-  d.internal<&S::closed>("The loop was closed in the cycle before.");
+  d.internal<&S::compensated>("Sum of both with dead band and offset compensated, in V; or u/s on csv drives.");
+  d.internal<&S::output>("Command to the drive in V, or u/s on csv drives.");
+  d.internal<&S::integral>(unit::u, "Start value of the integral term in the next cycle.");
+  d.internal<&S::closed>("The loop was closed in the previous cycle.");
 }
 
 }  // namespace takt::axis

@@ -82,13 +82,13 @@ void Correct(const Context& c, State& s) noexcept {
 
 void describe(Description<CorrectionState>& d) {
   using K = CorrectionState;
-  d.about("How far the motor is ahead of the axis.");
-  d.internal<&K::now>(unit::u, "Motor less axis.");
-  d.internal<&K::rate>(unit::u_s, "By which it changes.");
-  d.internal<&K::sense>("Of the last motion.");
+  d.about("Difference between the encoder on the motor and the axis.");
+  d.internal<&K::now>(unit::u, "Motor minus axis.");
+  d.internal<&K::rate>(unit::u_s, "Rate of change of the difference.");
+  d.internal<&K::sense>("Sense of the last motion.");
   d.internal<&K::load>("Encoder on the load.");
-  d.internal<&K::load_known>("Both were measured.");
-  d.internal<&K::load_offset>(unit::u, "Motor less load then.");
+  d.internal<&K::load_known>("Motor and load have both been measured.");
+  d.internal<&K::load_offset>(unit::u, "Motor minus load when both were first measured.");
 }
 
 }  // namespace takt::axis

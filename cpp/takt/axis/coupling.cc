@@ -689,46 +689,46 @@ bool CouplingOf(const Context& c, const Command& command, CouplingRequest& out) 
 }
 
 void describe(Enumeration<Joining>& e) {
-  e.about("How far the way into step has come.");
-  e.value(Joining::kWaiting, "waiting", "The master is not yet where it begins.");
-  e.value(Joining::kOnCurve, "on_curve", "On the curve that ends in step.");
+  e.about("Progress of synchronisation.");
+  e.value(Joining::kWaiting, "waiting", "The master has not yet reached the start of synchronisation.");
+  e.value(Joining::kOnCurve, "on_curve", "On a curve over the master's position that ends in step.");
   e.value(Joining::kJoined, "joined", "In step, as far as the limits allow.");
 }
 
 void describe(Description<AddedCam>& d) {
   using S = AddedCam;
-  d.about("A cam on top of that of a coupling.");
+  d.about("A cam added to that of a coupling.");
   d.internal<&S::table>("Its index among the machine's cams.");
   d.internal<&S::ratio>("Its x per master's unit.");
-  d.internal<&S::scale>("Of its y.");
-  d.internal<&S::periodic>("Over and over.");
-  d.internal<&S::cam>("Where it lies.");
+  d.internal<&S::scale>("Factor of its y.");
+  d.internal<&S::periodic>("The cam repeats.");
+  d.internal<&S::cam>("Position of the cam over the master.");
 }
 
 void describe(Description<CouplingState>& d) {
   using S = CouplingState;
   d.about("An axis that follows masters.");
-  d.internal<&S::law>("What it follows.");
+  d.internal<&S::law>("Parameters of the coupling.");
   d.internal<&S::filtered>("A master is measured and has a filter.");
-  d.internal<&S::filters>("Of the masters that are measured.");
-  d.internal<&S::chase>("The catching up.");
-  d.internal<&S::in_step>("With the masters, as far as they are known.");
-  d.internal<&S::locked>("By place.");
-  d.internal<&S::joining>("How far the way into step has come.");
-  d.internal<&S::master_sync>("Where the master is when both are in step, over all turns.");
-  d.internal<&S::slave_sync>(unit::u, "Where this axis is then.");
-  d.internal<&S::curve_begin>("Where the curve begins.");
-  d.internal<&S::begin_side>("On which side of that the master was.");
-  d.internal<&S::curve>("Over the master's way from there on.");
-  d.internal<&S::cam>("The cam that it follows.");
-  d.internal<&S::added>("Cams on top of that.");
-  d.internal<&S::turn>("After how far there is the next such place of the master.");
-  d.internal<&S::phase>("Added to the master's position.");
+  d.internal<&S::filters>("Filters of the measured masters.");
+  d.internal<&S::chase>("State of the follower that keeps the limits.");
+  d.internal<&S::in_step>("In step with the masters, as far as their positions are known.");
+  d.internal<&S::locked>("Locked to the position.");
+  d.internal<&S::joining>("Progress of synchronisation.");
+  d.internal<&S::master_sync>("Position of the master at which both are in step, over all turns.");
+  d.internal<&S::slave_sync>(unit::u, "Position of this axis at which both are in step.");
+  d.internal<&S::curve_begin>("Position of the master at which the curve begins.");
+  d.internal<&S::begin_side>("Distance of the master from there when the wait began.");
+  d.internal<&S::curve>("Synchronisation curve over the master's displacement from there.");
+  d.internal<&S::cam>("Position of the cam that is followed.");
+  d.internal<&S::added>("Cams added to it.");
+  d.internal<&S::turn>("Distance to the next such position of the master; 0: there is only one.");
+  d.internal<&S::phase>("Motion that is added to the master's position.");
   d.internal<&S::phase_start>("Cycle its time counts from.");
-  d.internal<&S::phase_now>("What has been added by now.");
-  d.internal<&S::phase_begin>("What had been before the last shift by an amount; to an amount: 0.");
-  d.internal<&S::phase_ticket>("Of the command that shifts it.");
-  d.internal<&S::phase_moves>("It is being shifted.");
+  d.internal<&S::phase_now>("Shift added by now.");
+  d.internal<&S::phase_begin>("Shift before the last relative shift; absolute shift: 0.");
+  d.internal<&S::phase_ticket>("Ticket of the command that shifts.");
+  d.internal<&S::phase_moves>("A shift is in progress.");
 }
 
 }  // namespace takt::axis

@@ -169,27 +169,29 @@ bool Fill(const RequestBuilder& m, const PhasingRelative& c) {
 }
 
 void describe(Description<CouplingTerm>& d) {
-  d.about("One master and how it is followed.");
-  d.internal<&CouplingTerm::filter_s>(unit::s, "Of a measured master; negative: that of its encoder.");
-  d.internal<&CouplingTerm::name>("Of the master.");
-  d.internal<&CouplingTerm::master>("Its index.");
-  d.internal<&CouplingTerm::source>("Which of its positions.");
+  d.about("One master and its ratio.");
+  d.internal<&CouplingTerm::filter_s>(
+      unit::s, "Time constant of the filter of a measured master; negative: that of its encoder.");
+  d.internal<&CouplingTerm::name>("Name of the master.");
+  d.internal<&CouplingTerm::master>("Index of the master.");
+  d.internal<&CouplingTerm::source>("Position of the master that is followed.");
   d.internal<&CouplingTerm::ratio>("Own units per master's unit.");
 }
 
 void describe(Description<CouplingRequest>& d) {
   using C = CouplingRequest;
-  d.about("What a command that couples axes carries.");
+  d.about("Parameters of a command that couples axes.");
   d.internal<&C::terms>("Its masters.");
-  d.internal<&C::master_sync_position>("Where the master is, in its unit, when both are in step.");
-  d.internal<&C::slave_sync_position>(unit::u, "Where this axis is then.");
-  d.internal<&C::master_start_distance>("How far before that it begins; negative: at once.");
-  d.internal<&C::sync_mode>("How a rotary axis gets there.");
+  d.internal<&C::master_sync_position>("Position of the master, in its unit, at which both are in step.");
+  d.internal<&C::slave_sync_position>(unit::u, "Position of this axis at which both are in step.");
+  d.internal<&C::master_start_distance>(
+      "Distance of the master before that at which synchronisation begins; negative: at once.");
+  d.internal<&C::sync_mode>("How a rotary axis reaches that position.");
   d.internal<&C::master_offset>("Cams: added to x.");
   d.internal<&C::master_absolute>("Cams: x counts from the master's zero.");
   d.internal<&C::slave_absolute>("Cams: y counts from this axis' zero.");
-  d.internal<&C::at_sync_position>("Cams: a master's position was given.");
-  d.internal<&C::periodic>("Cams: over and over.");
+  d.internal<&C::at_sync_position>("Cams: a position of the master was given.");
+  d.internal<&C::periodic>("Cams: the cam repeats.");
 }
 
 }  // namespace takt::axis

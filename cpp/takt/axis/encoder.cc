@@ -104,40 +104,42 @@ std::optional<double> MarkPosition(const CodedMarks& m, double before, double ma
 }
 
 void describe(Enumeration<EncoderType>& e) {
-  e.about("What an encoder sends.");
+  e.about("Kind of signal of an encoder.");
   e.value(EncoderType::kIncremental, "incremental", "A 32-bit counter of quadrature increments.");
-  e.value(EncoderType::kAbsoluteSsi, "absolute_ssi", "An SSI word that stands for the position.");
+  e.value(EncoderType::kAbsoluteSsi, "absolute_ssi", "An SSI word that represents the position.");
 }
 
 void describe(Enumeration<SsiCoding>& e) {
-  e.about("How an SSI encoder writes its position.");
-  e.value(SsiCoding::kBinary, "binary", "As a binary number.");
-  e.value(SsiCoding::kGray, "gray", "In Gray code: one bit changes from one count to the next.");
+  e.about("Coding of the position of an SSI encoder.");
+  e.value(SsiCoding::kBinary, "binary", "Binary number.");
+  e.value(SsiCoding::kGray, "gray", "Gray code: one bit changes from one count to the next.");
 }
 
 void describe(Description<CodedMarks>& d) {
   using M = CodedMarks;
   d.about(
-      "Distance-coded reference marks: pair k has a fixed mark at k distance, and a coded one (k + 1) step behind the "
-      "middle between this and the next fixed one. Two neighbours tell the position (step_distance_coded).");
-  d.required<&M::distance>(unit::u, between(1e-6, 1e9), "From one fixed mark to the next.");
-  d.required<&M::step>(unit::u, between(1e-9, 1e9), "By which each coded mark is further behind the middle.");
+      "Distance-coded reference marks: pair k has a fixed mark at k distance, and a coded mark (k + 1) step beyond the "
+      "middle between this fixed mark and the next. The distance of two neighbours determines the position "
+      "(step_distance_coded).");
+  d.required<&M::distance>(unit::u, between(1e-6, 1e9), "Distance from one fixed mark to the next.");
+  d.required<&M::step>(unit::u, between(1e-9, 1e9),
+                       "Distance by which the coded mark moves from the middle with each pair.");
   d.defaulted<&M::position>(unit::u, "Position of the axis at the fixed mark of pair 0.");
-  d.defaulted<&M::reversed>("The scale counts against the axis.");
+  d.defaulted<&M::reversed>("The scale counts in the opposite sense to the axis.");
   d.rule<&M::step>("must be less than half of distance", [](const M& m) { return m.step < m.distance / 2; });
 }
 
 void describe(Description<Encoder>& d) {
   using P = Encoder;
   d.about("The position encoder of an axis.");
-  d.defaulted<&P::type>("What it sends.");
+  d.defaulted<&P::type>("Kind of signal.");
   d.defaulted<&P::increments_per_unit>(unit::count_u, between(1e-6, 1e9), "Counts per unit of the axis.");
   d.defaulted<&P::invert>("Counts fall while the position grows.");
   d.defaulted<&P::ssi_bits>(
-      between(8, 32), "Absolute: bits of the word; 32 in binary are a number with a sign, as drives on a bus send it.");
-  d.defaulted<&P::coding>("Absolute: how the word is written.");
-  d.defaulted<&P::offset>(unit::u, "Position of the axis where the encoder counts 0.");
-  d.defaulted<&P::velocity_filter_s>(unit::s, between(0, 10), "Time constant of the velocity's filter; 0: none.");
+      between(8, 32), "Absolute: bits of the word; 32 bits in binary are a signed number, as sent by drives on a bus.");
+  d.defaulted<&P::coding>("Absolute: coding of the word.");
+  d.defaulted<&P::offset>(unit::u, "Position of the axis at count 0 of the encoder.");
+  d.defaulted<&P::velocity_filter_s>(unit::s, between(0, 10), "Time constant of the velocity filter; 0: none.");
   d.defaulted<&P::coded_marks>("Distance-coded reference marks; unset: index pulses are all alike.");
   d.rule<&P::coded_marks>("must have a step of four counts or more, which tell one code from the next", [](const P& p) {
     return !p.coded_marks || p.coded_marks->step * p.increments_per_unit >= 4 * (1 - 1e-9);
@@ -146,13 +148,13 @@ void describe(Description<Encoder>& d) {
 
 void describe(Description<EncoderState>& d) {
   using S = EncoderState;
-  d.about("What the measurement remembers from one cycle to the next.");
+  d.about("Memory of the measurement from one cycle to the next.");
   d.internal<&S::started>("A first sample was taken.");
-  d.internal<&S::trusting>("The next sample is taken however far away it is.");
+  d.internal<&S::trusting>("The next sample is accepted at any distance.");
   d.internal<&S::word>(unit::count, "Last good sample.");
-  d.internal<&S::count>(unit::count, "The same without wraps.");
+  d.internal<&S::count>(unit::count, "Last good sample, unwrapped.");
   d.internal<&S::missed>(unit::cycles, "Cycles since the last good sample.");
-  d.internal<&S::velocity>(unit::u_s, "Velocity behind the filter.");
+  d.internal<&S::velocity>(unit::u_s, "Filtered velocity.");
 }
 
 }  // namespace takt::axis

@@ -27,7 +27,7 @@ std::string CannotFollow(const AxisParams& follower, const AxisParams& master) {
   const trajectory::Limits own = follower.planner_limits();
   const trajectory::Limits its = master.planner_limits();
   if (follower.limits.lower || follower.limits.upper) {
-    return "expected no lower and upper: an axis that follows goes where its master goes";
+    return "expected no lower and upper: the position of an axis that follows is given by its master";
   }
   const char* what = nullptr;
   if (!Reaches(own.velocity, ratio, its.velocity)) what = "velocity";

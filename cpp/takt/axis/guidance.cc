@@ -103,17 +103,17 @@ trajectory::Limits FaultLimits(const Context& c, const State& s) noexcept {
 }
 
 void describe(Description<FaultRamp>& d) {
-  d.about("The ramp on which an axis brakes after a fault.");
-  d.internal<&FaultRamp::deceleration>(unit::u_s2, "0: the axis' own.");
-  d.internal<&FaultRamp::jerk>(unit::u_s3, "Of it.");
+  d.about("Ramp on which an axis brakes after a fault.");
+  d.internal<&FaultRamp::deceleration>(unit::u_s2, "Deceleration; 0: the axis' own.");
+  d.internal<&FaultRamp::jerk>(unit::u_s3, "Jerk of that ramp.");
   d.internal<&FaultRamp::leaves_limits>("The demand is known to leave the SW limits.");
 }
 
 void describe(Description<GuidanceState>& d) {
   d.about("Set points of another component of the machine.");
-  d.internal<&GuidanceState::demand>("Where it wants the axis, over all turns.");
-  d.internal<&GuidanceState::chase>("Following that.");
-  d.internal<&GuidanceState::comes_to_rest>("The component brakes it, by a command.");
+  d.internal<&GuidanceState::demand>("Demand of the component, over all turns.");
+  d.internal<&GuidanceState::chase>("State of the follower of that demand.");
+  d.internal<&GuidanceState::comes_to_rest>("The component brakes the axis by a command.");
   d.internal<&GuidanceState::brakes_with_others>("The component brings it to rest in a fault.");
 }
 

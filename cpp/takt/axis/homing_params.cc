@@ -17,32 +17,34 @@ bool FindsSwitch(HomingMethod method) {
 }  // namespace
 
 void describe(Enumeration<HomingMethod>& e) {
-  e.about("What MC_Home does.");
-  e.value(HomingMethod::kDirect, "direct", "Where the axis stands is the reference.");
+  e.about("Method by which MC_Home finds the reference.");
+  e.value(HomingMethod::kDirect, "direct", "The present position is the reference.");
   e.value(HomingMethod::kAbsolute, "absolute", "Takes the position of the absolute encoder as it is.");
   e.value(HomingMethod::kSwitch, "switch", "Searches the reference switch.");
   e.value(HomingMethod::kLimitSwitch, "limit_switch", "Searches a limit switch.");
   e.value(HomingMethod::kBlock, "block", "Searches an end stop.");
   e.value(HomingMethod::kPulse, "pulse", "Searches the next index pulse.");
   e.value(HomingMethod::kDistanceCoded, "distance_coded",
-          "Finds the position from the distance of two marks (encoder.coded_marks).");
+          "Finds the position from the distance between two marks (encoder.coded_marks).");
 }
 
 void describe(Description<HomingParams>& d) {
   using H = HomingParams;
-  d.about("What MC_Home does on this axis.");
-  d.defaulted<&H::method>("What is the reference.");
-  d.defaulted<&H::direction>("Where to search first.");
-  d.defaulted<&H::switch_mode>("Which state or edge of the switch ends the search.");
-  d.defaulted<&H::velocity>(unit::u_s, not_negative, "How fast to search.");
+  d.about("Method and parameters of MC_Home on this axis.");
+  d.defaulted<&H::method>("Method by which the reference is found.");
+  d.defaulted<&H::direction>("Direction in which the search begins.");
+  d.defaulted<&H::switch_mode>("State or edge of the switch that ends the search.");
+  d.defaulted<&H::velocity>(unit::u_s, not_negative, "Velocity of the search.");
   d.defaulted<&H::pulse_velocity>(unit::u_s, positive,
-                                  "How fast to go on from the switch to the next index pulse, which then is the "
-                                  "reference; unset: the switch is.");
-  d.defaulted<&H::pulse_direction>("Which way to that.");
-  d.defaulted<&H::deviation>(unit::u, not_negative, "The following error that says that the axis is at its end stop.");
-  d.defaulted<&H::time_limit>(unit::s, not_negative, "Longest search; 0: any. Then error 0001.");
-  d.defaulted<&H::distance_limit>(unit::u, not_negative, "Longest way of the search; 0: any. Then error 0002.");
-  d.defaulted<&H::torque_limit>(unit::nm, positive, "Largest torque of the search; unset: that of the axis.");
+                                  "Velocity of a further search, from the switch to the next index pulse, which then "
+                                  "is the reference; unset: the switch is the reference.");
+  d.defaulted<&H::pulse_direction>("Direction of that search.");
+  d.defaulted<&H::deviation>(unit::u, not_negative, "Following error at which the end stop is found.");
+  d.defaulted<&H::time_limit>(unit::s, not_negative,
+                              "Longest duration of the search; 0: unlimited. Beyond it: error 0001.");
+  d.defaulted<&H::distance_limit>(unit::u, not_negative,
+                                  "Longest distance of the search; 0: unlimited. Beyond it: error 0002.");
+  d.defaulted<&H::torque_limit>(unit::nm, positive, "Largest torque during the search; unset: the limit of the axis.");
   d.rule<&H::velocity>("must be more than 0 for a search",
                        [](const H& h) { return !Searches(h.method) || h.velocity > 0; });
   d.rule<&H::direction>("must be positive or negative where there is no switch",

@@ -171,19 +171,19 @@ bool Fill(const RequestBuilder& m, const StepRefFlyingRefPulse& c) {
 
 void describe(Description<HomingRequest>& d) {
   using H = HomingRequest;
-  d.about("What a homing step carries.");
-  d.internal<&H::direction>("Where the search goes first.");
-  d.internal<&H::switch_mode>("What of the switch ends it.");
-  d.internal<&H::set_position>(unit::u, "What the found place is called.");
-  d.internal<&H::sets_position>("Whether it is called anything.");
+  d.about("Parameters of a homing step.");
+  d.internal<&H::direction>("Direction in which the search begins.");
+  d.internal<&H::switch_mode>("State or edge of the switch that ends the search.");
+  d.internal<&H::set_position>(unit::u, "Position to be set at the position found.");
+  d.internal<&H::sets_position>("The position is set; else positions keep their values.");
   d.internal<&H::deviation>(unit::u, "Following error at an end stop.");
-  d.internal<&H::time_limit>(unit::s, "Longest search; 0: any.");
-  d.internal<&H::distance_limit>(unit::u, "Longest way; 0: any.");
-  d.internal<&H::torque_limit>(unit::nm, "Largest torque; 0: that of the axis.");
-  d.internal<&H::until_halt>("A halt ends a search in passing.");
+  d.internal<&H::time_limit>(unit::s, "Longest duration of the search; 0: unlimited.");
+  d.internal<&H::distance_limit>(unit::u, "Longest distance of the search; 0: unlimited.");
+  d.internal<&H::torque_limit>(unit::nm, "Largest torque; 0: the limit of the axis.");
+  d.internal<&H::until_halt>("A halt or a stop ends a search during another motion.");
   d.internal<&H::ends>("The search of a switch ends homing.");
-  d.internal<&H::pulse_velocity>(unit::u_s, "Of the search of the index pulse after it; 0: none.");
-  d.internal<&H::pulse_direction>("Of that.");
+  d.internal<&H::pulse_velocity>(unit::u_s, "Velocity of the search for the index pulse after the switch; 0: none.");
+  d.internal<&H::pulse_direction>("Direction of that search.");
 }
 
 }  // namespace takt::axis

@@ -51,9 +51,9 @@ const KinematicState& Filter(double time_constant_s, double increment, Cycle cyc
 }
 
 void describe(Description<MasterFilter>& d) {
-  d.about("What a measured master does, smoothed.");
-  d.internal<&MasterFilter::estimate>("Over all turns.");
-  d.internal<&MasterFilter::cycles>(unit::cycles, "Since it first saw the master.");
+  d.about("Smoothed state of a measured master.");
+  d.internal<&MasterFilter::estimate>("Estimate over all turns.");
+  d.internal<&MasterFilter::cycles>(unit::cycles, "Cycles since the first sample of the master.");
 }
 
 }  // namespace takt::axis

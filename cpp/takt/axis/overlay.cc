@@ -361,24 +361,24 @@ Status CarryOut(const Context& c, Ticket ticket, const HaltSuperimposed& command
 
 void describe(Description<OverlayState>& d) {
   using O = OverlayState;
-  d.about("What is on top of the motion in progress.");
-  d.internal<&O::base>("Set point of the motion beneath, unwrapped.");
-  d.internal<&O::profile>("What is added.");
+  d.about("A motion superimposed on the motion in progress.");
+  d.internal<&O::base>("Set point of the base motion, unwrapped.");
+  d.internal<&O::profile>("Superimposed motion.");
   d.internal<&O::start_cycle>("Cycle its time counts from.");
-  d.internal<&O::base_start_cycle>("When the motion began for which it was planned ...");
-  d.internal<&O::base_start_offset_s>(unit::s, "... and how long before that.");
-  d.internal<&O::chase>("The following of the sum.");
-  d.internal<&O::ticket>("Of the command.");
+  d.internal<&O::base_start_cycle>("Cycle in which the base motion began for which it was planned ...");
+  d.internal<&O::base_start_offset_s>(unit::s, "... and the time before that cycle.");
+  d.internal<&O::chase>("State of the follower of the sum.");
+  d.internal<&O::ticket>("Ticket of the command.");
   d.internal<&O::factors>("Overrides for which it was planned.");
-  d.internal<&O::target>(unit::u, "What is to be added in all.");
-  d.internal<&O::begin>(unit::u, "What had been added before the command.");
-  d.internal<&O::covered>(unit::u, "What was added by the command.");
+  d.internal<&O::target>(unit::u, "Total distance to be added.");
+  d.internal<&O::begin>(unit::u, "Distance added before the command.");
+  d.internal<&O::covered>(unit::u, "Distance added by the command.");
   d.internal<&O::velocity>(unit::u_s, "Largest velocity added.");
   d.internal<&O::acceleration>(unit::u_s2, "Largest acceleration added.");
   d.internal<&O::deceleration>(unit::u_s2, "Largest deceleration added.");
   d.internal<&O::jerk>(unit::u_s3, "Largest jerk added; 0: unlimited.");
-  d.internal<&O::halting>("It is being halted.");
-  d.internal<&O::limited_by>("What holds the axis back from the sum.");
+  d.internal<&O::halting>("The motion is being halted.");
+  d.internal<&O::limited_by>("Limit that keeps the axis from following the sum.");
 }
 
 }  // namespace takt::axis

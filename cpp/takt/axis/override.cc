@@ -65,10 +65,10 @@ Status CarryOut(const Context& c, Ticket ticket, const SetOverride& command, Sta
 
 void describe(Description<Override>& d) {
   using O = Override;
-  d.about("Factors of what is in control and waits.");
-  d.internal<&O::velocity>("Of velocities; 0: held.");
-  d.internal<&O::acceleration>("Of accelerations and decelerations.");
-  d.internal<&O::jerk>("Of the jerk.");
+  d.about("Factors of the command in control and of buffered ones.");
+  d.internal<&O::velocity>("Factor of velocities; 0: held.");
+  d.internal<&O::acceleration>("Factor of accelerations and decelerations.");
+  d.internal<&O::jerk>("Factor of the jerk.");
 }
 
 bool Fill(const RequestBuilder& m, const SetOverride& o) {

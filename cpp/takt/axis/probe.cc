@@ -257,49 +257,49 @@ Status CarryOut(const Context& c, Ticket ticket, const Touch& command, State& s)
 }
 
 void describe(Enumeration<ProbeWatch>& e) {
-  e.about("What GT_Touch does.");
-  e.value(ProbeWatch::kNothing, "nothing", "Nothing.");
-  e.value(ProbeWatch::kTouch, "touch", "Waits, to capture, stop and return.");
-  e.value(ProbeWatch::kSlow, "slow", "Waits, to slow down while the probe is on.");
+  e.about("Mode of a waiting GT_Touch.");
+  e.value(ProbeWatch::kNothing, "nothing", "No GT_Touch waits.");
+  e.value(ProbeWatch::kTouch, "touch", "Waits for the edge, to capture, stop and return.");
+  e.value(ProbeWatch::kSlow, "slow", "Waits for the probe, to slow down while it is on.");
 }
 
 void describe(Description<Capture>& d) {
   using C = Capture;
-  d.about("An MC_TouchProbe that waits.");
-  d.internal<&C::ticket>("Of the command.");
-  d.internal<&C::edge>("For which edge.");
-  d.internal<&C::window_only>("Only within a window.");
-  d.internal<&C::first_position>(unit::u, "Where the window begins.");
-  d.internal<&C::last_position>(unit::u, "Where it ends.");
+  d.about("A waiting MC_TouchProbe.");
+  d.internal<&C::ticket>("Ticket of the command.");
+  d.internal<&C::edge>("Edge that captures.");
+  d.internal<&C::window_only>("Only edges within the window count.");
+  d.internal<&C::first_position>(unit::u, "Begin of the window.");
+  d.internal<&C::last_position>(unit::u, "End of the window.");
 }
 
 void describe(Description<ProbeState>& d) {
   using P = ProbeState;
   d.about("The touch probe.");
-  d.internal<&P::waiting>("MC_TouchProbe commands.");
-  d.internal<&P::waits>("How many.");
-  d.internal<&P::watch>("GT_Touch: what it does.");
-  d.internal<&P::edge>("GT_Touch: for which edge.");
-  d.internal<&P::touched>("GT_Touch: the edge came.");
-  d.internal<&P::touch_position>(unit::u, "GT_Touch: where, unwrapped.");
-  d.internal<&P::ticket>("GT_Touch: of the command.");
+  d.internal<&P::waiting>("Waiting MC_TouchProbe commands.");
+  d.internal<&P::waits>("Number of waiting commands.");
+  d.internal<&P::watch>("GT_Touch: mode.");
+  d.internal<&P::edge>("GT_Touch: edge.");
+  d.internal<&P::touched>("GT_Touch: the edge has come.");
+  d.internal<&P::touch_position>(unit::u, "GT_Touch: position at the edge, unwrapped.");
+  d.internal<&P::ticket>("GT_Touch: ticket of the command.");
   d.internal<&P::velocity>(unit::u_s, "GT_Touch: largest velocity.");
   d.internal<&P::acceleration>(unit::u_s2, "GT_Touch: largest acceleration.");
   d.internal<&P::deceleration>(unit::u_s2, "GT_Touch: largest deceleration.");
   d.internal<&P::jerk>(unit::u_s3, "GT_Touch: largest jerk; 0: unlimited.");
-  d.internal<&P::slowing>("GT_Touch: slows a motion down.");
-  d.internal<&P::reported>("GT_Touch: it did so before.");
-  d.internal<&P::slowed>("GT_Touch: ticket of the motion.");
-  d.internal<&P::own_velocity>(unit::u_s, "GT_Touch: what the motion had before.");
-  d.internal<&P::position>(unit::u, "Of the last capture.");
-  d.internal<&P::captures>("How many there were.");
-  d.internal<&P::sampled>("The sample before was good.");
-  d.internal<&P::wire>("The input in the sample before.");
-  d.internal<&P::counts>(unit::count, "The encoder in the sample before.");
-  d.internal<&P::rises>("Rising edges by the sample before.");
-  d.internal<&P::falls>("Falling edges by the sample before.");
-  d.internal<&P::set_velocity>(unit::u_s, "Of the set point for the sample before.");
-  d.internal<&P::step>(unit::u, "From that sample to this one.");
+  d.internal<&P::slowing>("GT_Touch: a motion is being slowed down.");
+  d.internal<&P::reported>("GT_Touch: Active has been reported.");
+  d.internal<&P::slowed>("GT_Touch: ticket of the motion that is slowed down.");
+  d.internal<&P::own_velocity>(unit::u_s, "GT_Touch: velocity of that motion before.");
+  d.internal<&P::position>(unit::u, "Position of the last capture.");
+  d.internal<&P::captures>("Number of captures.");
+  d.internal<&P::sampled>("The previous sample was good.");
+  d.internal<&P::wire>("Input in the previous sample.");
+  d.internal<&P::counts>(unit::count, "Encoder counts in the previous sample.");
+  d.internal<&P::rises>("Rising edges up to the previous sample.");
+  d.internal<&P::falls>("Falling edges up to the previous sample.");
+  d.internal<&P::set_velocity>(unit::u_s, "Velocity of the set point at the previous sample.");
+  d.internal<&P::step>(unit::u, "Displacement from the previous sample to this one.");
 }
 
 }  // namespace takt::axis

@@ -185,7 +185,7 @@ std::string Diagnose(const Command& command, const AxisParams& params) {
   const std::string field = why.field;
   if (field == "master" && why.high == 0) return "master: expected the name of another axis than " + params.name;
   if (why.high == 0 && (field == "cam" || field == "profile")) return field + ": expected the name of a cam";
-  if (field == "master_scaling") return "master_scaling: expected a number other than 0, at most 1e12 either way";
+  if (field == "master_scaling") return "master_scaling: expected a number other than 0 from -1e12 to 1e12";
   if (field == "buffer_mode") return "buffer_mode: expected " + ModesOf(command, params);
   if (why.high == 0) return field + ": expected another value, this command has no such " + field;
   const bool of_axis = field == "velocity" || field == "acceleration" || field == "deceleration" || field == "jerk" ||
@@ -207,7 +207,7 @@ std::string Diagnose(const Command& command, const AxisParams& params) {
 }
 
 void describe(Enumeration<RequestKind>& e) {
-  e.about("Which command a request came from.");
+  e.about("Command that a request came from.");
   e.value(RequestKind::kNone, "none", "None.");
   e.value(RequestKind::kPower, "power", "Power.");
   e.value(RequestKind::kMoveAbsolute, "move_absolute", "MoveAbsolute.");
@@ -245,28 +245,28 @@ void describe(Enumeration<RequestKind>& e) {
 void describe(Description<Request>& d) {
   using R = Request;
   d.about("A checked command.");
-  d.internal<&R::ticket>("Of the command.");
+  d.internal<&R::ticket>("Ticket of the command.");
   d.internal<&R::value>(unit::u, "Position or distance.");
   d.internal<&R::velocity>(unit::u_s, "Largest velocity.");
   d.internal<&R::acceleration>(unit::u_s2, "Largest acceleration.");
   d.internal<&R::deceleration>(unit::u_s2, "Largest deceleration.");
   d.internal<&R::jerk>(unit::u_s3, "Largest jerk; 0: unlimited.");
   d.internal<&R::torque_ramp>("Torque control: Nm/s; 0: at once.");
-  d.internal<&R::end_velocity>(unit::u_s, "With which a continuous move goes on.");
+  d.internal<&R::end_velocity>(unit::u_s, "Speed that a continuous move keeps at its position.");
   d.internal<&R::timeout_s>(unit::s, "Longest time without a set point of a stream.");
-  d.internal<&R::key>("That set points of a stream must carry.");
+  d.internal<&R::key>("Key that set points of a stream must carry.");
   d.internal<&R::lease_s>(unit::s, "Dead man's lease; 0: none.");
-  d.internal<&R::kind>("Which command.");
+  d.internal<&R::kind>("Kind of command.");
   d.internal<&R::direction>("Sense of travel.");
-  d.internal<&R::buffer_mode>("How it follows the one before.");
-  d.internal<&R::enable>("Power: on.");
-  d.internal<&R::hold>("Stop: until released.");
+  d.internal<&R::buffer_mode>("How the command follows the previous one.");
+  d.internal<&R::enable>("Power: switch on.");
+  d.internal<&R::hold>("Stop: hold until released.");
   d.internal<&R::update>("Changes the command of its kind that is in control.");
   d.internal<&R::forward>("Jog: key for upwards.");
   d.internal<&R::backward>("Jog: key for downwards.");
-  d.internal<&R::coupling>("Of commands that couple axes.");
-  d.internal<&R::table>("Of commands that follow a table.");
-  d.internal<&R::homing>("Of homing steps.");
+  d.internal<&R::coupling>("Parameters of commands that couple axes.");
+  d.internal<&R::table>("Parameters of commands that follow a table.");
+  d.internal<&R::homing>("Parameters of homing steps.");
 }
 
 }  // namespace takt::axis

@@ -7,13 +7,13 @@ namespace takt::axis {
 void describe(Enumeration<PlcState>& e) {
   e.about("PLCopen's states of a single axis.");
   e.value(PlcState::kDisabled, "Disabled", "The loop is open.");
-  e.value(PlcState::kStandstill, "Standstill", "Powered and at rest, nothing commanded.");
-  e.value(PlcState::kDiscreteMotion, "DiscreteMotion", "A move with an end.");
-  e.value(PlcState::kContinuousMotion, "ContinuousMotion", "A move without an end.");
+  e.value(PlcState::kStandstill, "Standstill", "Powered and at rest, no command in control.");
+  e.value(PlcState::kDiscreteMotion, "DiscreteMotion", "A motion with an end.");
+  e.value(PlcState::kContinuousMotion, "ContinuousMotion", "A motion without an end.");
   e.value(PlcState::kSynchronizedMotion, "SynchronizedMotion", "Following a master.");
-  e.value(PlcState::kHoming, "Homing", "Looking for its reference.");
+  e.value(PlcState::kHoming, "Homing", "Searching its reference.");
   e.value(PlcState::kStopping, "Stopping", "Being stopped; takes no other motion.");
-  e.value(PlcState::kErrorStop, "ErrorStop", "A fault stopped it; only a reset leads out.");
+  e.value(PlcState::kErrorStop, "ErrorStop", "Stopped by a fault; only a reset leads out.");
 }
 
 }  // namespace takt::axis

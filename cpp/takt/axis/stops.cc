@@ -141,18 +141,18 @@ void FollowStops(const Context& c, State& s) noexcept {
 void describe(Description<StopRequest>& d) {
   using O = StopRequest;
   d.about("A command that stops the axis.");
-  d.internal<&O::ticket>("Of the command.");
-  d.internal<&O::lease_s>(unit::s, "How long it holds after it was renewed; 0: until released.");
-  d.internal<&O::lease_end_cycle>("When that ends.");
-  d.internal<&O::hold>("It keeps the axis stopped.");
-  d.internal<&O::reported>("Its final feedback is out.");
+  d.internal<&O::ticket>("Ticket of the command.");
+  d.internal<&O::lease_s>(unit::s, "Lease after each renewal; 0: held until released.");
+  d.internal<&O::lease_end_cycle>("Cycle in which the lease ends.");
+  d.internal<&O::hold>("The axis is kept stopped.");
+  d.internal<&O::reported>("Its final feedback has been reported.");
 }
 
 void describe(Description<StopRequests>& d) {
   using O = StopRequests;
   d.about("Commands that stop the axis.");
-  d.internal<&O::of>("The oldest first.");
-  d.internal<&O::count>("How many.");
+  d.internal<&O::of>("The commands, the oldest first.");
+  d.internal<&O::count>("Number of commands.");
 }
 
 }  // namespace takt::axis

@@ -166,20 +166,20 @@ Status CarryOut(const Context& c, Ticket ticket, const StreamPoint& command, Sta
 void describe(Description<StreamedPoint>& d) {
   using P = StreamedPoint;
   d.about("A set point from outside.");
-  d.internal<&P::time>(unit::s, "When it is due, by the sender's clock.");
-  d.internal<&P::position>(unit::u, "Over all turns.");
-  d.internal<&P::velocity>(unit::u_s, "Of the curve there.");
-  d.internal<&P::fixed>("That is known.");
+  d.internal<&P::time>(unit::s, "Time at which it is due, by the sender's clock.");
+  d.internal<&P::position>(unit::u, "Position over all turns.");
+  d.internal<&P::velocity>(unit::u_s, "Velocity of the curve at this point.");
+  d.internal<&P::fixed>("The velocity is fixed.");
 }
 
 void describe(Description<StreamState>& d) {
   using K = StreamState;
   d.about("Set points that are streamed from outside.");
-  d.internal<&K::points>("By time.");
-  d.internal<&K::count>("How many.");
-  d.internal<&K::clock>(unit::s, "The end of this cycle, by the sender's clock.");
-  d.internal<&K::heard_cycle>("When the last one was taken.");
-  d.internal<&K::chase>("The catching up.");
+  d.internal<&K::points>("Buffered set points, by time.");
+  d.internal<&K::count>("Number of buffered set points.");
+  d.internal<&K::clock>(unit::s, "Time at the end of this cycle, by the sender's clock.");
+  d.internal<&K::heard_cycle>("Cycle of the last accepted set point.");
+  d.internal<&K::chase>("State of the follower that keeps the limits.");
 }
 
 }  // namespace takt::axis

@@ -182,20 +182,20 @@ bool FollowTime(const Context& c, State& s) noexcept {
 void describe(Description<TimeTableState>& d) {
   using T = TimeTableState;
   d.about("A table over time that an axis follows.");
-  d.internal<&T::chase>("The catching up.");
-  d.internal<&T::turns>(unit::u, "Where its position 0 is, over all turns.");
-  d.internal<&T::demand>("What it asks for.");
-  d.internal<&T::over>("Its end was reached.");
+  d.internal<&T::chase>("State of the follower that keeps the limits.");
+  d.internal<&T::turns>(unit::u, "Position 0 of the table's turn, over all turns.");
+  d.internal<&T::demand>("Demand of the table in the previous cycle.");
+  d.internal<&T::over>("The end of the table was reached.");
 }
 
 void describe(Description<TableRequest>& d) {
   using T = TableRequest;
-  d.about("A table and how it is scaled.");
-  d.internal<&T::name>("Of the table.");
-  d.internal<&T::index>("Among the machine's cams.");
-  d.internal<&T::time_scale>("How many times as long it takes.");
-  d.internal<&T::scale>("Of its values.");
-  d.internal<&T::offset>("Added to them.");
+  d.about("A table and its scaling.");
+  d.internal<&T::name>("Name of the table.");
+  d.internal<&T::index>("Index among the machine's cams.");
+  d.internal<&T::time_scale>("Factor of the duration.");
+  d.internal<&T::scale>("Factor of the values.");
+  d.internal<&T::offset>("Offset added to the scaled values.");
 }
 
 }  // namespace takt::axis

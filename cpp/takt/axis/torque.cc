@@ -143,12 +143,12 @@ bool MoveTorque(const Context& c, State& s) noexcept {
 void describe(Description<TorqueState>& d) {
   using T = TorqueState;
   d.about("Torque control.");
-  d.internal<&T::engaged>("The drive is told a torque.");
-  d.internal<&T::holds>("The torque is what holds the axis.");
+  d.internal<&T::engaged>("The drive gets a torque.");
+  d.internal<&T::holds>("The torque determines the motion.");
   d.internal<&T::set_torque_nm>(unit::nm, "Torque of this cycle.");
-  d.internal<&T::velocity_before>(unit::u_s, "Measured in the cycle before.");
-  d.internal<&T::until>(unit::u_s, "Where the torque ends in this cycle.");
-  d.internal<&T::ticket>("Of the command in control.");
+  d.internal<&T::velocity_before>(unit::u_s, "Measured velocity in the previous cycle.");
+  d.internal<&T::until>(unit::u_s, "Velocity up to which the torque acts in this cycle.");
+  d.internal<&T::ticket>("Ticket of the command in control.");
 }
 
 }  // namespace takt::axis

@@ -117,9 +117,9 @@ void describe(Description<DropCam>& d) {
 void describe(Description<ReadCam>& d) {
   using C = ReadCam;
   d.about(
-      "Publishes a piece of what a cam of the machine file or made at run time was made from, on channel takt/cams: up "
-      "to 100 points or 20 segments. Done: the value is the number of its points or segments in all. In Python, "
-      "cam(name) of a session and cam_in_force of a cam module gather the pieces.");
+      "Publishes a piece of the points or segments of a cam, from the machine file or made at run time, on channel "
+      "takt/cams: up to 100 points or 20 segments. Done: the value is the number of its points or segments in all. In "
+      "Python, cam(name) of a session and cam_in_force of a cam module gather the pieces.");
   d.defaulted<&C::cam>("Name of the cam.");
   d.defaulted<&C::number>("Number of the cam, instead.");
   d.defaulted<&C::first>("Number of points or segments to leave out.");

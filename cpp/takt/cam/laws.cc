@@ -151,9 +151,9 @@ PeakFactors PeakFactorsOf(Law law, double sine_share, double cosine_share) {
 
 void describe(Enumeration<Law>& e) {
   e.about(
-      "A law of motion. Those from parabola to sine_constant_cosine go from rest to rest unless velocities or "
+      "A law of motion. The laws from parabola to sine_constant_cosine lead from rest to rest unless velocities or "
       "accelerations at their ends are given.");
-  e.value(Law::kDwell, "dwell", "Stays where it is.");
+  e.value(Law::kDwell, "dwell", "Constant position.");
   e.value(Law::kLine, "line", "Constant velocity.");
   e.value(Law::kQuintic, "quintic", "Polynomial of the fifth degree, with velocity and acceleration at both ends.");
   e.value(Law::kParabola, "parabola", "Constant acceleration, then constant deceleration.");
@@ -168,14 +168,15 @@ void describe(Enumeration<Law>& e) {
           "long.");
   e.value(Law::kDoubleHarmonic, "double_harmonic",
           "From rest to a reversal: the acceleration at the end is that of the reversal, -pi^2 rise / length^2.");
-  e.value(Law::kDoubleHarmonicBack, "double_harmonic_back", "From such a reversal to rest.");
+  e.value(Law::kDoubleHarmonicBack, "double_harmonic_back",
+          "From a reversal to rest, as the reverse of double_harmonic.");
   e.value(Law::kPolynomial8, "polynomial_8",
           "Polynomial of the eighth degree: the jerk is 0 at the ends, the acceleration at the inflection.");
-  e.value(Law::kTask, "task", "As VDI 2143 recommends: modified_sine, with accelerations at the ends quintic.");
+  e.value(Law::kTask, "task", "As VDI 2143 recommends: modified_sine; quintic if accelerations at the ends are given.");
   e.value(Law::kLeastAcceleration, "least_acceleration",
-          "Of quintic, modified_sine, modified_trapezoid, cycloid and polynomial_4567 the one with the least peak "
+          "The one of quintic, modified_sine, modified_trapezoid, cycloid and polynomial_4567 with the least peak "
           "acceleration.");
-  e.value(Law::kLeastJerk, "least_jerk", "Of the same the one with the least peak jerk.");
+  e.value(Law::kLeastJerk, "least_jerk", "The one of the same laws with the least peak jerk.");
 }
 
 }  // namespace takt::cam

@@ -255,10 +255,10 @@ void Apply(const Context& c, Ticket, const CamBuilt& result) noexcept {
 void describe(Description<Draft>& d) {
   d.named("CamDraft");
   d.about("A cam that is being sent or built.");
-  d.internal<&Draft::number>("Its number, from 1.");
+  d.internal<&Draft::number>("Number of the draft, from 1.");
   d.internal<&Draft::name>("Name of the cam.");
-  d.internal<&Draft::ticket>("Of the command that has it built.");
-  d.internal<&Draft::count>("Points or segments.");
+  d.internal<&Draft::ticket>("Ticket of the command that builds it.");
+  d.internal<&Draft::count>("Number of points or segments.");
   d.internal<&Draft::broken>("A piece was refused.");
   d.internal<&Draft::building>("It is being built.");
 }
@@ -267,7 +267,7 @@ void describe(Description<StoreState>& d) {
   using S = StoreState;
   d.named("CamStoreState");
   d.about("Cams made at run time.");
-  d.internal<&S::drafts>("Sent or being built.");
+  d.internal<&S::drafts>("Drafts that are being sent or built.");
   d.internal<&S::made>("Number of the draft of each cam.");
   d.internal<&S::drafts_begun>("Drafts begun so far.");
 }

@@ -35,7 +35,7 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kSoftLimitNegative, "ERRSWN", "the axis ran onto its negative SW limit"},
     ErrorInfo{ErrorId::kEncoder, "Encoder", "the encoder reports an error or jumped further than the axis can move"},
     ErrorInfo{ErrorId::kDrive, "Drive", "the drive reports a fault or does not get ready"},
-    ErrorInfo{ErrorId::kBufferFull, "BufferFull", "as many commands wait already as can be buffered"},
+    ErrorInfo{ErrorId::kBufferFull, "BufferFull", "no more commands can wait: the buffer is full"},
     ErrorInfo{ErrorId::kPlanning, "Planning", "no motion could be planned; the one in progress is kept"},
     ErrorInfo{ErrorId::kState, "State", "the command is not legal in this state"},
     ErrorInfo{ErrorId::kAwayFromLimitOnly, "AwayFromLimitOnly",
@@ -51,8 +51,7 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kInternal, "Internal",
               "a number of the engine was not finite; outputs are zero and the loop is open"},
     ErrorInfo{ErrorId::kOtherRun, "OtherRun", "the command was meant for another start of the engine"},
-    ErrorInfo{ErrorId::kCouplingLoop, "CouplingLoop",
-              "it would follow itself, through those that follow it; all movers count as one"},
+    ErrorInfo{ErrorId::kCouplingLoop, "CouplingLoop", "the coupling would form a loop (all movers count as one node)"},
     ErrorInfo{ErrorId::kMasterOff, "MasterOff",
               "the position of the master is not known: an axis without power or with a fault, a mover that is not "
               "enabled or not on its track"},
@@ -64,11 +63,11 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kCollision, "Collision", "something would touch something else on the way"},
     ErrorInfo{ErrorId::kGroupDisabled, "GroupDisabled", "the group is not enabled"},
     ErrorInfo{ErrorId::kPathUnknown, "PathUnknown", "there is no such path"},
-    ErrorInfo{ErrorId::kTrackOrder, "TrackOrder", "tracking would begin behind the place where it ends"},
+    ErrorInfo{ErrorId::kTrackOrder, "TrackOrder", "tracking would begin behind the position where it ends"},
     ErrorInfo{ErrorId::kTrackShort, "TrackShort", "tracking would end before the tool is in step"},
     ErrorInfo{ErrorId::kBeltBackwards, "BeltBackwards", "the belt moves backwards"},
-    ErrorInfo{ErrorId::kTooFast, "TooFast", "what carries the target is faster than the group can follow"},
-    ErrorInfo{ErrorId::kOffPath, "OffPath", "the tool is not where its path was left"},
+    ErrorInfo{ErrorId::kTooFast, "TooFast", "the carrier of the target is faster than the group can follow"},
+    ErrorInfo{ErrorId::kOffPath, "OffPath", "the tool is not at the position where its path was left"},
     ErrorInfo{ErrorId::kNoWorkpiece, "NoWorkpiece", "there is no such workpiece"},
     ErrorInfo{ErrorId::kTooOld, "TooOld", "the command was not taken within its age limit (lcm.command_age_s)"},
     ErrorInfo{
@@ -76,23 +75,23 @@ constexpr std::array kErrors = {
         "an elliptical profile cannot lead to or from a coordinate system that is turned about A or B of the world; "
         "use path_mode linear"},
     ErrorInfo{ErrorId::kCarrierUnknown, "CarrierUnknown",
-              "what carries the product coordinate system is not known: its pose was never given, or its group has no "
-              "kinematics"},
+              "the carrier of the product coordinate system is not known: its pose was never given, or its group has "
+              "no kinematics"},
     ErrorInfo{ErrorId::kMoverDisabled, "MoverDisabled", "the mover is not enabled"},
     ErrorInfo{ErrorId::kCommandMode, "CommandMode",
               "the mover does not accept this in its command mode, or while it moves"},
     ErrorInfo{ErrorId::kOutsideWindow, "OutsideWindow", "the mover may not turn out of its window while it moves"},
     ErrorInfo{ErrorId::kNoSetPoint, "NoSetPoint", "a set point from outside is missing"},
     ErrorInfo{ErrorId::kWildSetPoint, "WildSetPoint", "the mover cannot follow this set point from outside"},
-    ErrorInfo{ErrorId::kMoverDeviation, "MoverDeviation", "the mover was too far from where it was to be"},
+    ErrorInfo{ErrorId::kMoverDeviation, "MoverDeviation", "the position deviation of the mover was too large"},
     ErrorInfo{ErrorId::kTrackMode, "TrackMode", "movers on the track do what does not go with this"},
     ErrorInfo{ErrorId::kNoRoute, "NoRoute", "no way along tracks leads there"},
     ErrorInfo{ErrorId::kTrackDisabled, "TrackDisabled", "the track is not enabled"},
-    ErrorInfo{ErrorId::kMoverTooLarge, "MoverTooLarge", "the mover is larger than those the track is for"},
+    ErrorInfo{ErrorId::kMoverTooLarge, "MoverTooLarge", "the mover is larger than the track permits"},
     ErrorInfo{ErrorId::kTrackGeometry, "TrackGeometry", "the track cannot be so"},
     ErrorInfo{ErrorId::kGapTooSmall, "GapTooSmall", "movers of this size, turned so, would touch at that gap"},
-    ErrorInfo{ErrorId::kRoute, "Route", "the route over the free surface cannot be so"},
-    ErrorInfo{ErrorId::kObjectMoves, "ObjectMoves", "what is in the group has to rest for this"},
+    ErrorInfo{ErrorId::kRoute, "Route", "the route over the free surface is not possible"},
+    ErrorInfo{ErrorId::kObjectMoves, "ObjectMoves", "the object must be at rest for this command"},
     ErrorInfo{ErrorId::kStators, "Stators", "the stators cannot be so"},
     ErrorInfo{ErrorId::kEnvironmentUsed, "EnvironmentUsed",
               "the environment is in an enabled group, or its boundary is being made"},
@@ -123,17 +122,18 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kFormationOnTrack, "FormationOnTrack", "a formation moves in the free plane alone"},
     ErrorInfo{ErrorId::kEmergencyStop, "EmergencyStop",
               "an emergency stop is on, or has switched this off: release it, then ask for power anew"},
-    ErrorInfo{ErrorId::kSkew, "Skew", "the axis is further from where its master has it than follows.largest_skew"},
+    ErrorInfo{ErrorId::kSkew, "Skew",
+              "the measured skew of the axis differs from the commanded one by more than follows.largest_skew"},
     ErrorInfo{ErrorId::kNotInStep, "NotInStep",
-              "an axis that follows this one is not powered, has a fault, or stands askew"},
+              "an axis that follows this one is not powered, has a fault, or is skewed"},
     ErrorInfo{ErrorId::kDirection, "Direction",
               "motion in this direction is not enabled (enable_positive and enable_negative of power)"},
     ErrorInfo{ErrorId::kMarkDistance, "MarkDistance",
-              "the two marks that were passed are as far apart as no neighbours of encoder.coded_marks are"},
+              "the distance between the two marks passed matches no neighbours of encoder.coded_marks"},
     ErrorInfo{ErrorId::kNoCodedMarks, "NoCodedMarks",
               "the encoder has no distance-coded marks (encoder.coded_marks of the machine file)"},
     ErrorInfo{ErrorId::kEncodersApart, "EncodersApart",
-              "motor and load have got further apart than supervision.encoders_apart"},
+              "the distance between motor and load has changed by more than supervision.encoders_apart"},
     ErrorInfo{
         ErrorId::kSyncPassed, "SyncPassed",
         "the master has passed the begin of the clutch's curve to master_sync_in_position, master_sync_position of "
@@ -141,24 +141,26 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorId::kSlaveLimits, "SlaveLimits",
               "the slave's limits are too low for the clutch's curve at the speed of the master"},
     ErrorInfo{ErrorId::kEmptySlot, "EmptySlot", "a slot of the sequence has no cam"},
-    ErrorInfo{ErrorId::kCamMaking, "CamMaking", "the cam cannot be made"},
+    ErrorInfo{ErrorId::kCamMaking, "CamMaking", "the cam cannot be built"},
     ErrorInfo{ErrorId::kCamOver, "CamOver",
               "the cam has ended: this ramp, or the next x zero, has no position of a cam to refer to"},
     ErrorInfo{ErrorId::kOpenCam, "OpenCam",
-              "the end of the cam does not go over into its beginning (its slopes differ): it is run once"},
+              "the end of the cam does not continue at its beginning (the slopes differ): it is run once"},
     ErrorInfo{ErrorId::kStreamKey, "StreamKey", "the set point is for another stream than the one in control"},
-    ErrorInfo{ErrorId::kStreamLate, "StreamLate", "the set point came after its time; a larger delay leaves it more"},
+    ErrorInfo{ErrorId::kStreamLate, "StreamLate",
+              "the set point arrived after its time; a larger delay leaves more time"},
     ErrorInfo{ErrorId::kStreamJump, "StreamJump",
-              "the set point is further from the one before it than the axis can move in the time between them"},
+              "the set point is further from the previous one than the axis can move in the time between them"},
     ErrorInfo{ErrorId::kStreamEnded, "StreamEnded", "no set point of the stream has come within its timeout"},
     ErrorInfo{ErrorId::kZoneTaken, "ZoneTaken", "the tool came to a zone that another group has; it was stopped"},
     ErrorInfo{ErrorId::kZoneCircle, "ZoneCircle",
               "deadlock at zones: this group holds a zone for which the holder of the next zone waits"},
-    ErrorInfo{ErrorId::kNoFrame, "NoFrame", "the measured places define no frame: they coincide, or lie on one line"},
+    ErrorInfo{ErrorId::kNoFrame, "NoFrame",
+              "the measured positions define no frame: they coincide, or lie on one line"},
     ErrorInfo{ErrorId::kResidual, "Residual",
-              "a measured place is further from where the frame has it than largest_residual; measure it again"},
+              "the residual of a measured position exceeds largest_residual; measure it again"},
     ErrorInfo{ErrorId::kGroupDeviation, "ERRPOSG", "an axis of the group had too large a following error"},
-    ErrorInfo{ErrorId::kTooManyWorkpieces, "TooManyWorkpieces", "the belt holds as many workpieces as it can"},
+    ErrorInfo{ErrorId::kTooManyWorkpieces, "TooManyWorkpieces", "the belt holds its largest number of workpieces"},
     ErrorInfo{ErrorId::kModuleSoftLimitPositive, "SWLimitPos", "an axis of the module is at its upper SW limit"},
     ErrorInfo{ErrorId::kModuleSoftLimitNegative, "SWLimitNeg", "an axis of the module is at its lower SW limit"},
     ErrorInfo{ErrorId::kModuleLimitSwitchPositive, "HWLimitPos",
@@ -189,13 +191,13 @@ std::string_view ErrorName(ErrorId id) noexcept {
 }
 
 void describe(Enumeration<ErrorId>& e) {
-  e.about("What went wrong; 0: nothing.");
+  e.about("Error; 0: none.");
   for (const ErrorInfo& error : kErrors) e.value(error.id, error.name, error.text);
 }
 
 void describe(Enumeration<LimitedBy>& e) {
-  e.about("What held a motion back although it was carried out.");
-  e.value(LimitedBy::kNothing, "nothing", "Nothing.");
+  e.about("Limit that restricted a motion although it was carried out.");
+  e.value(LimitedBy::kNothing, "nothing", "No limit.");
   e.value(LimitedBy::kVelocity, "velocity", "The largest velocity.");
   e.value(LimitedBy::kAcceleration, "acceleration", "The largest acceleration or deceleration.");
   e.value(LimitedBy::kJerk, "jerk", "The largest jerk.");
@@ -209,8 +211,8 @@ void describe(Enumeration<LimitedBy>& e) {
 
 void describe(Description<Status>& d) {
   d.about("Ok, limited or failed.");
-  d.internal<&Status::error>("What went wrong.");
-  d.internal<&Status::limited_by>("What held the motion back.");
+  d.internal<&Status::error>("Error of the command.");
+  d.internal<&Status::limited_by>("Limit that restricted the motion.");
 }
 
 }  // namespace takt

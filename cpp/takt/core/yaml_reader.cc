@@ -209,8 +209,7 @@ std::vector<Problem> ReadYaml(const Type& type, void* object, std::string_view t
   }
   std::vector<Problem> found = std::move(problems.problems());
   if (found.size() == kMaxProblems) {
-    found.push_back(
-        {std::string(file_name), found.back().place, {}, "too many problems; what comes behind was not read"});
+    found.push_back({std::string(file_name), found.back().place, {}, "too many problems; the rest was not read"});
   }
   return found;
 }

@@ -763,38 +763,36 @@ CommandText ToText(const Machine& machine, const Command& command) {
 
 void describe(Description<StopAll>& d) {
   d.about("Stops every axis along its ramp.");
-  d.defaulted<&StopAll::open_loops>("True: and opens its loop.");
+  d.defaulted<&StopAll::open_loops>("True: also opens the loop of every axis.");
 }
 
 void describe(Description<EmergencyStop>& d) {
   d.about(
-      "Switches every drive off and lets every brake fall at once, without a ramp; faults are cleared, every axis is "
-      "Disabled (GT_EStop). What is to move again has to be powered anew.");
+      "Switches every drive off and closes every brake at once, without a ramp; faults are cleared, every axis is "
+      "Disabled (GT_EStop). Axes must be powered again before they can move.");
   d.defaulted<&EmergencyStop::hold>(
-      "True: it stays on until it is released (by `release`, or release_emergency_stop); commands that ask for power "
-      "or "
-      "motion are refused with error 3100 until then. A client that is lost does not release it.");
+      "True: the stop stays in force until it is released (by `release`, or release_emergency_stop); until then "
+      "commands that request power or motion are refused with error 3100. The loss of the client does not release it.");
 }
 
 void describe(Description<ReleaseEmergencyStop>& d) {
   d.about(
-      "Ends the emergency stop, whoever holds it. Nothing moves by itself thereafter: axes stay Disabled until they "
-      "are "
-      "powered anew.");
+      "Ends the emergency stop of any client. No axis moves as a result: axes stay Disabled until they are powered "
+      "again.");
 }
 
 void describe(Description<FailAllAxes>& d) {
-  d.about("Every axis brakes and goes to ErrorStop with error 3007, as when too many cycles in a row come too late.");
+  d.about("Every axis brakes and enters ErrorStop with error 3007, as after too many late cycles in a row.");
 }
 
 void describe(Description<Release>& d) {
-  d.about("Lets go of a level-sensitive command: a jog, a held stop.");
-  d.required<&Release::ticket>("Of the command.");
+  d.about("Releases a level-sensitive command: a jog, a held stop.");
+  d.required<&Release::ticket>("Ticket of the command.");
 }
 
 void describe(Description<Renew>& d) {
   d.about("Extends the lease of a level-sensitive command.");
-  d.required<&Renew::ticket>("Of the command.");
+  d.required<&Renew::ticket>("Ticket of the command.");
 }
 
 }  // namespace takt::engine

@@ -36,12 +36,12 @@ Sampling SamplingIn(Cycle cycle, HeardDrive& drive) noexcept {
 
 void describe(Description<HeardDrive>& d) {
   using H = HeardDrive;
-  d.about("What is remembered of a drive in another process.");
-  d.internal<&H::axis>("Its axis.");
-  d.internal<&H::missing_cycles>(unit::cycles, "Without an answer: it is lost.");
-  d.internal<&H::heard>("It has answered.");
-  d.internal<&H::answered>("Cycle of the set point it answered last.");
-  d.internal<&H::step>(unit::cycles, "From the sample before to one that came in this cycle.");
+  d.about("State of a drive in another process.");
+  d.internal<&H::axis>("Index of its axis.");
+  d.internal<&H::missing_cycles>(unit::cycles, "Missing answers in a row after which the drive is lost.");
+  d.internal<&H::heard>("The drive has answered.");
+  d.internal<&H::answered>("Cycle of the set point that its newest sample answers.");
+  d.internal<&H::step>(unit::cycles, "Cycles from the previous sample to the one that came in this cycle.");
 }
 
 }  // namespace takt::engine

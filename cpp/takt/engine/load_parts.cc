@@ -134,7 +134,7 @@ class Checker {
           mover::FindSpot(mover, parts, mover.reference, {{mover.initial.x, mover.initial.y}, mover.initial.c}, at)) {
         case ErrorId::kReference:
           Add(path + ".reference", mover.reference.empty()
-                                       ? "expected the name of the part or coordinate system of its place at the start"
+                                       ? "expected the name of the part or coordinate system of its initial position"
                                        : "expected the name of a part or a coordinate system, found " +
                                              Quoted(mover.reference) + DidYouMean(mover.reference, References(parts)));
           spots.back().reset();

@@ -83,35 +83,36 @@ std::string WhyNoMember(const Machine& machine, std::string_view axis) {
 }
 
 void describe(Description<CycleParams>& d) {
-  d.about("The engine's cycle.");
-  d.defaulted<&CycleParams::period_s>(unit::s, between(0.00025, 0.02), "How long a cycle lasts.");
+  d.about("The cycle of the engine.");
+  d.defaulted<&CycleParams::period_s>(unit::s, between(0.00025, 0.02), "Period of the cycle.");
   d.defaulted<&CycleParams::overruns_in_a_row>(
-      "So many late cycles in a row, or so many periods without a cycle, stop every axis; 0: never.");
+      "Number of late cycles in a row, or of periods without a cycle, that stops every axis; 0: never.");
 }
 
 void describe(Description<ChannelRate>& d) {
-  d.about("How often one axis or other component is published.");
+  d.about("Rate at which one axis or other component is published.");
   d.required<&ChannelRate::axis>("Name of the axis or other component.");
-  d.required<&ChannelRate::rate_hz>(unit::hz, between(0, 4000), "How often; 0: never.");
+  d.required<&ChannelRate::rate_hz>(unit::hz, between(0, 4000), "Publications per second; 0: never.");
 }
 
 void describe(Description<LcmParams>& d) {
   using L = LcmParams;
-  d.about("What goes out and comes in over LCM.");
+  d.about("Communication over LCM.");
   d.defaulted<&L::url>(
-      "LCM's provider. Unset: that of the environment (LCM_DEFAULT_URL), else udpm://239.255.76.67:7667?ttl=0, whose "
+      "Provider of LCM. Unset: from the environment (LCM_DEFAULT_URL), else udpm://239.255.76.67:7667?ttl=0, whose "
       "messages stay on this host (ttl 0).");
   d.defaulted<&L::axis_rate_hz>(
       unit::hz, between(0, 4000),
-      "How often each axis and each other component is published, at most once a cycle; 0: never.");
+      "Rate at which each axis and each other component is published, at most once a cycle; 0: never.");
   d.defaulted<&L::rates>("Axes and other components with a rate of their own.");
-  d.defaulted<&L::engine_rate_hz>(unit::hz, between(0.1, 1000), "How often the engine's own figures are published.");
-  d.defaulted<&L::dead_man_s>(unit::s, between(0.02, 60),
-                              "Without a heartbeat for so long, a client's level-sensitive commands are released.");
-  d.defaulted<&L::command_age_s>(
-      unit::s, between(0.05, 60),
-      "A command that the cycle did not take within this time after it was given is refused, "
-      "unless it stops, releases or switches off.");
+  d.defaulted<&L::engine_rate_hz>(unit::hz, between(0.1, 1000),
+                                  "Rate at which the engine's own figures are published.");
+  d.defaulted<&L::dead_man_s>(
+      unit::s, between(0.02, 60),
+      "Longest time without a heartbeat of a client; then its level-sensitive commands are released.");
+  d.defaulted<&L::command_age_s>(unit::s, between(0.05, 60),
+                                 "Longest time after a command was given until the cycle takes it; later it is "
+                                 "refused, unless it stops, releases or switches off.");
 }
 
 void describe(Description<SimulatedServo>& d) {
@@ -119,66 +120,67 @@ void describe(Description<SimulatedServo>& d) {
   d.about("The simulated servo behind an axis.");
   d.required<&S::axis>("Name of the axis.");
   d.defaulted<&S::drive>("The drive.");
-  d.defaulted<&S::mechanics>("Motor and load.");
-  d.defaulted<&S::switches>("Where the switches are.");
-  d.defaulted<&S::encoder>("The encoder; unset: the one the axis expects.");
-  d.defaulted<&S::load_encoder>("The encoder on the load; unset: the one the axis expects, if any.");
+  d.defaulted<&S::mechanics>("Motor and mechanics.");
+  d.defaulted<&S::switches>("Positions of the switches.");
+  d.defaulted<&S::encoder>("The encoder; unset: as the axis expects it.");
+  d.defaulted<&S::load_encoder>("The encoder on the load; unset: as the axis expects it, if any.");
 }
 
 void describe(Description<Simulation>& d) {
-  d.about("What stands in for the metal. Axes without a servo here get an ideal one that fits their parameters.");
-  d.defaulted<&Simulation::servos>("Servos.");
+  d.about("Simulation of the hardware. Axes without a servo here get an ideal one that fits their parameters.");
+  d.defaulted<&Simulation::servos>("Simulated servos.");
 }
 
 void describe(Description<ExternalDrive>& d) {
   using E = ExternalDrive;
-  d.about("A drive with its encoder and switches that lives in another process and is reached over LCM.");
+  d.about("A drive with its encoder and switches that runs in another process and is connected over LCM.");
   d.required<&E::axis>("Name of the axis.");
-  d.defaulted<&E::missing_cycles>(unit::cycles, between(1, 100000),
-                                  "So many answers of the drive missing in a row are a drive error (ErrorStop 3002).");
+  d.defaulted<&E::missing_cycles>(
+      unit::cycles, between(1, 100000),
+      "Number of missing answers of the drive in a row that is a drive error (ErrorStop 3002).");
 }
 
 void describe(Description<External>& d) {
   using E = External;
-  d.about("What lives in other processes.");
+  d.about("Drives and field buses in other processes.");
   d.defaulted<&E::drives>(
-      "Drives. Their axes are simulated no more; takt plant puts the simulation in another process.");
-  d.defaulted<&E::buses>("Field buses whose drives move axes; takt drives run is the process for them.");
+      "Drives. Their axes are not simulated by the engine; takt plant simulates them in another process.");
+  d.defaulted<&E::buses>("Field buses whose drives move axes; takt drives run is the process that connects them.");
   d.defaulted<&E::answer_within_s>(unit::s, between(0.001, 3600),
-                                   "Simulated time waits so long for the answers to one cycle, by the wall clock; then "
-                                   "the cycle goes on without them.");
+                                   "Simulated time: longest wait for the answers to one cycle, by the wall clock; then "
+                                   "the cycle continues without them.");
 }
 
 void describe(Description<ViewParams>& d) {
   d.about("The live page, takt view.");
   d.defaulted<&ViewParams::commands>(
-      "From the page one may switch on, jog, halt, reset and stop everything; else it only shows what is.");
+      "True: the page may switch on, jog, halt, reset and stop everything; else it only displays.");
 }
 
 void describe(Description<Machine>& d) {
   using M = Machine;
-  d.about("A machine: everything an engine is made from.");
-  d.required<&M::name>("Of the machine.");
+  d.about("A machine: the complete configuration of an engine.");
+  d.required<&M::name>("Name of the machine.");
   d.defaulted<&M::cycle>("The cycle.");
-  d.defaulted<&M::lcm>("Messages.");
+  d.defaulted<&M::lcm>("Communication over LCM.");
   d.required<&M::axes>("The axes.");
-  d.defaulted<&M::cams>("Cams, for any axis.");
+  d.defaulted<&M::cams>("Cams, usable by any axis.");
   d.defaulted<&M::cam_switches>("Lists of cam switches.");
   d.defaulted<&M::flex_cams>("Cam modules.");
   d.defaulted<&M::groups>("Groups of axes.");
-  d.defaulted<&M::paths>("Paths, for any group.");
-  d.defaulted<&M::zones>("Boxes that groups share: one is inside at a time.");
-  d.defaulted<&M::belts>("Belts, and tables that turn.");
+  d.defaulted<&M::paths>("Paths, usable by any group.");
+  d.defaulted<&M::zones>("Boxes that groups share; one group may be inside at a time.");
+  d.defaulted<&M::belts>("Belts and rotary tables.");
   d.defaulted<&M::poses>("Poses that come from elsewhere.");
   d.defaulted<&M::pick_and_place>("Pick and place modules.");
   d.defaulted<&M::coordinate_systems>("Planes in which parts of the surface lie.");
-  d.defaulted<&M::parts>("Parts of the surface that movers float on; without any it goes on for ever.");
+  d.defaulted<&M::parts>("Parts of the surface on which movers float; without any the surface is unbounded.");
   d.defaulted<&M::movers>("Planar movers.");
   d.defaulted<&M::tracks>("Tracks for movers in the plane.");
-  d.defaulted<&M::planar_groups>("Groups of movers that do not collide.");
-  d.defaulted<&M::environments>("Surfaces that movers float on.");
-  d.defaulted<&M::simulation>("What stands in for the metal.");
-  d.defaulted<&M::external>("What lives in other processes.");
+  d.defaulted<&M::planar_groups>("Groups of movers that avoid collisions with one another.");
+  d.defaulted<&M::environments>("Environments: surfaces on which movers float.");
+  d.defaulted<&M::simulation>("Simulation of the hardware.");
+  d.defaulted<&M::external>("Drives and field buses in other processes.");
   d.defaulted<&M::twin>("A twin in a physics engine.");
   d.defaulted<&M::view>("The live page.");
 }

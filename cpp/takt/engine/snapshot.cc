@@ -34,30 +34,30 @@ double Histogram::Quantile(double share) const noexcept {
 
 void describe(Description<Histogram>& d) {
   using H = Histogram;
-  d.about("Times counted by powers of two.");
+  d.about("Histogram of times with buckets by powers of two.");
   d.internal<&H::buckets>(
-      "How many times lie in [2^i, 2^(i+1)) ns; bucket 0 also holds 0, the last one everything above.");
-  d.internal<&H::count>("How many times there are in all.");
-  d.internal<&H::max>(unit::ns, "The longest of them.");
+      "Number of times in [2^i, 2^(i+1)) ns; bucket 0 also holds 0, the last bucket everything above.");
+  d.internal<&H::count>("Number of times in all.");
+  d.internal<&H::max>(unit::ns, "Longest time.");
 }
 
 void describe(Description<EngineFigures>& d) {
   using F = EngineFigures;
-  d.about("The engine's own figures. All counts run from the start of the engine and never fall.");
-  d.internal<&F::cycle>("Cycle these figures belong to, 0 for the first after start.");
+  d.about("Figures of the engine. All counts run from the start of the engine and never decrease.");
+  d.internal<&F::cycle>("Cycle to which these figures belong, 0 for the first one after the start.");
   d.internal<&F::overruns>("Cycles that ended after the next one should have begun.");
-  d.internal<&F::cycles_skipped>("Periods that passed without a cycle because a cycle before them came too late.");
-  d.internal<&F::commands_applied>("Commands the cycle has taken up.");
+  d.internal<&F::cycles_skipped>("Whole periods without a cycle because an earlier cycle was too late.");
+  d.internal<&F::commands_applied>("Commands that the cycle has applied.");
   d.internal<&F::commands_refused>("Commands refused because the queue to the cycle was full.");
   d.internal<&F::snapshots_dropped>("States of components lost because their queue was full (a slow network or disk).");
   d.internal<&F::feedback_dropped>("Feedback events lost because their queue was full.");
   d.internal<&F::journal_dropped>(
       "Commands and hashes missing in the journal because their queue was full: it cannot be replayed.");
-  d.internal<&F::set_points_dropped>("Set points for external drives lost because their queue was full.");
-  d.internal<&F::samples_refused>("Messages of external drives that were wrong, old or not asked for.");
-  d.internal<&F::planner_second_scale>("Motions planned only at the second scale.");
-  d.internal<&F::planner_failures>("Motions that could not be planned: the one in progress was kept.");
-  d.internal<&F::state_hash>("Hash of the whole state after the cycle; 0: not made.");
+  d.internal<&F::set_points_dropped>("Set points for external drives that were lost because their queue was full.");
+  d.internal<&F::samples_refused>("Messages of external drives that were wrong, too old or not requested.");
+  d.internal<&F::planner_second_scale>("Motions that could be planned only at the second scale.");
+  d.internal<&F::planner_failures>("Motions that could not be planned: the motion in progress was kept.");
+  d.internal<&F::state_hash>("Hash of the whole state after the cycle; 0: not computed.");
   d.internal<&F::execution>("Execution times of the cycle; real time only.");
   d.internal<&F::latency>("Wake-up after the deadline; real time only.");
 }

@@ -55,25 +55,25 @@ void WorkOut(const BoundsOf& of, std::span<const cam::Table> cams, BoundsState& 
 
 void describe(Description<BoundsOf>& d) {
   using B = BoundsOf;
-  d.about("For what extreme values are worked out.");
-  d.internal<&B::cams>("Numbers of the cams, from 0.");
-  d.internal<&B::count>("How many they are.");
-  d.internal<&B::velocity>("Of X.");
-  d.internal<&B::acceleration>("Of X.");
+  d.about("Parameters of the extreme values.");
+  d.internal<&B::cams>("Indices of the cams, from 0.");
+  d.internal<&B::count>("Number of cams.");
+  d.internal<&B::velocity>("Velocity of X.");
+  d.internal<&B::acceleration>("Acceleration of X.");
 }
 
 void describe(Description<BoundsState>& d) {
   using B = BoundsState;
   d.about("Extreme values of a slave.");
-  d.internal<&B::of>("For what they are.");
-  d.internal<&B::cam>("At which cam the work is.");
-  d.internal<&B::piece>("At which of its pieces.");
-  d.internal<&B::leap>("From one piece to the next.");
-  d.internal<&B::valid>("The work is done.");
-  d.internal<&B::max_position>("Of Y.");
-  d.internal<&B::min_position>("Of Y.");
-  d.internal<&B::max_velocity>("Of Y.");
-  d.internal<&B::max_acceleration>("Of Y.");
+  d.internal<&B::of>("Parameters for which they are computed.");
+  d.internal<&B::cam>("Cam that is being evaluated.");
+  d.internal<&B::piece>("Number of its pieces that are done.");
+  d.internal<&B::leap>("Stride from one piece to the next; 0: not yet known.");
+  d.internal<&B::valid>("The evaluation is complete.");
+  d.internal<&B::max_position>("Largest position of Y.");
+  d.internal<&B::min_position>("Smallest position of Y.");
+  d.internal<&B::max_velocity>("Largest velocity of Y.");
+  d.internal<&B::max_acceleration>("Largest acceleration of Y.");
 }
 
 }  // namespace takt::flexcam

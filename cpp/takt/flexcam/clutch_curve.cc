@@ -86,11 +86,11 @@ bool Within(const Quintic& over_time, const trajectory::Limits& limits) noexcept
 void describe(Description<ClutchCurve>& d) {
   using C = ClutchCurve;
   d.about("A curve of the clutch over the master's displacement.");
-  d.internal<&C::over>("The curve.");
-  d.internal<&C::begin>("Master's position where it begins.");
-  d.internal<&C::sense>("Of the master on it.");
-  d.internal<&C::closes>("It closes the clutch.");
-  d.internal<&C::slave_zero>("Of the conversion to the slave where it begins.");
+  d.internal<&C::over>("Curve from its begin on.");
+  d.internal<&C::begin>("Position of the master at which the curve begins.");
+  d.internal<&C::sense>("Sense of the master on the curve.");
+  d.internal<&C::closes>("The curve closes the clutch; else it opens it.");
+  d.internal<&C::slave_zero>("Zero of the conversion to the slave at the begin of the curve.");
   d.internal<&C::fastest>("Largest steady speed of the master at which the slave follows.");
 }
 

@@ -11,33 +11,38 @@ void DescribeInputs(Description<InputsOf<Of>>& d) {
   using I = InputsOf<Of>;
   const Range position = between(-1e12, 1e12);
   d.template defaulted<&I::enable>(
-      "The module works; false: it takes the slave off the cam, lets it come to rest and leaves it alone. Flex Cam: "
+      "Enables the module; false: it takes the slave off the cam, brings it to rest and releases it. Flex Cam: "
       "xEnable.");
   d.template defaulted<&I::internal_control>(
-      "The slave takes commands of its own, the module waits; stop works on. Flex Cam: xEnableInternalControl.");
+      "The slave accepts commands of its own while the module waits; stop still acts. Flex Cam: "
+      "xEnableInternalControl.");
   d.template defaulted<&I::reset_error>(
       "A rising edge acknowledges errors of module and slave. Flex Cam: xResetError.");
-  d.template defaulted<&I::regulator_on>("The slave is switched on. Flex Cam: xRegulatorOn.");
-  d.template defaulted<&I::stop>("Stops the slave and keeps it so. Flex Cam: xStop.");
-  d.template defaulted<&I::halt>("Brings the slave to rest and keeps it so. Flex Cam: xHalt.");
+  d.template defaulted<&I::regulator_on>("Switches the slave on. Flex Cam: xRegulatorOn.");
+  d.template defaulted<&I::stop>("Stops the slave and keeps it stopped. Flex Cam: xStop.");
+  d.template defaulted<&I::halt>("Brings the slave to rest and keeps it there. Flex Cam: xHalt.");
   d.template defaulted<&I::home_execute>("A rising edge starts homing. Flex Cam: xHomeExecute.");
-  d.template defaulted<&I::home_abs_switch>("A reference switch beside that of the slave. Flex Cam: xHomeAbsSwitch.");
-  d.template defaulted<&I::enable_hw_limit>("The two inputs below are looked at. Flex Cam: xEnableHWLimit.");
-  d.template defaulted<&I::hw_limit_positive>("A limit switch beside those of the slave. Flex Cam: xHWLimitPos.");
-  d.template defaulted<&I::hw_limit_negative>("A limit switch beside those of the slave. Flex Cam: xHWLimitNeg.");
+  d.template defaulted<&I::home_abs_switch>(
+      "Reference switch in addition to that of the slave. Flex Cam: xHomeAbsSwitch.");
+  d.template defaulted<&I::enable_hw_limit>("Enables the two limit switch inputs below. Flex Cam: xEnableHWLimit.");
+  d.template defaulted<&I::hw_limit_positive>(
+      "Positive limit switch in addition to those of the slave. Flex Cam: xHWLimitPos.");
+  d.template defaulted<&I::hw_limit_negative>(
+      "Negative limit switch in addition to those of the slave. Flex Cam: xHWLimitNeg.");
   d.template defaulted<&I::sync_cam>("A rising edge closes the clutch, a falling one opens it. Flex Cam: xSyncCam.");
   d.template defaulted<&I::sync_out_instant>(
-      "Opens the clutch at once and stops the slave; it stays open as long. Flex Cam: xSyncOutInstant.");
+      "Opens the clutch at once and stops the slave; the clutch stays open while it is true. Flex Cam: "
+      "xSyncOutInstant.");
   d.template defaulted<&I::cam_change_instant>(
-      "A rising edge changes to the cam that is set at once. Flex Cam: xCamChangeInstant.");
+      "A rising edge changes at once to the cam that is set. Flex Cam: xCamChangeInstant.");
   d.template defaulted<&I::cam_sequencer>("Runs the sequence of cam_sequence_mode. Flex Cam: xCamSequencer.");
   d.template defaulted<&I::offset_master>(position, "Added to X, in its unit. Flex Cam: lrSetOffsetMaster.");
   d.template defaulted<&I::offset_slave>(unit::u, position, "Added to Y. Flex Cam: lrSetOffsetSlave.");
   d.template defaulted<&I::scaling_master>(unit::one, between(1e-9, 1e9),
-                                           "X per the master's unit. Flex Cam: lrSetScalingMaster.");
-  d.template defaulted<&I::scaling_slave>(unit::one, between(0, 1e9), "Of Y. Flex Cam: lrSetScalingSlave.");
-  d.template defaulted<&I::cam_table>(between(1, kSlots), "The slot of the cam to run. Flex Cam: eSetCamTable.");
-  d.template defaulted<&I::virtual_velocity>(position, "Of a master without an axis, in its unit per second.");
+                                           "Factor from the master's position to X. Flex Cam: lrSetScalingMaster.");
+  d.template defaulted<&I::scaling_slave>(unit::one, between(0, 1e9), "Factor of Y. Flex Cam: lrSetScalingSlave.");
+  d.template defaulted<&I::cam_table>(between(1, kSlots), "Slot of the cam to run. Flex Cam: eSetCamTable.");
+  d.template defaulted<&I::virtual_velocity>(position, "Velocity of the virtual master, in its unit per second.");
 }
 
 }  // namespace
@@ -54,64 +59,65 @@ std::string Diagnose(const Command& command) {
 
 void describe(Description<Inputs>& d) {
   d.named("FlexCamInputs");
-  d.about("The levels at a cam module's inputs.");
+  d.about("Levels of the inputs of a cam module.");
   DescribeInputs(d);
 }
 
 void describe(Description<Control>& d) {
   d.named("Control");
   d.about(
-      "Changes inputs of a cam module; what is not given stays. Where it closes or opens the clutch or starts homing, "
-      "it "
-      "is done when that is.");
+      "Changes inputs of a cam module; unset inputs are kept. If it closes or opens the clutch or starts homing, the "
+      "command is done when that is done.");
   DescribeInputs(d);
 }
 
 void describe(Description<Jog>& d) {
-  d.about("Jogs the slave as long as a key is held; the first of two keys counts. Flex Cam: xJogPos, xJogNeg.");
-  d.defaulted<&Jog::positive>("The key for upwards.");
-  d.defaulted<&Jog::negative>("The key for downwards.");
+  d.about("Jogs the slave as long as a key is held; the first of two keys has priority. Flex Cam: xJogPos, xJogNeg.");
+  d.defaulted<&Jog::positive>("State of the key for upwards.");
+  d.defaulted<&Jog::negative>("State of the key for downwards.");
 }
 
 void describe(Description<SetCam>& d) {
   d.about(
-      "Puts another cam into a slot, one of the machine file or made at run time. Where that slot runs, the cam "
-      "changes "
-      "as when another slot is set.");
-  d.required<&SetCam::slot>(between(1, kSlots), "Which one.");
+      "Puts another cam into a slot, from the machine file or made at run time. If the slot is running, the cam "
+      "changes as if another slot was set.");
+  d.required<&SetCam::slot>(between(1, kSlots), "Slot to fill.");
   d.required<&SetCam::cam>("Name of the cam. Flex Cam: CamTable1 to CamTable4.");
 }
 
 void describe(Description<ChangeCam>& d) {
-  d.about("Changes the cam at a given place; done when it has. Up to eight changes wait for one another.");
-  d.required<&ChangeCam::cam_table>(between(1, kSlots), "The slot of the cam to run then.");
-  d.defaulted<&ChangeCam::when>("Where it takes place.");
-  d.defaulted<&ChangeCam::position>(between(-1e12, 1e12),
-                                    "Of the master (in its turn) or X, where it takes place at one.");
-  d.defaulted<&ChangeCam::align>("What is shifted so that both cams meet.");
+  d.about(
+      "Changes the cam at a position or event; done when it has changed. Up to eight changes can be pending; they are "
+      "carried out in order.");
+  d.required<&ChangeCam::cam_table>(between(1, kSlots), "Slot of the cam to run after the change.");
+  d.defaulted<&ChangeCam::when>("Event at which the cam changes.");
+  d.defaulted<&ChangeCam::position>(
+      between(-1e12, 1e12),
+      "Position of the master (in its turn) or of X at which the cam changes, for events that need one.");
+  d.defaulted<&ChangeCam::align>("Shift that makes both cams meet.");
 }
 
 void describe(Description<WithdrawChanges>& d) {
-  d.about("Withdraws the changes of cam that have not taken place.");
+  d.about("Withdraws the pending changes of cam.");
 }
 
 void describe(Enumeration<ChangeWhen>& e) {
-  e.about("Where a change of cam takes place.");
+  e.about("Event at which a cam changes.");
   e.value(ChangeWhen::kAtOnce, "at_once", "In this cycle.");
-  e.value(ChangeWhen::kMasterPosition, "master_position", "Where the master passes a position.");
-  e.value(ChangeWhen::kCamPosition, "cam_position", "Where X passes a position.");
-  e.value(ChangeWhen::kNextCycle, "next_cycle", "At the end of the cam.");
-  e.value(ChangeWhen::kWithoutJump, "without_jump", "As soon as both cams meet after what is shifted.");
+  e.value(ChangeWhen::kMasterPosition, "master_position", "The master passes a position.");
+  e.value(ChangeWhen::kCamPosition, "cam_position", "X passes a position.");
+  e.value(ChangeWhen::kNextCycle, "next_cycle", "The end of the cam is reached.");
+  e.value(ChangeWhen::kWithoutJump, "without_jump", "Both cams meet with the shift of align.");
 }
 
 void describe(Enumeration<ChangeAlign>& e) {
-  e.about("What is shifted at a change of cam.");
-  e.value(ChangeAlign::kNothing, "nothing", "Nothing.");
-  e.value(ChangeAlign::kPosition, "position", "Y, so that the position does not jump.");
-  e.value(
-      ChangeAlign::kVelocity, "velocity",
-      "X to the nearest place of the new cam with the same slope, then Y: neither position nor velocity jumps. From an "
-      "end that is held: from the cam's beginning, whatever its slope; the position does not jump.");
+  e.about("Shift at a change of cam.");
+  e.value(ChangeAlign::kNothing, "nothing", "No shift.");
+  e.value(ChangeAlign::kPosition, "position", "Y is shifted, so that the position does not jump.");
+  e.value(ChangeAlign::kVelocity, "velocity",
+          "X is shifted to the nearest position of the new cam with the same slope, then Y: neither position nor "
+          "velocity jumps. From an end that is held: to the beginning of the cam, whatever its slope; only the "
+          "position does not jump.");
 }
 
 }  // namespace takt::flexcam

@@ -200,15 +200,15 @@ double FactorInForce(const Conversion& c, const Cycle& cycle, const KinematicSta
 void describe(Description<Conversion>& d) {
   using C = Conversion;
   d.about("Scaling and offset.");
-  d.internal<&C::factor>(unit::one, "In force.");
-  d.internal<&C::offset>("In force.");
-  d.internal<&C::in_zero>("Input that is counted from.");
-  d.internal<&C::out_zero>("Output there, without offset.");
-  d.internal<&C::ramp>("What is left of what was in force before.");
-  d.internal<&C::offset_left>("Of the offset, at the begin of the ramp.");
-  d.internal<&C::factor_left>(unit::one, "Of the factor, at the begin of the ramp.");
-  d.internal<&C::by_speed>("The ramp is one of the speed.");
-  d.internal<&C::ramp_begin>("Shift at the begin of the ramp, or the speed of that.");
+  d.internal<&C::factor>(unit::one, "Factor in force.");
+  d.internal<&C::offset>("Offset in force.");
+  d.internal<&C::in_zero>("Input from which the factor counts.");
+  d.internal<&C::out_zero>("Output at that input, without offset.");
+  d.internal<&C::ramp>("Ramp from the values in force before.");
+  d.internal<&C::offset_left>("Difference of the offset at the begin of the ramp.");
+  d.internal<&C::factor_left>(unit::one, "Difference of the factor at the begin of the ramp.");
+  d.internal<&C::by_speed>("The ramp blends the velocity only.");
+  d.internal<&C::ramp_begin>("Shift at the begin of the ramp; its velocity if by_speed.");
 }
 
 }  // namespace takt::flexcam

@@ -101,16 +101,16 @@ double ReportedOf(const axis::Context& c, std::optional<std::uint32_t> master, d
 
 void describe(Description<MasterState>& d) {
   using M = MasterState;
-  d.about("What a cam module follows.");
-  d.internal<&M::now>("Over all turns.");
-  d.internal<&M::before>("In the cycle before.");
+  d.about("Master of a cam module.");
+  d.internal<&M::now>("State over all turns.");
+  d.internal<&M::before>("State in the previous cycle.");
   d.internal<&M::known>("Its position is known.");
-  d.internal<&M::coasts>("It goes on as it was.");
-  d.internal<&M::comes_to_rest>("It was coming to rest.");
-  d.internal<&M::filter>("Of what is measured.");
-  d.internal<&M::motion>("Of a virtual master.");
-  d.internal<&M::start_cycle>("Cycle its time counts from.");
-  d.internal<&M::velocity>("That a virtual master gets to.");
+  d.internal<&M::coasts>("The position is not known; the last motion continues.");
+  d.internal<&M::comes_to_rest>("The master was decelerating when it was lost, and comes to rest.");
+  d.internal<&M::filter>("Filter of a measured master.");
+  d.internal<&M::motion>("Motion of a virtual master.");
+  d.internal<&M::start_cycle>("Cycle from which its time counts.");
+  d.internal<&M::velocity>("Target velocity of a virtual master.");
 }
 
 }  // namespace takt::flexcam

@@ -102,24 +102,24 @@ void describe(Description<ProfilerState>& d) {
   using S = ProfilerState;
   d.about("The cam on the X axis.");
   d.internal<&S::cam>("Number of the cam, from 0.");
-  d.internal<&S::slot>("It came from.");
-  d.internal<&S::laid>("Where its cycle 0 begins, over all cycles.");
+  d.internal<&S::slot>("Slot from which the cam was taken.");
+  d.internal<&S::laid>("Beginning of its cycle 0, over all cycles.");
   d.internal<&S::base>("Added to its y.");
-  d.internal<&S::cycle>("In which X is.");
-  d.internal<&S::once>("It is run once.");
-  d.internal<&S::held>("Its end is held.");
+  d.internal<&S::cycle>("Cycle in which X is.");
+  d.internal<&S::once>("The cam runs once.");
+  d.internal<&S::held>("An end position is held.");
   d.internal<&S::announced>("The end ahead was announced.");
-  d.internal<&S::announced_sense>("In this sense.");
+  d.internal<&S::announced_sense>("Sense in which it was announced.");
 }
 
 void describe(Description<ProfilerValue>& d) {
   using V = ProfilerValue;
-  d.about("What the cam says.");
-  d.internal<&V::x>("X in its cycle.");
-  d.internal<&V::y_in_cam>("There.");
-  d.internal<&V::y>("Strokes and base added.");
-  d.internal<&V::dy>("Over X.");
-  d.internal<&V::ddy>("Over X.");
+  d.about("Value of the cam.");
+  d.internal<&V::x>("X in the cycle of the cam.");
+  d.internal<&V::y_in_cam>("Y of the cam at that position.");
+  d.internal<&V::y>("Y with strokes and base added.");
+  d.internal<&V::dy>("Derivative over X.");
+  d.internal<&V::ddy>("Second derivative over X.");
 }
 
 }  // namespace takt::flexcam

@@ -252,35 +252,35 @@ void Advance(const KinematicState& before, const KinematicState& now, double dis
 }
 
 void describe(Enumeration<RampKind>& e) {
-  e.about("What a shift goes by on its way to zero.");
-  e.value(RampKind::kNone, "none", "It is zero.");
-  e.value(RampKind::kProfile, "profile", "Limits of its own.");
-  e.value(RampKind::kTime, "time", "A quintic over a time.");
-  e.value(RampKind::kWithMaster, "with_master", "Limits of its own, and never against a master.");
+  e.about("Law by which a shift decreases to zero.");
+  e.value(RampKind::kNone, "none", "The shift is zero.");
+  e.value(RampKind::kProfile, "profile", "Motion with limits of its own.");
+  e.value(RampKind::kTime, "time", "Quintic over a time.");
+  e.value(RampKind::kWithMaster, "with_master", "Motion with limits of its own, never against a master.");
 }
 
 void describe(Description<RampClock>& d) {
   using C = RampClock;
-  d.about("The clock of a ramp with a master.");
-  d.internal<&C::time_s>(unit::s, "On the profile.");
-  d.internal<&C::rate>(unit::one, "Of the clock.");
-  d.internal<&C::rate_change>(unit::one_s, "Of the rate.");
-  d.internal<&C::share>(unit::one, "Of the largest rate at the master's speed.");
-  d.internal<&C::reference>("Speed of the master.");
-  d.internal<&C::sense>("Of the master in which the clock goes on.");
-  d.internal<&C::velocity>("Of the ramp's own.");
-  d.internal<&C::acceleration>("Of the ramp's own.");
-  d.internal<&C::jerk>("Of the ramp's own.");
+  d.about("Clock of a ramp with a master.");
+  d.internal<&C::time_s>(unit::s, "Time on the profile.");
+  d.internal<&C::rate>(unit::one, "Rate of the clock.");
+  d.internal<&C::rate_change>(unit::one_s, "Rate of change of the rate.");
+  d.internal<&C::share>(unit::one, "Share of the largest rate at the master's speed.");
+  d.internal<&C::reference>("Reference speed of the master.");
+  d.internal<&C::sense>("Sense of the master in which the clock advances.");
+  d.internal<&C::velocity>("Velocity limit of the ramp.");
+  d.internal<&C::acceleration>("Acceleration limit of the ramp.");
+  d.internal<&C::jerk>("Jerk limit of the ramp.");
 }
 
 void describe(Description<Ramp>& d) {
   using R = Ramp;
-  d.about("A shift on its way to zero.");
-  d.internal<&R::kind>("What it goes by.");
-  d.internal<&R::profile>("Over time.");
-  d.internal<&R::curve>("Over time.");
-  d.internal<&R::start_cycle>("Cycle its time counts from.");
-  d.internal<&R::clock>("Of the profile, with a master.");
+  d.about("A shift that decreases to zero.");
+  d.internal<&R::kind>("Law of the decrease.");
+  d.internal<&R::profile>("Profile over time.");
+  d.internal<&R::curve>("Quintic over time.");
+  d.internal<&R::start_cycle>("Cycle from which its time counts.");
+  d.internal<&R::clock>("Clock of the profile, with a master.");
 }
 
 }  // namespace takt::flexcam

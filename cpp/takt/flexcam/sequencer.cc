@@ -90,16 +90,16 @@ std::optional<SequenceStep> FromHeld(const SequencerInputs& in, SequencerState& 
 }
 
 void describe(Enumeration<SequencePart>& e) {
-  e.about("What of a sequence of cams is being run.");
-  e.value(SequencePart::kNone, "none", "None.");
-  e.value(SequencePart::kIn, "in", "What is run while the sequencer is on.");
-  e.value(SequencePart::kOut, "out", "What follows it.");
+  e.about("Part of a sequence of cams that is being run.");
+  e.value(SequencePart::kNone, "none", "No sequence is run.");
+  e.value(SequencePart::kIn, "in", "Cams that are run while the sequencer is on.");
+  e.value(SequencePart::kOut, "out", "Cams that follow when it is switched off.");
 }
 
 void describe(Description<SequencerState>& d) {
   d.about("A sequence of cams.");
-  d.internal<&SequencerState::part>("Which part of it.");
-  d.internal<&SequencerState::step>("Which cam of the part, from 0.");
+  d.internal<&SequencerState::part>("Part of the sequence.");
+  d.internal<&SequencerState::step>("Cam in that part, from 0.");
 }
 
 }  // namespace takt::flexcam

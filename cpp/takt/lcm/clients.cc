@@ -108,7 +108,8 @@ Clients::Client* Clients::Admit(const Message& message, std::int64_t now_ns, msg
   if (client.session != session) {
     if (now_ns - client.last_seen_ns <= limits_.alive_ns) {
       Refuse(refusal, ErrorId::kClientName,
-             "another client uses the name " + name + "; take another one, or wait 2 s after it has gone");
+             "another client uses the name " + name +
+                 "; use another name, or wait 2 s after that client has disconnected");
       return nullptr;
     }
     Forget(client);

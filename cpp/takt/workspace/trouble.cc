@@ -13,11 +13,11 @@ std::vector<std::string> PartNames(const WorkspaceParams& params, const kinemati
 }
 
 void describe(Enumeration<Trouble>& e) {
-  e.about("What is wrong with a path.");
-  e.value(Trouble::kNone, "none", "Nothing.");
-  e.value(Trouble::kCollision, "collision", "Two parts come nearer to one another than the margin.");
+  e.about("Problem of a path.");
+  e.value(Trouble::kNone, "none", "No problem.");
+  e.value(Trouble::kCollision, "collision", "Two bodies come nearer to one another than the margin.");
   e.value(Trouble::kBounds, "bounds", "The tool leaves its bounds.");
-  e.value(Trouble::kNoPose, "no_pose", "There is no position of the links.");
+  e.value(Trouble::kNoPose, "no_pose", "The links have no position.");
 }
 
 }  // namespace takt::workspace

@@ -7,40 +7,40 @@ namespace takt::axis {
 namespace {
 
 constexpr const char* kMasterFilter =
-    "Time constant of the filter of a measured master, which has no lag at constant velocity; 0: none; unset: the "
+    "Time constant of the filter of a measured master, which has no lag at constant velocity; 0: none; unset: "
     "encoder.velocity_filter_s of the master.";
 
 }  // namespace
 
 void describe(Enumeration<MasterSource>& e) {
-  e.about("Which position of a master counts.");
-  e.value(MasterSource::kSetValue, "set_value", "Its set point of the same cycle.");
-  e.value(MasterSource::kActualValue, "actual_value", "Its measured position of the same cycle.");
+  e.about("Position of a master that a slave follows.");
+  e.value(MasterSource::kSetValue, "set_value", "Set point of the master in the same cycle.");
+  e.value(MasterSource::kActualValue, "actual_value", "Measured position of the master in the same cycle.");
 }
 
 void describe(Enumeration<SyncMode>& e) {
-  e.about("How a rotary axis reaches its place in a coupling.");
-  e.value(SyncMode::kShortest, "shortest", "Whichever way is shorter.");
-  e.value(SyncMode::kCatchUp, "catch_up", "By going faster.");
-  e.value(SyncMode::kSlowDown, "slow_down", "By going slower.");
+  e.about("How a rotary axis reaches the slave position of a coupling.");
+  e.value(SyncMode::kShortest, "shortest", "In the sense of the smaller shift.");
+  e.value(SyncMode::kCatchUp, "catch_up", "By running faster.");
+  e.value(SyncMode::kSlowDown, "slow_down", "By running slower.");
 }
 
 void describe(Enumeration<CombineMode>& e) {
-  e.about("What becomes of two masters.");
-  e.value(CombineMode::kAdd, "add", "Their sum.");
-  e.value(CombineMode::kSubtract, "subtract", "The first less the second.");
+  e.about("How the positions of two masters are combined.");
+  e.value(CombineMode::kAdd, "add", "Sum.");
+  e.value(CombineMode::kSubtract, "subtract", "First minus second.");
 }
 
 void describe(Description<GearIn>& d) {
   using C = GearIn;
   d.about(
-      "Follows a master's velocity times a ratio (MC_GearIn). What is lost on the way to that velocity is not made up. "
-      "Reached when it is, and locked from there: what the axis' limits make it lose later is made up. Given again it "
-      "changes the ratio. Nothing can be buffered behind it.");
+      "Follows a master's velocity times a ratio (MC_GearIn). Distance lost until that velocity is reached is not made "
+      "up. Reached when it is reached, and locked to the position from there: distance lost later to the axis' limits "
+      "is made up. Repeated, it changes the ratio. No command can be buffered behind it.");
   d.required<&C::master>("Name of the master axis.");
-  d.defaulted<&C::ratio_numerator>("Own units ...");
-  d.defaulted<&C::ratio_denominator>(positive, "... per so many of the master's.");
-  d.defaulted<&C::source>("Which of the master's positions is followed.");
+  d.defaulted<&C::ratio_numerator>("Numerator of the ratio, in units of this axis.");
+  d.defaulted<&C::ratio_denominator>(positive, "Denominator of the ratio, in units of the master.");
+  d.defaulted<&C::source>("Position of the master that is followed.");
   d.defaulted<&C::master_filter>(unit::s, between(0, 10), kMasterFilter);
   DescribeRamps(d);
   d.defaulted<&C::buffer_mode>(kBufferMode);
@@ -48,36 +48,37 @@ void describe(Description<GearIn>& d) {
 }
 
 void describe(Description<GearOut>& d) {
-  d.about("Lets go of the master; the axis goes on with the velocity it has (MC_GearOut).");
+  d.about("Releases the axis from the master; it keeps its velocity (MC_GearOut).");
 }
 
 void describe(Description<GearInPos>& d) {
   using C = GearInPos;
   d.about(
       "Follows a master's position times a ratio, in step from a given pair of positions on (MC_GearInPos). Reached "
-      "when it is in step. A master that is already past where getting into step begins leaves less way for it. With "
-      "master_start_distance one that has passed the place has to come back (on rotary axes: to come round again); "
-      "without it the axis gets into step at once. Error 3110: a linear master has moved away from the place instead, "
-      "by more than master_start_distance and than it can in 1 s.");
+      "when it is in step. If the master is already beyond the start of synchronisation, less distance is left for it. "
+      "With master_start_distance, a master beyond the synchronous position must come back (rotary axes: reach it "
+      "again in a later turn); without it the axis synchronises at once. Error 3110: a linear master has moved away "
+      "from that position by more than master_start_distance and by more than it can move in 1 s.");
   d.required<&C::master>("Name of the master axis.");
-  d.defaulted<&C::ratio_numerator>("Own units ...");
-  d.defaulted<&C::ratio_denominator>(positive, "... per so many of the master's.");
-  d.defaulted<&C::source>("Which of the master's positions is followed.");
+  d.defaulted<&C::ratio_numerator>("Numerator of the ratio, in units of this axis.");
+  d.defaulted<&C::ratio_denominator>(positive, "Denominator of the ratio, in units of the master.");
+  d.defaulted<&C::source>("Position of the master that is followed.");
   d.defaulted<&C::master_filter>(unit::s, between(0, 10), kMasterFilter);
-  d.required<&C::master_sync_position>("Where the master is, in its own unit, when both are in step.");
-  d.required<&C::slave_sync_position>(unit::u, "Where this axis is then.");
-  d.defaulted<&C::sync_mode>("How a rotary axis gets there.");
-  d.defaulted<&C::master_start_distance>(
-      not_negative, "How far before that, in the master's unit, getting into step begins; unset: at once.");
-  d.defaulted<&C::velocity>(unit::u_s, positive, "Largest velocity of the catching up; unset: the axis' limit.");
+  d.required<&C::master_sync_position>("Position of the master, in its own unit, at which both are in step.");
+  d.required<&C::slave_sync_position>(unit::u, "Position of this axis at which both are in step.");
+  d.defaulted<&C::sync_mode>("How a rotary axis reaches that position.");
+  d.defaulted<&C::master_start_distance>(not_negative,
+                                         "Distance of the master, in its own unit, before master_sync_position at "
+                                         "which synchronisation begins; unset: it begins at once.");
+  d.defaulted<&C::velocity>(unit::u_s, positive, "Largest velocity of synchronisation; unset: the axis' limit.");
   DescribeRamps(d);
   d.defaulted<&C::buffer_mode>(kBufferMode);
 }
 
 void describe(Description<PhasingAbsolute>& d) {
   using C = PhasingAbsolute;
-  d.about("Shifts what this axis takes for its master's position to a given amount (MC_PhasingAbsolute).");
-  d.required<&C::phase_shift>("The whole shift, in the master's unit.");
+  d.about("Shifts the master's position as seen by this axis to a given shift (MC_PhasingAbsolute).");
+  d.required<&C::phase_shift>("Total shift, in the master's unit.");
   d.defaulted<&C::velocity>(
       positive, "Largest speed of the shift, in the master's unit per second; unset: as fast as this axis can.");
   DescribeRamps(d);
@@ -85,8 +86,8 @@ void describe(Description<PhasingAbsolute>& d) {
 
 void describe(Description<PhasingRelative>& d) {
   using C = PhasingRelative;
-  d.about("Shifts what this axis takes for its master's position by an amount (MC_PhasingRelative).");
-  d.required<&C::phase_shift>("Added to the shift there is, in the master's unit.");
+  d.about("Shifts the master's position as seen by this axis by a given amount (MC_PhasingRelative).");
+  d.required<&C::phase_shift>("Amount added to the present shift, in the master's unit.");
   d.defaulted<&C::velocity>(
       positive, "Largest speed of the shift, in the master's unit per second; unset: as fast as this axis can.");
   DescribeRamps(d);
@@ -96,17 +97,17 @@ void describe(Description<CombineAxes>& d) {
   using C = CombineAxes;
   d.about(
       "Follows the sum or the difference of two masters' positions, each times a ratio (MC_CombineAxes). Reached when "
-      "it is in step.");
+      "in step.");
   d.required<&C::master1>("Name of the first master axis.");
-  d.required<&C::master2>("Name of the second one.");
+  d.required<&C::master2>("Name of the second master axis.");
   d.defaulted<&C::mode>("Sum or difference.");
-  d.defaulted<&C::ratio_numerator1>("Own units ...");
-  d.defaulted<&C::ratio_denominator1>(positive, "... per so many of the first master's.");
-  d.defaulted<&C::ratio_numerator2>("Own units ...");
-  d.defaulted<&C::ratio_denominator2>(positive, "... per so many of the second one's.");
-  d.defaulted<&C::source1>("Which of the first master's positions is followed.");
-  d.defaulted<&C::source2>("The same for the second one.");
-  d.defaulted<&C::velocity>(unit::u_s, positive, "Largest velocity of the catching up; unset: the axis' limit.");
+  d.defaulted<&C::ratio_numerator1>("Numerator of the first ratio, in units of this axis.");
+  d.defaulted<&C::ratio_denominator1>(positive, "Denominator of the first ratio, in units of the first master.");
+  d.defaulted<&C::ratio_numerator2>("Numerator of the second ratio, in units of this axis.");
+  d.defaulted<&C::ratio_denominator2>(positive, "Denominator of the second ratio, in units of the second master.");
+  d.defaulted<&C::source1>("Position of the first master that is followed.");
+  d.defaulted<&C::source2>("Position of the second master that is followed.");
+  d.defaulted<&C::velocity>(unit::u_s, positive, "Largest velocity of synchronisation; unset: the axis' limit.");
   DescribeRamps(d);
   d.defaulted<&C::buffer_mode>(kBufferMode);
   d.defaulted<&C::update>(kChange);

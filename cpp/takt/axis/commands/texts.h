@@ -9,7 +9,7 @@ inline constexpr std::string_view kAcceleration = "Largest acceleration; unset: 
 inline constexpr std::string_view kDeceleration = "Largest deceleration; unset: the axis' limit.";
 inline constexpr std::string_view kJerk =
     "Largest jerk; 0: unlimited, where the axis allows it; unset: the axis' limit.";
-inline constexpr std::string_view kBufferMode = "How the command follows the one before it.";
+inline constexpr std::string_view kBufferMode = "How the command follows the previous one.";
 
 template <typename T>
 void DescribeRamps(Description<T>& d) {
@@ -20,11 +20,10 @@ void DescribeRamps(Description<T>& d) {
 
 // For commands that ContinuousUpdate changes.
 inline constexpr std::string_view kChange =
-    "True: only changes the command of this kind that is in control, and is aborted where there is none any more. "
-    "Where "
-    "this one is buffered it makes no difference.";
+    "True: only changes the command of this kind that is in control; aborted if there is none. No effect on a command "
+    "that is buffered.";
 inline constexpr std::string_view kUpdate =
-    "True: only changes the command of this kind that is in control, from whose beginning everything counts, and is "
-    "aborted where there is none any more. Where this one is buffered it makes no difference.";
+    "True: only changes the command of this kind that is in control, and counts from the start of that command; "
+    "aborted if there is none. No effect on a command that is buffered.";
 
 }  // namespace takt::axis
