@@ -82,6 +82,8 @@ def test_expressions(expression: str, value: float) -> None:
         ("[-8 ** 0.5]", "a negative number to the power of 0.5"),
         ("[10 ** 400]", "no finite value"),
         ("exp[1000]", "no finite value"),
+        ("sin[#8 * #8]", "no finite value"),
+        ("[[#8 * #8] mod 5]", "no finite value"),
         ("#[0]", "#0: expected the number of a parameter from 1 to 5602"),
         ("#1.5", "#1.5: expected the number of a parameter"),
         ("#<depth>", "#<depth> has no value"),
@@ -96,8 +98,8 @@ def test_expressions(expression: str, value: float) -> None:
     ],
 )
 def test_expressions_that_have_no_value(expression: str, said: str) -> None:
-    assert said in wrong(f"(first)\nG1 X{expression}")
-    assert wrong(f"(first)\nG1 X{expression}").startswith("p.nc:2: ")
+    assert said in wrong(f"#8 = 1{'0' * 200}\nG1 X{expression}")
+    assert wrong(f"#8 = 1{'0' * 200}\nG1 X{expression}").startswith("p.nc:2: ")
 
 
 def test_parameters() -> None:

@@ -44,7 +44,7 @@ def evaluate(value: Value, values: Values) -> float:
         number = value(values)
     except RecursionError:
         raise LineError("an expression is too long") from None
-    except (OverflowError, ZeroDivisionError):
+    except (OverflowError, ZeroDivisionError, ValueError):  # functions of infinity raise ValueError
         number = math.inf
     if not math.isfinite(number):
         raise LineError("an expression has no finite value")
