@@ -152,7 +152,8 @@ TEST(DemandFollower, TakesADemandThatContinuesTheMotionBitForBit) {
   }
 }
 
-TEST(DemandFollower, CatchesUpInTheLeastTime) {  // a place ahead of a demand at constant speed: the move there in its frame
+TEST(DemandFollower,
+     CatchesUpInTheLeastTime) {  // a place ahead of a demand at constant speed: the move there in its frame
   Follower follower(LinearParams());
   const trajectory::Limits own = follower.params.planner_limits();
   follower.at = {-30, 200, 0};
