@@ -1,4 +1,5 @@
-"""Arguments of a command as the one-line text that the engine reads: {position: 100.0, direction: positive}."""
+"""Writes the arguments of a command as the one-line text that the engine reads: {position: 100.0, direction:
+positive}."""
 
 from __future__ import annotations
 
@@ -15,8 +16,9 @@ _NOT_TEXT = {"true", "false", "null", "yes", "no", "on", "off", "y", "n", "nan",
 
 
 def to_text(arguments: Mapping[str, Any], defaults: Mapping[str, Any] | None = None) -> str:
-    """Arguments that are None, or what they are anyway (`defaults`), are left out. Values are not checked here: the
-    engine does, and says what is wrong."""
+    """Returns the arguments as text; "" if there are none. Arguments that are None or equal to their `defaults` are
+    omitted. Values are not checked here: the engine checks them and reports errors. Raises ValueError for a key that is
+    not a name."""
     for key in arguments:
         if not isinstance(key, str) or not _PLAIN.fullmatch(key):
             raise ValueError(f"{key!r} is no name of an argument")
@@ -45,5 +47,5 @@ def _value(value: Any) -> str:
 
 
 def without_arguments(text: str) -> str:
-    """ "x.move_absolute" of "x.move_absolute {position: 40.0}": enough where its end is told."""
+    """Returns "x.move_absolute" for "x.move_absolute {position: 40.0}": enough for the end of a command."""
     return text.split(" {", 1)[0]

@@ -1,4 +1,4 @@
-"""One axis of a session: its commands as methods, what it publishes as properties."""
+"""One axis of a session: its commands as methods, its published values as properties."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Axis(Component, AxisCommands, AxisOutputs):
 
     def __init__(self, session: Session, index: int, parameters: Mapping[str, Any]) -> None:
         super().__init__(session, index, parameters)
-        self.unit: str = parameters["unit"]  # u: the axis' own unit
+        self.unit: str = parameters["unit"]  # the axis' position unit, called u elsewhere
 
     def __repr__(self) -> str:
         return f"<Axis {self.name}: {self.state.value} at {self.actual_position:.6g} {self.unit}>"
@@ -31,10 +31,10 @@ class Axis(Component, AxisCommands, AxisOutputs):
 
     @property
     def powered(self) -> bool:
-        """The position loop is closed."""
+        """Whether the position loop is closed."""
         return self.loop_closed
 
     def forecast(self, verb: str = "", **arguments: Any) -> Forecast:
-        """What the motion in progress is going to do, or with a verb and its arguments what that command would if it
-        were given now: a dry run, nothing changes. In process only."""
+        """Returns the forecast of the motion in progress or, with a verb and its arguments, of that command as if it
+        were given now. A dry run: nothing changes. In process only; raises TaktError over LCM."""
         return self.session._foresee(self, verb, arguments)

@@ -16,20 +16,20 @@ STATES = ("detected", "visible", "taken")
 
 @dataclass(frozen=True)
 class BeltObject:
-    """An object on a belt, as it is now. Before it is visible nothing is known of its place."""
+    """The current state of an object on a belt. Its position is unknown until it is visible."""
 
-    number: int  # from 1 in the order of their detection, never used again
+    number: int  # from 1 in the order of detection, never reused
     state: str  # one of STATES
-    place: float  # mm along the belt, from its origin; of a table deg
+    place: float  # position along the belt from its origin [mm]; on a turning table [deg]
     pose: Pose  # in the world
-    in_range: bool  # it lies within the work range
-    kind: int  # these three as they were told
+    in_range: bool  # within the work range
+    kind: int  # kind, colour and quality as reported
     colour: int
     quality: float
 
 
 class Belt(Component, BeltCommands, BeltOutputs):
-    """A belt, or a table that turns."""
+    """A belt or a turning table."""
 
     KIND = "belt"
 
@@ -40,11 +40,11 @@ class Belt(Component, BeltCommands, BeltOutputs):
 
     @cached_property
     def axis(self) -> Axis:
-        """The axis that moves it, or measures it."""
+        """The axis that moves or measures the belt."""
         return self.session.axis(self.parameters["axis"])
 
     @property
     def objects(self) -> tuple[BeltObject, ...]:
-        """What lies on it, in the order of the numbers."""
+        """The objects on the belt, in the order of their numbers."""
         rows = self.session._objects(self)
         return tuple(BeltObject(number, STATES[state], *rest) for number, state, *rest in rows)

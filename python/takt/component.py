@@ -1,4 +1,4 @@
-"""One component of a session's machine: its commands as methods, what it publishes as properties."""
+"""One component of a session's machine: its commands as methods, its published values as properties."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ if TYPE_CHECKING:
 
 
 class Component:
-    """What components of all kinds have in common. Properties are those of the last cycle (in process) or of the last
+    """Base class of components of all kinds. Properties are values of the last cycle (in process) or of the last
     message (over LCM)."""
 
-    KIND: ClassVar[str]  # as the engine calls it
+    KIND: ClassVar[str]  # the engine's name of the kind
 
     def __init__(self, session: Session, index: int, parameters: Mapping[str, Any]) -> None:
         self.session = session
         self.index = index  # among all components of the machine
         self.name: str = parameters["name"]
-        self.parameters = parameters  # all of the machine file's, with the defaults
+        self.parameters = parameters  # of the machine file, including defaults
 
     def _repr_html_(self) -> str:
         from takt.notebook import component_table

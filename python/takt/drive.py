@@ -1,7 +1,8 @@
-"""Drives in a process of their own: what a motor, a field bus or another simulation is to an engine (EN-26, AX-87).
+"""External drives: connect a motor, a field bus or another simulation, in a process of its own, to an engine (EN-26,
+AX-87).
 
-A `Plant` listens for the set points of an engine and has a `Drive` of yours carry them out, one for each axis that the
-machine file lists under `external: drives:`. What the drive measured goes back as the answer.
+A `Plant` receives the set points of an engine and passes them to your `Drive` objects, one for each axis listed under
+`external: drives:` of the machine file. The values that a drive measured are sent back as the answer.
 """
 
 from __future__ import annotations
@@ -31,72 +32,76 @@ ANALOG: Final = msgs.drive_setpoint.MODE_ANALOG
 CYCLIC_TORQUE: Final = msgs.drive_setpoint.MODE_CYCLIC_TORQUE
 
 WATCHDOG = 100  # periods
-_REST_S = 0.01  # real time: between two steps of drives that the watchdog has switched off
+_REST_S = 0.01  # s, real time: between two steps of drives that the watchdog has switched off
 _MOST_WAIT_S = 0.1
 
 
 @dataclass(frozen=True)
 class SetPoint:
-    """What a drive is told for one cycle. As it is here: off."""
+    """The set points of a drive for one cycle. The defaults mean: drive off."""
 
-    mode: int = CYCLIC_POSITION  # which of the set points it follows
+    mode: int = CYCLIC_POSITION  # selects the set point that the drive follows
     enable: bool = False  # power stage on
     release_brake: bool = False  # brake relay energised
-    position_counts: float = 0.0  # csp: where to be at the end of the cycle, unwrapped, in the encoder's sense
-    velocity_counts_s: float = 0.0  # csp: fed forward; csv: set point; cst: largest speed either way
+    position_counts: float = 0.0  # csp: position at the end of the cycle, unwrapped, in the encoder's direction
+    velocity_counts_s: float = 0.0  # csp: feedforward; csv: set point; cst: largest speed in either direction
     voltage_v: float = 0.0  # analogue, -10 to 10 V
     torque_nm: float = 0.0  # cst; N on linear motors
     torque_until_counts_s: float = 0.0  # cst: signed velocity at which the torque ends in this cycle
-    torque_limit_nm: float = 0.0  # largest torque either way, in all modes; 0: that of the drive
-    digital_outputs: int = 0  # of the axis, a bit for each
-    period_s: float = 0.001  # length of a cycle
-    cycles: int = 1  # since the set point before: more where some were lost, or the computer was late
+    torque_limit_nm: float = 0.0  # largest torque in either direction, in all modes; 0: the limit of the drive
+    digital_outputs: int = 0  # of the axis, one bit each
+    period_s: float = 0.001  # cycle time
+    cycles: int = 1  # since the previous set point: above 1 if some were lost or the computer was late
 
 
 @dataclass
 class Measured:
-    """What a drive says at the end of a cycle: wires before any inversion, counts modulo 2^32."""
+    """The values measured by a drive at the end of a cycle: wires before any inversion, counts modulo 2^32."""
 
     counts: int = 0  # incremental: quadrature counter; absolute: the SSI word
     index_counts: int = 0  # the counter at the last index pulse
-    index_pulses: int = 0  # how many there were
+    index_pulses: int = 0  # number of index pulses so far
     encoder_error: bool = False
     limit_positive: bool = False
     limit_negative: bool = False
     reference: bool = False
     touch_probe: bool = False
-    probe_rises: int = 0  # edges of the touch probe; where none ever counts, the engine looks at the wire
+    probe_rises: int = 0  # edges of the touch probe; if they are never counted, the engine samples the wire
     probe_falls: int = 0
-    probe_rise_age_s: float = 0.0  # how long before the end of the cycle the last one came
+    probe_rise_age_s: float = 0.0  # time from the last edge to the end of the cycle
     probe_fall_age_s: float = 0.0
     drive_ready: bool = False  # power stage on and following its set point
     drive_fault: bool = False
     torque_nm: float = 0.0
     load_counts: int = 0  # of a second encoder, on the load
     load_encoder_error: bool = False
-    drive_error: int = 0  # what it says of its fault (CiA 402, 0x603F); 0: nothing
+    drive_error: int = 0  # the drive's error code (CiA 402, 0x603F); 0: none
 
 
 class Drive(ABC):
     """One drive with its encoder and switches."""
 
     def start(self) -> None:  # noqa: B027 (may be left as it is)
-        """An engine has started, and this drive is its own from now on."""
+        """Called when an engine starts to use this drive, before its first set point."""
 
     @abstractmethod
     def step(self, told: SetPoint, elapsed_s: float) -> Measured:
-        """Carries a set point out and says what the wires read at the end of its cycle, `elapsed_s` after the one
-        before (more than a period where set points were lost on the way). When the engine is not heard any more in real
-        time, it is called with a set point that says off, again and again."""
+        """Applies a set point and returns the measured values at the end of its cycle.
+
+        told: the set point.
+        elapsed_s: time [s] since the end of the previous cycle; more than a period if set points were lost.
+
+        In real time, when the engine is no longer heard, it is called repeatedly with a set point that means off.
+        """
 
 
 class Bus(ABC):
-    """Drives that share a wire: all set points of a cycle go out together, and what was measured comes back together.
+    """Drives on one bus: all set points of a cycle are sent together, and all measured values are received together.
 
     axes: the names of the axes of its drives.
-    period_s: how often it is kept going while there is no engine.
-    later_s: how much later the cycles of the engine ought to begin for the clock of the bus, as its last exchange says;
-        0: as they do.
+    period_s: period [s] of `idle` while no engine is heard.
+    later_s: time [s] by which the engine's cycles should begin later to match the clock of the bus, from the last
+        exchange; 0: no shift.
     """
 
     axes: Sequence[str]
@@ -104,24 +109,26 @@ class Bus(ABC):
     later_s: float = 0.0
 
     def start(self, axis: str, *, real_time: bool, period_s: float) -> None:  # noqa: B027 (may be left as it is)
-        """An engine has started, and the drive of this axis is its own from now on."""
+        """Called when an engine starts to use the drive of this axis, before its first set point."""
 
     @abstractmethod
     def exchange(self, told: Mapping[str, SetPoint], *, real_time: bool) -> Mapping[str, Measured | None]:
-        """Carries out one cycle. In real time what comes back was measured when the set points went out, so it is the
-        answer to the cycle before; in simulated time it was measured at the end of the cycle. None: a drive was not
-        heard. Set points that were lost on the way are missing in `told`."""
+        """Performs one cycle of the bus and returns the measured values by axis; None for a drive that was not heard.
+
+        In real time the values were measured when the set points were sent, and answer the previous cycle; in simulated
+        time they were measured at the end of this cycle. `told` lacks set points that were lost.
+        """
 
     @abstractmethod
     def idle(self, stop: Collection[str]) -> None:
-        """Keeps the bus going while no engine is heard, every `period_s`. stop: axes that had one before: their drives
-        brake by themselves; all are off."""
+        """Called every `period_s` while no engine is heard, to keep the bus alive with all drives off. `stop`: axes
+        that had an engine before; their drives brake by themselves."""
 
 
 class SimulatedServo(Drive):
-    """The servo that the engine itself would simulate for this axis: the very same motion, bit for bit."""
+    """The servo that the engine itself would simulate for this axis, with bit-identical motion."""
 
-    MOST_CYCLES = 1000  # of lost set points that are made up for
+    MOST_CYCLES = 1000  # most lost set points that are caught up
 
     def __init__(self, machine: str | os.PathLike[str], axis: str) -> None:
         from takt.engine import read_machine
@@ -150,18 +157,18 @@ class _Line:
     """One axis between the network and its drive."""
 
     axis: str
-    drive: Drive | None  # None: it is on a bus
+    drive: Drive | None  # None: on a bus
     bus: _Shared | None = field(default=None, repr=False)
     run_id: int = -1
-    cycle: int = -2  # carried out last; the first one is -1
+    cycle: int = -2  # the last one carried out; the first cycle is -1
     sequence: int = 0  # of the next answer
     answer: bytes = b""
     real_time: bool = False
     period_s: float = 0.001
-    heard_s: float = 0.0  # when, by the clock
-    off_since_s: float | None = None  # by the watchdog; None: it has not bitten
+    heard_s: float = 0.0  # monotonic time of the last set point
+    off_since_s: float | None = None  # switched off by the watchdog since; None: not
     stepped_s: float = 0.0
-    latched: bool = False  # the engine has not switched the drive off since the watchdog bit
+    latched: bool = False  # the engine has not switched the drive off since the watchdog did
     subscription: Any = field(default=None, repr=False)
 
 
@@ -171,9 +178,9 @@ class _Shared:
 
     bus: Bus
     lines: list[_Line] = field(default_factory=list)
-    pending: dict[str, tuple[_Line, SetPoint, int]] = field(default_factory=dict)  # by axis: of which cycle
-    since_s: float = 0.0  # the first of them
-    served_s: float = 0.0  # when there was the last exchange
+    pending: dict[str, tuple[_Line, SetPoint, int]] = field(default_factory=dict)  # by axis; with the cycle
+    since_s: float = 0.0  # time of the first pending set point
+    served_s: float = 0.0  # time of the last exchange
 
     @property
     def newest(self) -> int:
@@ -181,7 +188,7 @@ class _Shared:
 
     @property
     def complete(self) -> bool:
-        """There is a set point of one and the same cycle for all that have not carried it out already."""
+        """Whether every line has a set point of the newest cycle or has carried that cycle out."""
         newest = self.newest
         return all(
             self.pending[line.axis][2] == newest if line.axis in self.pending else line.cycle == newest
@@ -190,21 +197,24 @@ class _Shared:
 
     @property
     def alone(self) -> bool:
-        """No engine is heard."""
+        """Whether no engine is heard."""
         return all(line.run_id == -1 or line.off_since_s is not None for line in self.lines)
 
 
 class Plant:
-    """Connects drives with an engine.
+    """Connects drives with an engine over LCM.
 
     drives: by the names of their axes.
-    buses: with drives that share a wire, beside those.
-    watchdog: in real time, drives that hear no set point for so many periods are told to be off: 0 V, power stage off,
-        brake fallen. They stay off until the engine has switched them off and on again. Simulated time stands still
-        until the drives have answered: there is nothing to watch.
-    say: takes a sentence when an engine starts, when it is not heard any more, when it is back, and the first time when
-        its messages are ignored for want of the right key.
-    key: file with the key of the engine, unless the environment names it (TAKT_KEY_FILE); "": none.
+    url: LCM network of the engine.
+    buses: further drives, which share a bus each.
+    watchdog: number of periods [1] or more; in real time, drives without a set point for this time are switched off:
+        0 V, power stage off, brake applied. They stay off until the engine has switched them off and on again. There is
+        no watchdog in simulated time, which does not advance until the drives have answered.
+    say: called with a sentence when an engine starts, when it is no longer heard, when it is heard again, and the first
+        time messages are ignored because of a wrong key; None: prints to stderr.
+    key: file with the key of the engine; None: the file named by the environment (TAKT_KEY_FILE); "": no key.
+
+    Raises TaktError without drives and buses, KeyFileError if the key file cannot be used.
     """
 
     def __init__(
@@ -226,7 +236,7 @@ class Plant:
         self._url = url
         self._key = read_key(key)
         self._network = open_network(url, key=self._key, refused=self._refuse)
-        self.refused: Counter[str] = Counter()  # set points that were ignored for want of the right key, by reason
+        self.refused: Counter[str] = Counter()  # set points ignored because of a missing or wrong key, by reason
         self._id = random.SystemRandom().getrandbits(62)
         self._lines = {axis: _Line(axis, drive) for axis, drive in drives.items()}
         self._shared = [_Shared(bus) for bus in buses]
@@ -234,15 +244,15 @@ class Plant:
             shared.lines = [_Line(axis, None, shared) for axis in shared.bus.axes]
             self._lines |= {line.axis: line for line in shared.lines}
         self._stopped = False
-        self.malformed = 0  # messages that were no set points
+        self.malformed = 0  # messages that could not be decoded as set points
         for line in self._lines.values():
-            # Channels are regular expressions here; a point is the only such sign that a name may have.
+            # Channels are regular expressions here; the dot is the only special character allowed in names.
             channel = f"takt/drive/{line.axis}/setpoint".replace(".", "\\.")
             line.subscription = self._network.subscribe(channel, partial(self._receive, line))
             line.subscription.set_queue_capacity(1000)
 
     def run(self, duration_s: float | None = None) -> None:
-        """Serves until `stop`, or for so long."""
+        """Serves until `stop` is called, or for `duration_s` [s]; None: no limit."""
         end_s = None if duration_s is None else time.monotonic() + duration_s
         while not self._stopped and (end_s is None or time.monotonic() < end_s):
             left_s = _MOST_WAIT_S if end_s is None else max(0.0, min(_MOST_WAIT_S, end_s - time.monotonic()))
@@ -250,12 +260,13 @@ class Plant:
         self._stopped = False
 
     def stop(self) -> None:
-        """Ends `run`, also one that is about to begin; from a drive, another thread or a signal."""
+        """Ends `run`, also a call that is about to begin. May be called from a drive, another thread or a signal
+        handler."""
         self._stopped = True
 
     def handle(self, timeout_s: float = 0.0) -> None:
-        """Carries out what has come, waiting so long for the first of it at most, and sees to the watchdog."""
-        # Waiting with select, not with LCM, which fails when a signal comes.
+        """Processes received set points, waiting up to `timeout_s` [s] for the first one, and checks the watchdog."""
+        # Waits with select: LCM's own wait fails when a signal arrives.
         if select.select([self._network.fileno()], [], [], max(0.0, min(timeout_s, self._wait_s())))[0]:
             self._network.handle()
             # Set points for a bus are collected; after a stall only the newest ones count.
@@ -268,7 +279,7 @@ class Plant:
             self._watch(line, now_s)
 
     def _wait_s(self) -> float:
-        """How long until the watchdog of some drive wants to be looked at."""
+        """Returns the time [s] until a bus or a watchdog has to be served next."""
         waits = [_MOST_WAIT_S]
         now_s = time.monotonic()
         for shared in self._shared:
@@ -302,18 +313,18 @@ class Plant:
             self._say(f"{channel}: {not_the_key(self._url, self._key, state)}")
 
     def _receive(self, line: _Line, channel: str, data: bytes) -> None:
-        if self._key is None and _core.has_tag(data):  # nothing here could tell whether it is the engine's
+        if self._key is None and _core.has_tag(data):  # cannot be authenticated without a key
             self.refused["no_key"] += 1
             if self.refused["no_key"] == 1:
                 self._say(f"{channel}: {no_key(self._url)}")
             return
         try:
             message = msgs.drive_setpoint.decode(data)
-        except Exception:  # generated code raises whatever comes
+        except Exception:  # generated code raises many kinds of errors
             self.malformed += 1
             return
         if message.axis != line.axis or message.run_id < line.run_id or not message.period_s > 0:
-            return  # not for this drive, or from an engine that another one came after
+            return  # not for this drive, or from an engine that has been replaced
         if message.run_id > line.run_id:
             self._begin(line, message)
         elif message.cycle == line.cycle:
@@ -360,7 +371,7 @@ class Plant:
         self._answer(line, measured, line.cycle)
 
     def _serve(self, shared: _Shared, now_s: float) -> None:
-        """Has a bus carry out what is complete, or in real time what there is after half a period."""
+        """Performs an exchange on the bus when the set points are complete, in real time after half a period anyway."""
         if not shared.pending:
             if shared.alone and now_s - shared.served_s >= shared.bus.period_s:
                 shared.served_s = now_s
@@ -377,7 +388,7 @@ class Plant:
         for line, _ in taken:
             found = measured.get(line.axis)
             if found is None and not real_time:
-                continue  # the engine asks again
+                continue  # the engine repeats the set point
             line.cycle, line.answer = newest, b""
             if found is None or (real_time and newest == 0):
                 continue
@@ -415,8 +426,16 @@ def simulate(
     *,
     twin: bool = False,
 ) -> int:
-    """Serves the external drives of a machine, or those of these axes, until SIGINT or SIGTERM. twin: those that it
-    moves are in MuJoCo."""
+    """Serves simulated external drives of a machine until SIGINT or SIGTERM. Returns 0.
+
+    machine: the machine file.
+    url: LCM network; None: that of the machine file.
+    axes: the axes to serve; empty: all external ones.
+    watchdog, key: as in `Plant`.
+    twin: axes that the machine's twin moves are simulated in MuJoCo; not together with `axes`.
+
+    Raises TaktError if an axis is not external, or the machine has no external drives.
+    """
     from takt.engine import read_machine
 
     text, file_name = read_machine(machine)

@@ -1,4 +1,4 @@
-"""The engine in process, in virtual time: steps as fast as it can, and bit for bit the same each time."""
+"""The engine in process, in virtual time: runs as fast as possible, with bit-identical results every time."""
 
 from __future__ import annotations
 
@@ -39,25 +39,26 @@ from takt.yaml_text import to_json
 if TYPE_CHECKING:
     from takt.cam import Table
 
-MOST_BYTES = 8_000_001  # of a machine file: one more than there may be
-CHUNK = 20_000  # cycles between two looks at Ctrl-C
+MOST_BYTES = 8_000_001  # read of a machine file: one more than the limit
+CHUNK = 20_000  # cycles between two checks for Ctrl-C
 
 
 @dataclass(frozen=True)
 class _Text:
-    """The text of a machine file, and whose it is."""
+    """The text of a machine file and the file's name."""
 
     text: bytes
     file_name: str
 
 
-Machine = str | os.PathLike[str] | Mapping[str, Any]  # a path, the text itself, or what the text says, as dicts
+Machine = str | os.PathLike[str] | Mapping[str, Any]  # a path, the text itself, or its content as dicts
 
 
 def read_machine(machine: Machine | _Text) -> tuple[bytes, str]:
-    """Text and file name of a machine given as a path, as the text itself (which has more than one line), or as dicts
-    and lists. The text stays as it is: the engine says where it is not UTF-8. Of dicts a text is made, in which places
-    of problems are counted, a key a line."""
+    """Returns text and file name of a machine given as a path, as the text itself (more than one line), or as dicts and
+    lists. The text is not decoded: the engine reports where it is not UTF-8. Dicts are written as text with one key a
+    line, to which the line numbers of problems refer. Raises ConfigError if the file cannot be read or the dict cannot
+    be written."""
     if isinstance(machine, _Text):
         return machine.text, machine.file_name
     if isinstance(machine, Mapping):
@@ -77,7 +78,7 @@ def read_machine(machine: Machine | _Text) -> tuple[bytes, str]:
 
 
 def _text_of(machine: Mapping[str, Any]) -> bytes:
-    """The machine file that says the same: JSON, which is YAML."""
+    """Returns the machine as the text of a machine file: JSON, a subset of YAML."""
     try:
         text = to_json(machine, indent=1, allow_nan=False, default=_plain)
     except (TypeError, ValueError) as error:
@@ -86,7 +87,7 @@ def _text_of(machine: Mapping[str, Any]) -> bytes:
 
 
 def _plain(value: Any) -> Any:
-    """What JSON does not know by itself."""
+    """Converts mappings, paths and NumPy values, which the JSON encoder does not accept."""
     if isinstance(value, Mapping):
         return dict(value)
     if isinstance(value, os.PathLike):
@@ -99,16 +100,18 @@ def _plain(value: Any) -> Any:
 class Engine(Session):
     """A machine in virtual time.
 
-    machine: the path of a machine file, its text, or the same as a dict.
-    period: s, instead of the machine file's.
-    journal: keep the journal and a hash of the whole state after every cycle (`take_journal`, `take_hashes`), which
-        `save` and `clone` need.
-    url: LCM network of external drives, instead of the machine file's (`lcm.url`, else LCM_DEFAULT_URL). Time stands
-        still until they have answered.
-    changes: values of the machine file to be changed, as {"axes.x.limits.velocity": 300}.
-    key: file with the key of external drives, unless the environment names it (TAKT_KEY_FILE); "": none.
-    plant: what moves axes instead of simulated servos, in this process: a `takt.Plant`, or "mujoco", which is the
-        machine's twin (section `twin` of the machine file; takt.twin). It moves external drives, too.
+    machine: the path of a machine file, its text, or its content as a dict.
+    period: cycle time [s]; None: that of the machine file.
+    journal: keep the journal and a hash of the whole state after every cycle (`take_journal`, `take_hashes`); required
+        by `save` and `clone`.
+    url: LCM network of external drives; None: that of the machine file (`lcm.url`, else LCM_DEFAULT_URL). Engine time
+        does not advance until the drives have answered.
+    changes: values of the machine file to change, as {"axes.x.limits.velocity": 300}.
+    key: file with the key of external drives; None: the file named by the environment (TAKT_KEY_FILE); "": no key.
+    plant: in-process plant that moves axes instead of simulated servos: a `takt.Plant`, or "mujoco" for the machine's
+        twin (section `twin` of the machine file; takt.twin). It may move external drives, too.
+
+    Raises ConfigError if the machine file is wrong.
     """
 
     def __init__(
@@ -125,9 +128,9 @@ class Engine(Session):
         text, file_name = read_machine(machine)
         text = changed(text, file_name, changes or {})
         self._origin = (text, file_name, period)
-        self._journal: list[JournalEntry] | None = [] if journal else None  # all of it, for states that are kept
-        self._taken = 0  # entries of it that `take_journal` has given
-        self._waiting: deque[tuple[int, float, str, str, str]] = deque()  # of a journal, what no cycle had applied
+        self._journal: list[JournalEntry] | None = [] if journal else None  # all entries, for `save`
+        self._taken = 0  # entries that `take_journal` has returned
+        self._waiting: deque[tuple[int, float, str, str, str]] = deque()  # commands that no cycle has applied yet
         if period is not None:
             period = seconds(period, "a period")
         described = json.loads(_core.load_machine(text, file_name))
@@ -145,7 +148,7 @@ class Engine(Session):
             plant=moved,
         )
         self._unfinished: dict[int, Feedback] = {}
-        self._unreleased: list[Feedback] = []  # their release was refused
+        self._unreleased: list[Feedback] = []  # commands whose release was refused; retried
         self._core_recorders: dict[Recorder, _core.Recorder] = {}
         self._folder = str(Path(file_name).resolve().parent)
         super().__init__(json.loads(self._core.machine_json), text.decode())
@@ -167,31 +170,32 @@ class Engine(Session):
 
     @property
     def state_hash(self) -> int:
-        """Hash of the whole state: equal in two runs that were the same so far."""
+        """Hash of the whole state; equal in two runs that have been identical so far."""
         return self._core.state_hash()
 
     def step(self, cycles: int = 1) -> None:
-        """Runs so many cycles."""
+        """Runs `cycles` cycles."""
         self._check_open()
         self._run(whole(cycles, "a number of cycles", 0))
 
     def shut_down(self, timeout: float = 60.0) -> None:
-        """Stops everything along its ramps and opens the loops, as the end of taktd does; no command is accepted any
-        more."""
+        """Stops all motions along their ramps and opens the control loops, as taktd does when it ends. Commands are no
+        longer accepted. Raises TimeoutError if an axis is not at rest with its loop open within `timeout` [s]."""
         self._check_open()
         self._core.request_shutdown()
-        self._run(1)  # a machine that is off already has to hear of it, too
+        self._run(1)  # a machine that is already off has to process the request, too
         self.wait(lambda: self._core.all_disabled, timeout, what="every axis at rest with its loop open")
 
     def close(self) -> None:
-        """Ends the session, and what external drives hear of it; what was recorded stays readable."""
+        """Ends the session and leaves the network of external drives. Recordings stay readable."""
         try:
             super().close()
         finally:
             self._core.leave_network()
 
     def take_journal(self) -> list[JournalEntry]:
-        """Commands applied since the last call: (cycle, ticket, lease in s, target, verb, arguments)."""
+        """Returns the commands applied since the last call: (cycle, ticket, lease [s], target, verb, arguments). Empty
+        without `journal=True`."""
         if self._journal is None:
             return []
         self._hear_journal(self._journal)
@@ -205,10 +209,10 @@ class Engine(Session):
                 self._waiting.popleft()
 
     def save(self) -> Saved:
-        """The state as it is now. `Engine.restore` makes an engine that stands there, and goes on in the same way. What
-        led there is kept, and is made again, so restoring takes as long as bare cycles do. Commands that no cycle has
-        applied yet are kept, too. Needs `journal=True`; there must be no plant and no external drives, whose states are
-        not the engine's."""
+        """Returns the current state; `Engine.restore` makes an engine that continues from it identically. The journal
+        is saved and replayed, so restoring takes as long as running the cycles. Commands that no cycle has applied yet
+        are included. Raises TaktError without `journal=True`, or if the machine has a plant or external drives, whose
+        states the engine does not have."""
         self._check_open()
         if self._journal is None:
             raise TaktError("only an engine with a journal can be saved: takt.Engine(machine, journal=True)")
@@ -223,7 +227,8 @@ class Engine(Session):
 
     @classmethod
     def restore(cls, saved: Saved) -> Engine:
-        """An engine in the state that was saved, which it is held against. It has a journal, too."""
+        """Returns an engine in the saved state, with a journal of its own. Raises TaktError if the replayed state
+        differs from the saved one (compared by hash)."""
         if not isinstance(saved, Saved):
             raise TypeError(f"expected what Engine.save returned, not {saved!r}")
         engine = cls.__new__(cls)
@@ -232,8 +237,8 @@ class Engine(Session):
         return engine
 
     def clone(self) -> Engine:
-        """A second engine in the same state. Neither knows of the other; feedback objects, programs and recordings stay
-        with this one."""
+        """Returns a second, independent engine in the same state. Feedback objects, programs and recordings stay with
+        this engine. Raises TaktError as `save`."""
         return Engine.restore(self.save())
 
     def _go_to(self, saved: Saved) -> None:
@@ -248,7 +253,7 @@ class Engine(Session):
             elif verb == "stop_all":
                 self._core.step(cycle - self.cycle)
                 self._core.request_shutdown()
-            # All else that the engine gave itself, it gives itself again.
+            # Other commands without a ticket are the engine's own; it gives them again by itself.
         self._core.step(saved.cycle - self.cycle)
         self._core.take_feedback()
         self._core.take_hashes()
@@ -271,12 +276,12 @@ class Engine(Session):
             raise TaktError(f"the saved command {target}.{verb} {arguments} cannot be given again: {why}")
 
     def take_drive_journal(self) -> list[tuple[int, int, int, dict[str, Any]]]:
-        """What external drives had measured, as it was taken since the last call: (cycle, number of the axis from 0,
-        cycle whose set point it answers, wires)."""
+        """Returns the measurements of external drives used since the last call: (cycle, number of the axis from 0,
+        cycle of the answered set point, wires)."""
         return self._core.take_drive_journal()
 
     def take_hashes(self) -> tuple[np.typing.NDArray[np.uint64], np.typing.NDArray[np.uint64]]:
-        """Cycles since the last call, and the hash of the state after each."""
+        """Returns the cycles since the last call and the hash of the state after each."""
         return self._core.take_hashes()
 
     def _submit(self, feedback: Feedback) -> None:
@@ -342,7 +347,7 @@ class Engine(Session):
         return Forecast(core, sentence if core.error_id else "")
 
     def _step(self, cycles: int, until_feedback: bool) -> int:
-        """Runs one cycle at least and `cycles` at most; how many it were."""
+        """Runs at least one and at most `cycles` cycles. Returns their number."""
         self._check_open()
         again, self._unreleased = self._unreleased, []
         for feedback in again:
@@ -357,7 +362,7 @@ class Engine(Session):
             for belt in recorder.belts:
                 cycles = min(cycles, max(1, round(recorder.belt_objects.due_in(belt, self.now) / self.period)))
         while not (made := self._core.step(min(cycles, CHUNK), until_feedback)):
-            self._warn()  # external drives let it wait: time for a look at Ctrl-C, too
+            self._warn()  # waiting for external drives; Ctrl-C is checked here, too
         self._warn()
         self._take_feedback()
         for recorder in self._recorders:
@@ -435,12 +440,12 @@ def _plant_of(
 
 
 def error_text(error_id: int) -> str:
-    """What an error number means, for people."""
+    """Returns the meaning of an error number as text; "unknown error" for an unknown number."""
     return _ERRORS.get(error_id, ("", "unknown error"))[1]
 
 
 def error_name(error_id: int) -> str:
-    """The short name of an error number ("Etime"), as lists of errors have it."""
+    """Returns the short name of an error number ("Etime"); "" for an unknown number."""
     return _ERRORS.get(error_id, ("", ""))[0]
 
 

@@ -1,4 +1,4 @@
-"""What can go wrong, as exceptions. Each text is one sentence for people; ConfigError has one line for each problem."""
+"""The exceptions of this package. Each text is one readable sentence; ConfigError has one line for each problem."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ if TYPE_CHECKING:
 
 
 class TaktError(Exception):
-    """Everything that this package raises on purpose."""
+    """Base class of the exceptions of this package."""
 
 
 class ConfigError(TaktError, ValueError):
-    """A machine file is wrong. `problems` says where and what was expected, one line each."""
+    """A machine file is wrong. `problems` lists where, and what was expected, one line each."""
 
     def __init__(self, problems: Sequence[str]) -> None:
         self.problems = list(problems)
         super().__init__("\n".join(self.problems))
 
     def __reduce__(self) -> tuple[type[ConfigError], tuple[list[str]]]:
-        return type(self), (self.problems,)  # pickled, as by runs in several processes
+        return type(self), (self.problems,)  # for pickling, as between processes
 
 
 class CommandError(TaktError):
@@ -37,19 +37,19 @@ class CommandError(TaktError):
 
 
 class TimeoutError(TaktError, builtins.TimeoutError):
-    """Something did not happen in time."""
+    """A condition was not met in time."""
 
 
 class ConnectionError(TaktError, builtins.ConnectionError):
-    """The engine cannot be reached, or went away."""
+    """The engine cannot be reached, or the connection to it is lost."""
 
 
 class KeyFileError(TaktError):
-    """A key file cannot be used; the text says why, without what is in the file."""
+    """A key file cannot be used; the text says why and never quotes the content of the file."""
 
 
 class DriveWarning(UserWarning):
-    """An external drive sent what cannot be used, or is not heard."""
+    """An external drive sent unusable data, or is not heard."""
 
 
 class ClosedError(TaktError):
@@ -57,13 +57,13 @@ class ClosedError(TaktError):
 
 
 def shortened(text: str, most: int = 200) -> str:
-    """The text on one line, cut off after so many characters."""
+    """Returns the text on one line, cut off after `most` characters."""
     line = " ".join(text.split())
     return line if len(line) <= most else f"{line[:most]} ..."
 
 
 def whole(value: object, what: str, least: int) -> int:
-    """A whole number from `least` on, or a sentence."""
+    """Returns `value` as an int. Raises TypeError if it is not an integer, ValueError if it is below `least`."""
     if isinstance(value, bool) or not isinstance(value, Integral):
         raise TypeError(f"{what} is a whole number, not {value!r}")
     if value < least:
@@ -72,7 +72,8 @@ def whole(value: object, what: str, least: int) -> int:
 
 
 def seconds(value: object, what: str, most: float = math.inf) -> float:
-    """A number of seconds from 0 to `most`, or a sentence."""
+    """Returns `value` [s] as a float. Raises TypeError if it is not a number, ValueError if it is not within 0 to
+    `most`."""
     if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError(f"{what} is a number of seconds, not {value!r}")
     if not 0 <= float(value) <= most:

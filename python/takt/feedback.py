@@ -1,4 +1,4 @@
-"""What becomes of a command: Busy -> Active -> Done | Aborted | Error, once."""
+"""Feedback of a command: Busy -> Active -> Done | Aborted | Error; a final state does not change."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ Place = tuple[str, int]  # file and line
 Until = Literal["final", "done", "active", "reached"]
 
 DEFAULT_TIMEOUT_S = 60.0
-QUEUE_FULL = 3012  # error number: the command may be given again
+QUEUE_FULL = 3012  # error number; the command may be retried
 
 
 class FeedbackState(IntEnum):
-    BUSY = 0  # accepted, waiting for its turn
+    BUSY = 0  # accepted, not in control yet
     ACTIVE = 1  # in control
-    DONE = 2  # final: reached what it was for
+    DONE = 2  # final: completed
     ABORTED = 3  # final: another command or a fault took over
     ERROR = 4  # final: refused or failed
 
 
 class Feedback:
-    """One command that was given. Changes while the session steps or receives; ends in exactly one of Done, Aborted,
-    Error."""
+    """The feedback of one command. It is updated while the session steps or receives, and ends in exactly one of Done,
+    Aborted, Error."""
 
     def __init__(self, session: Session, target: str, verb: str, arguments: str, *, level_sensitive: bool) -> None:
         self._session = session
@@ -37,42 +37,42 @@ class Feedback:
         self.verb = verb
         self.arguments = arguments  # as given to the engine
         self.level_sensitive = level_sensitive  # acts until `release`d
-        self.given_at: tuple[Place, ...] = ()  # where the program gave it, the innermost call first
+        self.given_at: tuple[Place, ...] = ()  # call stack of the program that gave it, innermost call first
         self.ticket = 0  # the engine's number of the command; 0: refused
-        self.reached = False  # a command that never ends by itself has what it was given for
-        self.cycle = -1  # of the last change; -1: before the command came to a cycle
-        self.travel_time_s = 0.0  # s, how long the motion takes as planned when it began; 0: not known (AX-96)
-        self.value = 0.0  # what a command was to read or capture, has covered, or (movers) s it took, once it has ended
-        self.object: Component | None = None  # that is in the way: a mover, a track, an environment ...
-        self.released = False  # let go of, whether or not the engine has taken up the release yet
-        self._release: Feedback | None = None  # the last try to
+        self.reached = False  # a command that does not end by itself has reached its goal
+        self.cycle = -1  # of the last change; -1: no cycle has processed the command yet
+        self.travel_time_s = 0.0  # s, duration of the motion as planned at its start; 0: not known (AX-96)
+        self.value = 0.0  # after the end: the value read or captured, distance covered, or (movers) s it took
+        self.object: Component | None = None  # the obstructing mover, track, environment ...
+        self.released = False  # release requested, whether or not the engine has applied it yet
+        self._release: Feedback | None = None  # the last attempt to release it
         self._state = FeedbackState.BUSY
         self._error_id = 0
         self._sentence = ""
-        self._refused = False  # an error before it ever came to control anything
-        self._heeded = False  # the program has asked what became of it when it was final
+        self._refused = False  # failed before it was in control
+        self._heeded = False  # the program has read its result after it was final
 
     @property
     def state(self) -> FeedbackState:
-        """What has become of it so far."""
+        """The current state."""
         self._heeded |= self._final
         return self._state
 
     @property
     def error_id(self) -> int:
-        """Number of what went wrong; 0: nothing has."""
+        """The error number; 0: no error."""
         self._heeded |= self._final
         return self._error_id
 
     @property
     def sentence(self) -> str:
-        """What went wrong; empty while nothing has."""
+        """The reason of an error or abort as a sentence; empty otherwise."""
         self._heeded |= self._final
         return self._sentence
 
     @property
     def busy(self) -> bool:
-        """Not final yet, in control or not."""
+        """Whether the command is not final: Busy or Active."""
         return self.state in (FeedbackState.BUSY, FeedbackState.ACTIVE)
 
     @property
@@ -97,12 +97,12 @@ class Feedback:
 
     @property
     def time_s(self) -> float:
-        """Engine time of the last change; NaN before the command came to a cycle."""
+        """Engine time [s] of the last change; NaN before a cycle has processed the command."""
         return self.cycle * self._session.period if self.cycle >= 0 else math.nan
 
     @property
     def text(self) -> str:
-        """The command for people: "x.move_absolute {position: 100.0}"."""
+        """The command as readable text: "x.move_absolute {position: 100.0}"."""
         return f"{self.target}.{self.verb} {self.arguments}".rstrip()
 
     def __repr__(self) -> str:
@@ -110,10 +110,15 @@ class Feedback:
         return f"<Feedback {self.text}: {self.state.name.lower()}{', reached' if self.reached else ''}{end}>"
 
     def wait(self, timeout: float = DEFAULT_TIMEOUT_S, *, until: Until = "final") -> Feedback:
-        """Lets engine time pass until the command is final ("final", "done"), in control ("active") or has what it was
-        given for ("reached"), `timeout` in seconds of engine time. Raises CommandError on an error or when it is
-        aborted (an active command has been active: that is no error for "active"), TimeoutError when nothing of that
-        happens in time."""
+        """Lets engine time pass until the command reaches a state. Returns this feedback.
+
+        timeout: engine time [s].
+        until: "final" or "done": the command is final; "active": it is in control; "reached": it has reached its goal,
+            for commands that do not end by themselves. A final command ends every wait.
+
+        Raises CommandError if the command is in error or aborted then, TimeoutError if the state is not reached within
+        `timeout`.
+        """
         if until not in ("final", "done", "active", "reached"):
             raise ValueError(f"until is one of final, done, active, reached, not {until!r}")
 
@@ -126,23 +131,23 @@ class Feedback:
         return self
 
     def wait_final(self, timeout: float = DEFAULT_TIMEOUT_S) -> Feedback:
-        """As `wait`, but an abort or an error is an answer like any other."""
+        """As `wait`, but does not raise if the command is aborted or in error. Returns this feedback."""
         self._wait(lambda: self.final, timeout, "final")
         return self
 
     def release(self) -> Feedback:
-        """Lets go of a level-sensitive command (jog, stop with hold). The feedback of the release itself. While the
-        engine's queue is full it is refused, and given again by itself until the engine takes it."""
+        """Releases a level-sensitive command (jog, stop with hold). Returns the feedback of the release. A release that
+        is refused because the engine's queue is full is retried automatically until the engine accepts it."""
         return self._session._release(self)
 
     @property
     def _lets_go_of_another(self) -> bool:
-        """Whether it is the release of a level-sensitive command; movers have a command `release` of their own."""
+        """Whether this is the release of a level-sensitive command (movers have a command `release` of their own)."""
         return self.target == "machine" and self.verb == "release"
 
     @property
     def _release_is_settled(self) -> bool:
-        """The release has done what it can: it need not be given again."""
+        """Whether the release is final and need not be retried."""
         return self._release is not None and self._release._final and self._release._error_id != QUEUE_FULL
 
     @property
@@ -159,7 +164,7 @@ class Feedback:
 
     @property
     def _ignored(self) -> bool:
-        """Refused, and the program has not asked."""
+        """Whether the command was refused and the program has not read its result."""
         return self._refused and not self._heeded
 
     def _wait(self, arrived: Arrived, timeout: float, until: str) -> None:
@@ -169,7 +174,7 @@ class Feedback:
         self._session._catch_up(self.cycle)
 
     def _update(self, state: int, reached: bool, error_id: int, sentence: str, cycle: int, value: float = 0.0) -> bool:
-        """Takes over a report. False: it says nothing new (final states stay)."""
+        """Applies a report of the engine. Returns False if it changes nothing (final states do not change)."""
         new = FeedbackState(state)
         if self._final or new < self._state or (new, reached) == (self._state, self.reached):
             return False
@@ -182,7 +187,7 @@ class Feedback:
             self.travel_time_s = value
         elif new > FeedbackState.ACTIVE:
             self.value = value
-        self._state = new  # last: who sees it on another thread sees the rest too
+        self._state = new  # last: another thread that sees it sees the other values too
         return True
 
 

@@ -1,4 +1,4 @@
-"""One group of axes of a session: they move together, along paths of a tool or of their own."""
+"""One group of axes of a session: coordinated motion along paths of the tool or of the axes."""
 
 from __future__ import annotations
 
@@ -32,38 +32,39 @@ class Group(Component, GroupCommands, GroupOutputs):
 
     @property
     def members(self) -> tuple[Axis, ...]:
-        """Its axes in their places: those of the kinematics first."""
+        """The axes of the group, by member position: those of the kinematics first. Unused positions are left out."""
         axes = list(self.session.axes.values())
         return tuple(axes[number - 1] for number in self.places if number)
 
     @property
     def places(self) -> tuple[int, ...]:
-        """For each of the eight places the number of its axis, from 1; 0: none."""
+        """The axis number, from 1, at each of the eight member positions; 0: unused."""
         return tuple(int(self._value(f"member{place}")) for place in range(1, 9))
 
     @cached_property
     def parts(self) -> tuple[str, ...]:
-        """What its workspace knows by name, in the order of their numbers from 1: the tool and its bounds, parts of
-        links and gripper, obstacles. Empty without a workspace."""
+        """The names in its workspace, in the order of their numbers from 1: the tool and its bounds, parts of links and
+        gripper, obstacles. Empty without a workspace."""
         text = to_json(self.session.machine).encode()
         return tuple(_core.parts_of_groups(text, "machine").get(self.name, ()))
 
     @property
     def in_the_way(self) -> tuple[str, ...]:
-        """What the last move was refused for: what moves and what it would meet, or the tool and its bound. Empty:
-        for neither."""
+        """The names of the two parts for which the last move was refused: the moving part and the part that it would
+        collide with, or the tool and its bound. Empty: no such refusal."""
         numbers = (int(self.first_part), int(self.second_part))
         return tuple(self.parts[number - 1] for number in numbers if number)
 
     @property
     def zone_names(self) -> tuple[str, ...]:
-        """The zones of the machine file that the group has: its tool is there, or is to go there."""
+        """The names of the zones that the group occupies or has reserved: its tool is inside or will enter."""
         names = [str(zone["name"]) for zone in self.session.machine.get("zones", [])]
         return tuple(name for i, name in enumerate(names) if int(self.zones) >> i & 1)
 
     @property
     def waiting(self) -> str:
-        """Where it waits and for what: "at zone 'belt' for group 'left'". Empty: it does not wait at a zone."""
+        """The zone at which the group waits, and the group that it waits for: "at zone 'belt' for group 'left'". Empty:
+        it does not wait at a zone."""
         group, zone = int(self.waits_for), int(self.waits_zone)
         if not group:
             return ""
@@ -72,16 +73,17 @@ class Group(Component, GroupCommands, GroupOutputs):
 
     @property
     def pose(self) -> Pose:
-        """Where the tool centre point is commanded to be, in the machine coordinate system."""
+        """The commanded pose of the tool centre point in the machine coordinate system: X, Y, Z [mm], A, B, C [deg]."""
         return self.x, self.y, self.z, self.a, self.b, self.c
 
     @property
     def actual_pose(self) -> Pose:
-        """The same as measured."""
+        """The actual pose of the tool centre point in the machine coordinate system: X, Y, Z [mm], A, B, C [deg]."""
         return self.actual_x, self.actual_y, self.actual_z, self.actual_a, self.actual_b, self.actual_c
 
     def product_system(self, pcs: int) -> Pose:
-        """Where product coordinate system `pcs`, from 1 to 16, is now in the machine coordinate system."""
+        """Returns the current pose of product coordinate system `pcs` (1 to 16) in the machine coordinate system.
+        Raises TaktError for other numbers."""
         if not 1 <= pcs <= PRODUCT_SYSTEMS:
             raise TaktError(f"there are product coordinate systems 1 to {PRODUCT_SYSTEMS}, found {pcs}")
         x, y, z, a, b, c = (float(self._value(f"pcs{pcs}_{number}")) for number in POSE)
@@ -95,16 +97,19 @@ class Group(Component, GroupCommands, GroupOutputs):
         seen: npt.ArrayLike | None = None,
         largest_residual: float | None = None,
     ) -> calibrate.Calibration:
-        """Sets product coordinate system `pcs` to where measured places of the tool have it, as of a table or a camera,
-        and returns it with what is left over (GR-46).
+        """Computes product coordinate system `pcs` from measured positions of the tool, as of a table or a camera, sets
+        it, and returns it with its residuals (GR-46).
 
-        `measured`: places or poses in the machine coordinate system, as `actual_pose` has them; the turn of a pose is
-        not used. Three: the origin, a point on X, a point towards Y. Four: the same three give the directions, the
-        fourth one is the origin. With `seen`, the same points by their numbers in the product coordinate system, three
-        or more in any order, it is the nearest frame by the sum of squares.
+        pcs: 1 to 16.
+        measured: positions or poses in the machine coordinate system, as `actual_pose`; the rotation of a pose is not
+            used. Three: the origin, a point on X, a point towards Y. Four: the first three give the directions, the
+            fourth is the origin.
+        seen: the coordinates of the same points in the product coordinate system, three or more points in any order;
+            the frame is then the least squares fit. None: `measured` has three or four points as above.
+        largest_residual: limit [mm] of the residuals; None: no limit.
 
-        Raises CalibrationError, and sets nothing, where the points define no frame or one of them is further off than
-        `largest_residual` (mm).
+        Raises CalibrationError, and sets nothing, if the points define no frame or a residual exceeds
+        `largest_residual`.
         """
         self.product_system(pcs)
         places = _places(measured)
@@ -127,12 +132,12 @@ class Group(Component, GroupCommands, GroupOutputs):
 
     @property
     def base(self) -> Pose:
-        """Where the machine coordinate system is in the world, as the machine file says."""
+        """The pose of the machine coordinate system in the world, from the machine file."""
         return self._given("base")
 
     @property
     def tool(self) -> Pose:
-        """Where the tool centre point is on the flange: as `set_tool` said, or the machine file."""
+        """The pose of the tool centre point on the flange, as set by `set_tool` or the machine file."""
         x, y, z, a, b, c = (float(self._value(f"tool_{number}")) for number in POSE)
         return x, y, z, a, b, c
 
@@ -142,7 +147,7 @@ class Group(Component, GroupCommands, GroupOutputs):
 
 
 def _places(points: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """X, Y, Z of each place or pose."""
+    """Returns X, Y, Z of each position or pose."""
     try:
         rows = np.atleast_2d(np.asarray(points, dtype=float))
     except (TypeError, ValueError):

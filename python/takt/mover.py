@@ -1,4 +1,4 @@
-"""One planar mover of a session: it floats over stators and moves in six coordinates."""
+"""One planar mover of a session: it levitates above stators and moves in six coordinates."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from takt.trail import TrackTrail
 
 @dataclass(frozen=True)
 class MoverRecord:
-    """A command of a mover and what became of it."""
+    """A command of a mover and its outcome."""
 
     ticket: int
     verb: str
     state: FeedbackState
-    error_id: int  # 0: none
-    cycle: int  # that took the command
-    begun: int  # cycle in which it began; of buffered ones later than it was given
-    changed: int  # cycle in which it came to be what it is
-    object: Component | None  # that was in the way
-    limited_by: str  # what of its dynamics was more than the mover can do, and was reduced
+    error_id: int  # 0: no error
+    cycle: int  # in which the command was received
+    begun: int  # cycle in which it became active; later than `cycle` for buffered commands
+    changed: int  # cycle of the last change of its state
+    object: Component | None  # the obstructing component
+    limited_by: str  # the first of its dynamics that exceeded the mover's limits and was reduced
 
 
 class Mover(Component, MoverCommands, MoverOutputs):
@@ -38,7 +38,8 @@ class Mover(Component, MoverCommands, MoverOutputs):
 
     @property
     def position_on_current_part(self) -> tuple[float, float, float]:
-        """X, Y (mm) and C (deg), X and Y in the coordinates of the part that its middle is on."""
+        """X, Y [mm] and C [deg], X and Y relative to the part of the surface below the mover's centre. Raises TaktError
+        if the mover is on no part."""
         if self.part == 0:
             raise TaktError(f"mover {self.name} is on no part")
         part = list(self.session.parts.values())[self.part - 1]
@@ -46,25 +47,26 @@ class Mover(Component, MoverCommands, MoverOutputs):
 
     @property
     def blocked_by(self) -> Component | None:
-        """What it waits for: a mover, the axis that is its master, a track that ends, a part. None: nothing."""
+        """The component that it waits for: a mover, its master axis, a track that ends, a part. None: it does not
+        wait."""
         return self.session._object_of(str(self.blocker_kind), self.blocker)
 
     def track_trail(self) -> TrackTrail:
-        """The tracks along which its command leads it, that where it is first; of one that stands on a track and is to
-        stay: that alone. Empty: it is on no track. A track that it comes back to is named once."""
+        """Returns the tracks along which its command leads, the current one first; only that one if the mover is at
+        rest. Empty if it is on no track. A track that is visited again is named once."""
         tracks = list(self.session.tracks)
         return TrackTrail(dict.fromkeys(tracks[number] for number in self.session._trail(self)))
 
     def surface_route(self) -> FloatArray:
-        """The rest of its route over the free surface: the centres of its places, (n, 2) [mm], from the last one that
-        the mover has reached to the target. The first `route_granted` - `route_visit` behind that one are granted.
-        Empty if `on_route` is false. Over LCM a new route appears with the next message about it."""
+        """Returns the rest of its route over the free surface: positions [mm], shape (n, 2), from the last one that the
+        mover has reached to the target. The `route_granted` - `route_visit` positions after the first row are granted.
+        Empty if `on_route` is false. Over LCM a new route appears with its next message."""
         first, places = self.session._route(self)
         return places[min(max(self.route_visit - first, 0), len(places)) :]
 
     def history(self) -> tuple[MoverRecord, ...]:
-        """Its last 100 commands, the oldest first; external set points apart. Over LCM: those of all clients since this
-        session was connected."""
+        """Returns its last 100 commands, oldest first, without external set points. Over LCM: the commands of all
+        clients since this session was connected."""
         rows = self.session._history(self)
         return tuple(
             MoverRecord(

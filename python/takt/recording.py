@@ -1,8 +1,8 @@
-"""Recordings: what was measured, as NumPy arrays with names and units.
+"""Recordings: published values over time, as NumPy arrays with names and units.
 
 A recording holds one table per component ("x", "belt", "mover3" …). A table is a structured array: `time_s`
-and `cycle` first, then the published fields as they came. Components may have been sampled at different
-rates, so each has its own time base; `cycle` is what they share.
+and `cycle` first, then the published fields in their order. Components may have been sampled at different
+rates, so each has its own time base; `cycle` is common to all.
 
     rec["x"]["actual_position"]          # values
     rec.unit("x", "actual_position")     # "mm"
@@ -37,38 +37,38 @@ Names = Mapping[int, str] | Sequence[str]
 FORMAT_VERSION = 1
 ARRAY = "$array"  # in the header of a file, instead of an array of `meta`: its number
 BLOCK = 1024  # rows that are copied at a time
-UNKNOWN_NAME = -1  # an enumerated value that was not a number when it was recorded
+UNKNOWN_NAME = -1  # stands for NaN in an enumerated column
 
 
 class RecordingError(TaktError, ValueError):
-    """A recording cannot be made, read or asked as wanted; the text is one sentence for people."""
+    """A recording cannot be made or read, or lacks the requested data; the text is one readable sentence."""
 
 
 class MissingPackageError(TaktError, ImportError):
-    """A package is not installed that what was asked for needs; the text says how to get it."""
+    """An optional package that the call needs is not installed; the text says how to install it."""
 
 
 class Event(NamedTuple):
-    """Something that happened at one time: a command's start or end, an error, a mark set by the user."""
+    """An event at one time: the start or end of a command, an error, a mark set by the user."""
 
     time_s: float
-    component: str  # empty: concerns the whole machine
+    component: str  # empty: the whole machine
     text: str
     kind: str = "mark"  # "start", "end", "error" or "mark"
 
 
 class Gap(NamedTuple):
-    """Samples that are missing between two that are there."""
+    """Missing samples between two recorded ones."""
 
-    after_cycle: int
-    before_cycle: int
-    missing: int
+    after_cycle: int  # of the last sample before the gap
+    before_cycle: int  # of the first sample after it
+    missing: int  # number of missing samples
     time_s: float  # of the last sample before the gap
-    until_s: float  # of the first one behind it
+    until_s: float  # of the first sample after it
 
 
 class Recording:
-    """Columns over time, grouped by component. Not changed after it was made, but for `meta` and `events`."""
+    """Columns over time, grouped by component. Immutable except for `meta` and `events`."""
 
     def __init__(
         self,
@@ -82,15 +82,17 @@ class Recording:
     ) -> None:
         """Makes a recording from plain arrays.
 
-        components: for each component its columns by name, all of one length. `time_s` (seconds, rising) must
-            be among them; `cycle` (integers, rising) is counted from 0 where it is missing. A structured
-            array does as well.
-        units: the unit of each field of each component; "" or nothing for pure numbers.
-        names: the texts of enumerated fields, by value; such a column is held as int8.
-        info: what else is known of a component. `modulus` (rotary axes) and `limits` (`position`: [lower,
-            upper], `velocity`, `acceleration`, `jerk`) are used by the assertions; the rest is carried along.
+        components: for each component its columns by name, all of equal length, or a structured array. `time_s` [s]
+            (strictly increasing) is required; `cycle` (integers, strictly increasing) is counted from 0 if missing.
+        units: the unit of each field of each component; "" or absent for dimensionless values.
+        names: the texts of enumerated fields, by value; such a column is stored as int8.
+        info: further properties of a component. `modulus` (rotary axes) and `limits` (`position`: [lower, upper],
+            `velocity`, `acceleration`, `jerk`) are used by the assertions; other entries are kept unchanged.
         events: (time_s, component, text) or (time_s, component, text, kind).
-        meta: anything that JSON can hold, and NumPy arrays at any depth (machine, versions, engine figures, verdicts).
+        meta: any values that JSON can hold, and NumPy arrays at any depth (machine, versions, engine figures,
+            verdicts).
+
+        Raises RecordingError if the data is inconsistent.
         """
         self._names = {c: {f: _name_table(t) for f, t in fields.items()} for c, fields in (names or {}).items()}
         self._units = {c: dict(fields) for c, fields in (units or {}).items()}
@@ -118,10 +120,15 @@ class Recording:
         events: Iterable[Sequence[Any]] = (),
         meta: Mapping[str, Any] | None = None,
     ) -> Recording:
-        """Makes a recording from one matrix, a row per sample and a column per "component.field", all on one
-        time base.
+        """Makes a recording from one matrix: a row per sample, a column per "component.field", all on one time base.
 
-        `integers` names fields (without component) whose columns are whole numbers.
+        time_s, cycle: of the rows, shape (n,).
+        columns: the names "component.field" of the columns of `values`, shape (n, len(columns)).
+        units: one per column; None: none.
+        integers: fields (without component) whose columns become integers if all their values are finite.
+        names, info, events, meta: as in the constructor.
+
+        Raises RecordingError if the data is inconsistent.
         """
         matrix = np.asarray(values, dtype=np.float64)
         if matrix.ndim != 2 or matrix.shape[1] != len(columns):
@@ -145,8 +152,8 @@ class Recording:
     def from_array(
         cls, component: str, array: Array, unit: str, *, names: Mapping[str, Names] | None = None, **info: Any
     ) -> Recording:
-        """Makes a recording of one structured array whose positions are in `unit` (velocities in unit/s and
-        so on)."""
+        """Makes a recording of one component from a structured array whose positions are in `unit` (velocities in
+        unit/s and so on, by the names of the fields)."""
         powers = {"position": "", "velocity": "/s", "acceleration": "/s²", "jerk": "/s³"}
         units = {}
         for field in array.dtype.names or ():
@@ -155,7 +162,7 @@ class Recording:
                 units[field] = unit + powers[last]
         return cls({component: array}, {component: units}, names={component: names or {}}, info={component: info})
 
-    # --- asking ---
+    # --- access ---
 
     @property
     def components(self) -> tuple[str, ...]:
@@ -186,11 +193,11 @@ class Recording:
         return recording_table(self)
 
     def fields(self, component: str) -> tuple[str, ...]:
-        """The fields of a component, `time_s` and `cycle` first."""
+        """Returns the fields of a component, `time_s` and `cycle` first."""
         return tuple(self[component].dtype.names or ())
 
     def column(self, component: str, field: str) -> Array:
-        """One column; a sentence instead of NumPy's error where there is none."""
+        """Returns one column. Raises RecordingError, with the names that exist, if there is none."""
         table = self[component]
         if field not in (table.dtype.names or ()):
             raise RecordingError(_nothing("field", field, table.dtype.names or (), f"'{component}'"))
@@ -198,7 +205,8 @@ class Recording:
         return column
 
     def why_no(self, pattern: str) -> str:
-        """Why no signal is named so, in a sentence: which component, or which field of it, is not there."""
+        """Returns a sentence that says why no signal matches `pattern`: which component or which of its fields is
+        missing."""
         component, dot, field = pattern.rpartition(".")
         of = [name for name in self if fnmatch.fnmatchcase(name, component)]
         if not dot or not of:
@@ -207,36 +215,36 @@ class Recording:
         return _nothing("field", field, fields, " or ".join(f"'{name}'" for name in of))
 
     def unit(self, component: str, field: str) -> str:
-        """The unit as people write it, "" for pure numbers."""
+        """Returns the unit of a column as text; "" if dimensionless."""
         self.column(component, field)
         if field == "time_s":
             return "s"
         return self._units.get(component, {}).get(field, "")
 
     def names(self, component: str, field: str) -> dict[int, str]:
-        """The texts of an enumerated field by value; empty where the field is not one."""
+        """Returns the texts of an enumerated field by value; empty if the field is not enumerated."""
         self.column(component, field)
         return dict(self._names.get(component, {}).get(field, {}))
 
     def text(self, component: str, field: str) -> npt.NDArray[np.str_]:
-        """An enumerated column as texts."""
+        """Returns an enumerated column as texts; "?" and the number for values without a text."""
         table = self.names(component, field)
         values, where = np.unique(self.column(component, field), return_inverse=True)
         return np.array([table.get(int(v), f"?{int(v)}") for v in values], dtype=np.str_)[where]
 
     def info(self, component: str) -> dict[str, Any]:
-        """What else is known of a component (`modulus`, `limits` …)."""
+        """Returns further properties of a component (`modulus`, `limits` …)."""
         self[component]
         return self._info.get(component, {})
 
     @property
     def start_s(self) -> float:
-        """Time of the first sample; NaN when there is none."""
+        """Time [s] of the first sample; NaN if there are no samples."""
         return min((float(a["time_s"][0]) for a in self._data.values() if len(a)), default=math.nan)
 
     @property
     def end_s(self) -> float:
-        """Time of the last sample; NaN when there is none."""
+        """Time [s] of the last sample; NaN if there are no samples."""
         return max((float(a["time_s"][-1]) for a in self._data.values() if len(a)), default=math.nan)
 
     @property
@@ -244,8 +252,8 @@ class Recording:
         return 0.0 if math.isnan(self.start_s) else self.end_s - self.start_s
 
     def gaps(self, component: str, step: int | None = None) -> list[Gap]:
-        """Where samples are missing. `step` is the distance of samples in cycles; unless given, the one met
-        most often."""
+        """Returns the gaps between samples of a component. `step`: the sample spacing in cycles; None: the most
+        frequent spacing."""
         table = self[component]
         if len(table) < 2:
             return []
@@ -263,7 +271,7 @@ class Recording:
         ]
 
     def slice(self, t0: float, t1: float) -> Recording:
-        """The samples and events with t0 <= time_s <= t1."""
+        """Returns the samples and events with t0 <= time_s <= t1. Raises RecordingError unless t0 <= t1."""
         if not t0 <= t1:
             raise RecordingError(f"a slice from {t0} s to {t1} s has no length")
         part = {c: a[(a["time_s"] >= t0) & (a["time_s"] <= t1)] for c, a in self._data.items()}
@@ -271,15 +279,15 @@ class Recording:
         return Recording(part, self._units, names=self._names, info=self._info, events=events, meta=self.meta)
 
     def shifted(self, by_s: float) -> Recording:
-        """The same later by so many seconds, events included; cycles keep their numbers."""
+        """Returns the recording with `by_s` [s] added to all times, events included; cycles keep their numbers."""
         tables = {c: {f: a[f] for f in a.dtype.names or ()} for c, a in self._data.items()}
         moved = {c: {**columns, "time_s": columns["time_s"] + by_s} for c, columns in tables.items()}
         events = [event._replace(time_s=event.time_s + by_s) for event in self.events]
         return Recording(moved, self._units, names=self._names, info=self._info, events=events, meta=self.meta)
 
     def between(self, start: float | None, end: float | None) -> Recording:
-        """A slice as people ask for one, all before or behind where a time is not given: an error where it holds no
-        sample."""
+        """Returns the slice from `start` to `end` [s]; None: from the beginning, to the end. Raises RecordingError if
+        it holds no sample."""
         if start is None and end is None:
             return self
         part = self.slice(-math.inf if start is None else start, math.inf if end is None else end)
@@ -291,7 +299,8 @@ class Recording:
         return part
 
     def pick(self, signals: Iterable[tuple[str, str]]) -> Recording:
-        """Only these signals (component, field), and the events of their components and of the whole machine."""
+        """Returns these signals (component, field) only, with the events of their components and of the whole
+        machine."""
         fields: dict[str, list[str]] = {}
         for component, field in signals:
             self.column(component, field)
@@ -305,10 +314,11 @@ class Recording:
             meta=self.meta,
         )
 
-    # --- keeping and handing on ---
+    # --- saving and exporting ---
 
     def save(self, path: str | PathLike[str]) -> Path:
-        """Writes everything into one .npz file, which NumPy alone can read as well."""
+        """Writes the recording as one .npz file, readable by NumPy alone as well. Returns the path. Raises
+        RecordingError if `info` or `meta` hold values that JSON cannot represent."""
         target = Path(path)
         header = {
             "takt_recording": FORMAT_VERSION,
@@ -334,7 +344,8 @@ class Recording:
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Recording:
-        """Reads what `save` wrote."""
+        """Returns the recording in a file written by `save`. Raises FileNotFoundError, or RecordingError if the file is
+        not a recording."""
         try:
             with np.load(path, allow_pickle=False) as file:
                 header = json.loads(str(file["header"]))
@@ -361,12 +372,12 @@ class Recording:
             raise
         except MemoryError:
             raise RecordingError(f"{path} is not a recording: it asks for more memory than there is") from None
-        except Exception as error:  # NumPy and zipfile raise whatever the bytes make them raise
+        except Exception as error:  # NumPy and zipfile raise many kinds of errors on damaged bytes
             raise RecordingError(f"{path} is not a recording: {shortened(str(error))}") from None
 
     def to_csv(self, path: str | PathLike[str]) -> Path:
-        """Writes one wide table: a row per cycle, "component.field [unit]" columns, texts for enumerated
-        fields, empty where a component has no sample in that cycle."""
+        """Writes one wide table: a row per cycle, columns "component.field [unit]", texts for enumerated fields, empty
+        where a component has no sample in that cycle. Returns the path."""
         target = Path(path)
         cycle, time_s, rows = self._joined()
         header = ["cycle", "time_s"]
@@ -387,9 +398,13 @@ class Recording:
         return target
 
     def to_dataframe(self, *signals: str) -> Any:
-        """A pandas.DataFrame of these signals, as `takt plot` names them ("x", "x.set_position", "*.torque_nm"), or of
-        all: index `time_s`, columns `cycle` and "component.field"; states are categories by their texts, units stand in
-        `attrs`. A row for each cycle in which any of the components has a sample. Needs pandas."""
+        """Returns a pandas.DataFrame: index `time_s`, columns `cycle` and "component.field"; states are categories of
+        their texts, units are in `attrs`. One row for each cycle in which any of the components has a sample.
+
+        signals: as in `takt plot` ("x", "x.set_position", "*.torque_nm"); none: all.
+
+        Raises MissingPackageError without pandas.
+        """
         pandas = _optional("pandas", "to_dataframe")
         part = self._part(signals)
         frame = part.to_pandas()
@@ -402,8 +417,13 @@ class Recording:
         return frame
 
     def to_parquet(self, path: str | PathLike[str], *signals: str) -> Path:
-        """Writes these signals, or all, as one wide table like `to_csv`: texts for states, nulls where a component has
-        no sample in that cycle; the unit of a column stands in its metadata. Needs pyarrow."""
+        """Writes one wide table as `to_csv` does: texts for states, nulls where a component has no sample in that
+        cycle, the unit of a column in its metadata. Returns the path.
+
+        signals: as in `to_dataframe`.
+
+        Raises MissingPackageError without pyarrow.
+        """
         arrow = _optional("pyarrow", "to_parquet")
         parquet = _optional("pyarrow.parquet", "to_parquet")
         part = self._part(signals)
@@ -426,13 +446,13 @@ class Recording:
         return target
 
     def _part(self, signals: Sequence[str]) -> Recording:
-        from takt.plot import select  # which takes long to import
+        from takt.plot import select  # here, because its import is slow
 
         return self.pick(select(self, signals)) if signals else self
 
     def to_pandas(self) -> Any:
-        """A pandas.DataFrame: index `time_s`, columns "component.field", states by number; units and texts in `attrs`.
-        Needs pandas."""
+        """Returns a pandas.DataFrame: index `time_s`, columns `cycle` and "component.field", states by number; units
+        and texts in `attrs`. Raises MissingPackageError without pandas."""
         pandas = _optional("pandas", "to_pandas")
         cycle, time_s, rows = self._joined()
         columns: dict[str, Array] = {"cycle": cycle}
@@ -443,8 +463,8 @@ class Recording:
         return frame
 
     def to_xarray(self) -> Any:
-        """An xarray.Dataset: dimension `time_s`, a variable per "component.field" with its unit. Needs
-        xarray."""
+        """Returns an xarray.Dataset: dimension `time_s`, a variable per "component.field" with its unit. Raises
+        MissingPackageError without xarray."""
         xarray = _optional("xarray", "to_xarray")
         cycle, time_s, rows = self._joined()
         variables: dict[str, Any] = {}
@@ -467,8 +487,8 @@ class Recording:
         return {"units": units, "names": names}
 
     def _joined(self) -> tuple[Array, FloatArray, dict[str, Array]]:
-        """All cycles of all components, their times, and the row of each sample of each component among
-        them."""
+        """Returns all cycles of all components, their times, and for each component the rows of its samples among
+        these cycles."""
         tables = list(self._data.values())
         if not tables:
             return np.empty(0, np.int64), np.empty(0), {}
@@ -478,7 +498,8 @@ class Recording:
 
 
 def split_signal(signal: str) -> tuple[str, str]:
-    """ "x.set_position" -> ("x", "set_position"); component names may hold dots themselves."""
+    """ "x.set_position" -> ("x", "set_position"); component names may contain dots. Raises RecordingError for any other
+    form."""
     component, dot, field = signal.rpartition(".")
     if not (dot and component and field):
         raise RecordingError(f"'{signal}' is not of the form component.field")
@@ -517,7 +538,7 @@ def _table(
         elif arrays[field].dtype.kind == "u":
             arrays[field] = arrays[field].astype(np.int64)
     table = np.empty(len(time_s), dtype=[(f, a.dtype) for f, a in arrays.items()])
-    for first in range(0, len(table), BLOCK):  # columns of all rows, one after the other, would leave the cache
+    for first in range(0, len(table), BLOCK):  # in blocks: copying whole columns would overrun the cache
         part = slice(first, first + BLOCK)
         rows = table[part]
         for field, values in arrays.items():
@@ -547,7 +568,7 @@ def _event(event: Sequence[Any]) -> Event:
 
 
 def _put_aside(value: Any, kept: dict[bytes, Array]) -> Any:
-    """What JSON can hold of `meta`: arrays go into `kept`, each once, and leave their number."""
+    """Returns `meta` as JSON can hold it: each distinct array goes into `kept` and is replaced by its number."""
     if isinstance(value, np.ndarray) and value.dtype.hasobject:
         return _put_aside(value.tolist(), kept)
     if isinstance(value, np.ndarray):
@@ -568,7 +589,7 @@ def _put_back(value: Any, kept: Sequence[Array]) -> Any:
 
 
 def _number(name: str) -> int:
-    """Of an array that belongs to `meta`; of others -1."""
+    """Returns the number of an array of `meta` by its name in the file; -1 for other arrays."""
     return int(name[4:]) if name.startswith("meta") else -1
 
 
@@ -581,7 +602,7 @@ def _spread(values: Array, rows: Array, length: int) -> Array:
 
 
 def _optional(module: str, asks: str) -> Any:
-    """A module of a package that is not installed with this one."""
+    """Returns a module of an optional package. Raises MissingPackageError if it is not installed."""
     try:
         return importlib.import_module(module)
     except ImportError:

@@ -1,13 +1,17 @@
-"""Scenario files: a module with `scenario(session)`, what to do, and `verify(recording)`, what must then be true of it.
-`pictures(recording)` may draw more for the report: Matplotlib's figures by their names. Constants say the rest:
-EVERY, how many cycles lie between two samples of the recording [1]; TAKES_S, about how many seconds of engine time it
-takes; VIEW, what the live page shows of it at first, as {"tab": "scope", "signals": ["x.set_position"]}.
+"""Scenario files: modules with a function `scenario(session)`, which runs the motion, and usually
+`verify(recording)`, which checks the recording. Optional functions: `pictures(recording)` returns further figures for
+the report (Matplotlib figures by name); `results(recording)` returns the numbers of a run by name, for sweeps.
 
-`results(recording)` may say numbers of a run by their names, for sweeps. What these functions have as further arguments
-with defaults are the scenario's parameters: `takt run --set velocity=200` and `takt sweep` give them other values, to
-each function those that it has.
+Optional constants:
 
-They run unchanged in virtual time and on a running engine. The machine is the one the command line names, or
+EVERY: cycles from one sample of the recording to the next; default 1.
+TAKES_S: approximate duration [s] of engine time.
+VIEW: the initial state of the live page, as {"tab": "scope", "signals": ["x.set_position"]}.
+
+Further arguments with defaults of these functions are the scenario's parameters. `takt run --set velocity=200` and
+`takt sweep` set them; each function receives those that it has.
+
+Scenarios run unchanged in virtual time and on a running engine. The machine is the one that the command line names, or
 machine.yaml beside the file.
 """
 
@@ -58,14 +62,14 @@ class ScenarioError(TaktError):
 class Scenario:
     path: Path
     title: str  # the first line of its doc string, or the file's name
-    scenario: Callable[..., object]  # of the session
-    verify: Callable[..., object] | None  # of the recording, and so are those below
+    scenario: Callable[..., object]  # called with the session
+    verify: Callable[..., object] | None  # called with the recording, like `pictures` and `results`
     pictures: Callable[..., Mapping[str, Figure]] | None = None
     every: int = 1  # cycles from one recorded sample to the next: EVERY in the file
     takes_s: float | None = None  # TAKES_S in the file
     results: Callable[..., Mapping[str, Any]] | None = None
-    arguments: Mapping[str, Any] = field(default_factory=dict)  # of its parameters, where not the defaults
-    view: str = ""  # VIEW in the file, as it stands behind the # of the live page's address
+    arguments: Mapping[str, Any] = field(default_factory=dict)  # values of parameters that override the defaults
+    view: str = ""  # VIEW in the file, as the fragment (after #) of the live page's address
 
     def __repr__(self) -> str:
         return f"<Scenario {self.path}: {self.title}>"
@@ -76,26 +80,27 @@ class Scenario:
         return self.path.parent / "machine.yaml"
 
     def play(self, session: Session) -> None:
-        """Does what the scenario does."""
+        """Runs the scenario. Raises ScenarioError if it calls exit()."""
         with _no_exit(self.path):
             self.scenario(session, **self._arguments_of(self.scenario))
 
     def draw(self, recording: Recording) -> Mapping[str, Figure]:
-        """Its own pictures of a recording."""
+        """Returns the scenario's own figures of a recording by name; empty without `pictures`."""
         if self.pictures is None:
             return {}
         with _no_exit(self.path):
             return self.pictures(recording, **self._arguments_of(self.pictures))
 
     def judge(self, recording: Recording) -> object:
-        """What its `verify` returns."""
+        """Returns the result of `verify`; None without one."""
         if self.verify is None:
             return None
         with _no_exit(self.path):
             return self.verify(recording, **self._arguments_of(self.verify))
 
     def numbers(self, recording: Recording) -> dict[str, Any]:
-        """What its `results` says of a recording."""
+        """Returns the `results` of a recording by name; empty without `results`. Raises ScenarioError if they are not a
+        mapping with names as keys."""
         if self.results is None:
             return {}
         with _no_exit(self.path):
@@ -106,16 +111,16 @@ class Scenario:
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """Its parameters with their defaults."""
+        """The parameters with their defaults."""
         found: dict[str, Any] = {}
         for function in (self.results, self.pictures, self.verify, self.scenario):
             found |= _parameters(function) if function is not None else {}
         return found
 
     def with_arguments(self, arguments: Mapping[str, Any]) -> Scenario:
-        """The same with other values of parameters, each of the kind of its default: true or false (also the other
-        spellings of YAML, and 0 and 1), a whole number, a number, a text. Raises ScenarioError for other values and
-        unknown names. A default that is a whole number takes any number where the parameter is annotated as float."""
+        """Returns the scenario with other values of parameters, each of the type of its default: bool (also in the
+        spellings of YAML, and 0 and 1), int, float, str. A parameter with an int as default takes any number if it is
+        annotated as float. Raises ScenarioError for values of other types and unknown names."""
         known = self.parameters
         for name in arguments:
             if name not in known:
@@ -129,11 +134,11 @@ class Scenario:
 
     @property
     def texts(self) -> frozenset[str]:
-        """The parameters whose values are texts."""
+        """The parameters whose defaults are texts."""
         return frozenset(name for name, default in self.parameters.items() if isinstance(default, str))
 
     def _like(self, name: str, value: Any, default: Any) -> Any:
-        """A value of the kind of the default; ScenarioError where it is of another kind."""
+        """Returns the value as the type of the default. Raises ScenarioError if it cannot be converted."""
         if isinstance(value, np.generic):
             value = value.item()
         number = isinstance(value, int | float) and not isinstance(value, bool)
@@ -163,7 +168,7 @@ class Scenario:
         raise ScenarioError(f"{self.path}: {name}: expected {expected}, found {shown}{hint}")
 
     def _is_float(self, name: str) -> bool:
-        """Whether a function annotates a parameter as float, maybe among others."""
+        """Returns whether any of the functions annotates a parameter as float, alone or in a union."""
         functions = (self.scenario, self.verify, self.pictures, self.results)
         found = [getattr(function, "__annotations__", {}).get(name) for function in functions if function is not None]
         return any(
@@ -181,7 +186,7 @@ class Scenario:
 class Outcome:
     recording: Recording
     verdicts: tuple[Verdict, ...]
-    assertion: Verdict | None = None  # a plain `assert` that failed, a command that was refused, nothing judged
+    assertion: Verdict | None = None  # for a failed plain `assert`, a refused command, or a missing assertion
 
     def __repr__(self) -> str:
         failed = sum(not verdict.passed for verdict in self.verdicts)
@@ -195,7 +200,7 @@ class Outcome:
 
     @property
     def complaint(self) -> str:
-        """What it says; empty: none failed."""
+        """The sentence of `assertion`; empty if there is none."""
         return self.assertion.sentence if self.assertion is not None else ""
 
     @property
@@ -204,7 +209,8 @@ class Outcome:
 
 
 def load_scenario(path: str | os.PathLike[str]) -> Scenario:
-    """Imports a scenario file."""
+    """Imports a scenario file and returns its scenario. Raises ScenarioError if the file does not exist or does not
+    have the required form."""
     file = Path(path)
     if not file.is_file():
         raise ScenarioError(f"{file}: there is no such file")
@@ -212,7 +218,7 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
     if spec is None or spec.loader is None:
         raise ScenarioError(f"{file}: is no Python file")
     module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module  # as dataclasses and pickle look for it
+    sys.modules[spec.name] = module  # dataclasses and pickle look it up there
     with modules_of(file.resolve().parent), _no_exit(file):
         try:
             spec.loader.exec_module(module)
@@ -250,7 +256,7 @@ def load_scenario(path: str | os.PathLike[str]) -> Scenario:
 
 
 def _address(file: Path, module: ModuleType) -> str:
-    """VIEW of a scenario file, for the live page."""
+    """Returns VIEW of a scenario file as the fragment of the live page's address."""
     match getattr(module, "VIEW", {}):
         case dict() as view if view.keys() <= {"tab", "signals"}:
             tab, signals = view.get("tab", ""), view.get("signals", ())
@@ -261,7 +267,7 @@ def _address(file: Path, module: ModuleType) -> str:
 
 
 def settings_of(given: Sequence[str]) -> dict[str, str]:
-    """The texts of `KEY=VALUE`, by their keys."""
+    """Returns the values of texts `KEY=VALUE` by key. Raises ScenarioError for other texts and repeated keys."""
     found: dict[str, str] = {}
     for text in given:
         key, equals, value = text.partition("=")
@@ -274,21 +280,21 @@ def settings_of(given: Sequence[str]) -> dict[str, str]:
 
 
 def with_settings(scenario: Scenario, settings: Mapping[str, Any]) -> tuple[Scenario, dict[str, Any]]:
-    """A scenario with these values of its parameters, and the others: keys with a dot, which are of the machine. Texts
-    are read as on a command line, but for parameters whose values are texts."""
+    """Returns the scenario with these values of its parameters, and the changes of the machine (keys with a dot). Texts
+    are parsed as on a command line, except for parameters whose values are texts."""
     texts = scenario.texts
     values = {k: value_of(v) if isinstance(v, str) and k not in texts else v for k, v in settings.items()}
     changes = {key: value for key, value in values.items() if "." in key}
     return scenario.with_arguments({k: v for k, v in values.items() if k not in changes}), changes
 
 
-_folders: set[Path] = set()  # of scenarios that were loaded
+_folders: set[Path] = set()  # of loaded scenarios
 
 
 @contextlib.contextmanager
 def modules_of(folder: Path) -> Iterator[None]:
-    """Here modules and packages are imported that lie in the folder of a scenario. Those of other scenarios are
-    forgotten: another `judge` beside this one would be taken for them."""
+    """A context in which modules in the folder of a scenario can be imported. Modules of other scenarios are removed
+    from sys.modules: otherwise, say, a `judge` of theirs would be used instead of the one in this folder."""
     folder = folder.resolve()
     others = _folders - {folder}
     loaded = [(name, module) for name, module in sys.modules.items() if "." not in name] if others else []
@@ -304,8 +310,8 @@ def modules_of(folder: Path) -> Iterator[None]:
 
 
 def is_of_scenario(file: Path) -> bool:
-    """Whether a file lies in the folder of a scenario that was loaded, and is not an installed one beneath it. False
-    for names in tracebacks that are of no file there, as `<frozen importlib._bootstrap>`."""
+    """Returns whether a file is in the folder of a loaded scenario and does not belong to packages installed in it.
+    False for names in tracebacks that are not files, as `<frozen importlib._bootstrap>`."""
     if not file.is_file():
         return False
     file = file.resolve()
@@ -314,7 +320,7 @@ def is_of_scenario(file: Path) -> bool:
 
 
 def _root_of(module: Any) -> Path | None:
-    """The folder from which a module or package is imported."""
+    """Returns the folder from which a module or package was imported; None if it has no file."""
     if path := list(getattr(module, "__path__", ())):
         return Path(path[0]).parent
     place = getattr(module, "__file__", None)
@@ -322,8 +328,10 @@ def _root_of(module: Any) -> Path | None:
 
 
 def run_scenario(scenario: Scenario, session: Session, directory: Path | None = None) -> Outcome:
-    """Runs it with everything recorded, then asks `verify`. The recording is kept in `directory`, also when the
-    scenario breaks off."""
+    """Runs a scenario with all components recorded, then calls `verify`. Returns the outcome.
+
+    directory: where the recording is saved, also if the scenario breaks off; None: nowhere.
+    """
     recorder = session.record(every=scenario.every)
     played = Played()
     try:
@@ -338,26 +346,26 @@ def run_scenario(scenario: Scenario, session: Session, directory: Path | None = 
 
 @dataclass(frozen=True)
 class Played:
-    """What became of a scenario."""
+    """How the run of a scenario ended."""
 
-    broken_off: FailedAssertion | None = None  # by a plain `assert`, a command that ended in an error, a wait in vain
-    ignored: FailedAssertion | None = None  # commands that were refused without its asking
+    broken_off: FailedAssertion | None = None  # by a plain `assert`, a failed command, or a timeout
+    ignored: FailedAssertion | None = None  # refused commands whose feedback the scenario did not read
 
     def keep(self, recording: Recording) -> None:
-        """Puts it into the recording, which is judged by it whenever it is judged."""
+        """Stores this in `meta` of the recording, where verify_recording reads it."""
         complaints = {"broken_off": self.broken_off, "ignored": self.ignored}
         recording.meta[PLAYED] = {name: one.told() for name, one in complaints.items() if one is not None}
 
     @staticmethod
     def of(recording: Recording) -> Played:
-        """What a recording says became of its scenario."""
+        """Returns what `keep` stored in a recording."""
         told = recording.meta.get(PLAYED) or {}
         return Played(**{name: FailedAssertion.again(one) for name, one in told.items()})
 
 
 def play(scenario: Scenario, session: Session) -> Played:
-    """Does what it does. A plain `assert` that fails, a command that is waited for and ends in an error, and something
-    that does not happen in time end it."""
+    """Runs a scenario and returns how it ended. A failed plain `assert`, an error of a command that it waits for, a
+    timeout and a routing error end it early."""
     before = set(map(id, session.unheeded))
     try:
         scenario.play(session)
@@ -370,8 +378,9 @@ def play(scenario: Scenario, session: Session) -> Played:
 
 
 def verify_recording(scenario: Scenario, recording: Recording) -> Outcome:
-    """Asks `verify` of a recording, wherever it comes from, unless its scenario broke off. A command that was refused
-    then without the scenario's asking comes first."""
+    """Calls `verify` with a recording from any source, unless its scenario broke off. Returns the outcome. Refused
+    commands that the scenario ignored become the outcome's `assertion`; a complaint about `verify` is then a
+    verdict."""
     played = Played.of(recording)
     if played.broken_off is not None:
         return Outcome(recording, (), played.broken_off.verdict(recording))
@@ -389,7 +398,7 @@ def verify_recording(scenario: Scenario, recording: Recording) -> Outcome:
 
 
 def _judge(scenario: Scenario, recording: Recording, verdicts: Sequence[Verdict]) -> FailedAssertion | None:
-    """Asks `verify`. The complaint that it says no, or has judged nothing."""
+    """Calls `verify`. Returns a complaint if it returns False or has judged nothing, else None."""
     folder = scenario.path.parent
     if scenario.verify is None:
         if asserts(scenario.scenario, folder):
@@ -412,7 +421,7 @@ def _judge(scenario: Scenario, recording: Recording, verdicts: Sequence[Verdict]
 
 @contextlib.contextmanager
 def _no_exit(path: Path) -> Iterator[None]:
-    """A scenario that exits has not come to its end."""
+    """Turns SystemExit of a scenario into ScenarioError: it has not been completed."""
     try:
         yield
     except SystemExit as error:
@@ -420,7 +429,7 @@ def _no_exit(path: Path) -> Iterator[None]:
 
 
 def _parameters(function: Callable[..., object]) -> dict[str, Any]:
-    """Its arguments with defaults, but for the first of all."""
+    """Returns the arguments with defaults of a function, except for its first argument."""
     try:
         arguments = list(inspect.signature(function).parameters.values())[1:]
     except (TypeError, ValueError):

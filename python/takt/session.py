@@ -1,4 +1,4 @@
-"""What a scenario sees of an engine, in process or over LCM alike."""
+"""The session: a scenario's interface to an engine, the same in process and over LCM."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ Program = Callable[[], object]
 
 @dataclass
 class Scheduled:
-    """A program, and the cycle ahead of which it is called next. `watch`: it is called earlier when this sees a change,
-    and only ahead of cycles that are a multiple of `every` from `begin` on."""
+    """A program and the cycle before which it is called next. With a `watch`, a change calls it earlier, and calls are
+    made only before cycles `begin` + n * `every`."""
 
     scan: Program
     every: int
@@ -60,7 +60,7 @@ class Scheduled:
     watch: Any = None
 
     def at_or_after(self, cycle: int) -> int:
-        """The first cycle from this one on ahead of which it may be called."""
+        """Returns the first cycle, from `cycle` on, before which the program may be called."""
         return cycle if self.watch is None else cycle + (self.begin - cycle) % self.every
 
 
@@ -71,18 +71,18 @@ CLASSES: dict[str, type[Component]] = {
     component.KIND: component
     for component in (Axis, FlexCam, Group, Belt, FreePose, PickPlace, Mover, Track, PlanarGroup, Environment, Part)
 }
-# What can be in the way, by the numbers that the engine has for it.
+# Kinds of obstructing objects, indexed by the engine's number of the kind.
 OBJECTS = ("", "mover", "track", "planar_group", "environment", "part", "coordinate_system", "axis")
 
 
 PACKAGE = f"{Path(__file__).parent}{os.sep}"
-EXAMPLES = f"{PACKAGE}examples{os.sep}"  # in its folder, but programs like others
-CALLS = 8  # kept of where a command was given
-REFUSED = 1000  # commands, kept at most
+EXAMPLES = f"{PACKAGE}examples{os.sep}"  # inside the package, but treated as user programs
+CALLS = 8  # call stack entries kept for a command
+REFUSED = 1000  # refused commands kept at most
 
 
 class Recorder:
-    """A recording in progress: `stop` makes it a Recording. Also a context manager, after which `recording` has it."""
+    """A recording in progress; `stop` returns the Recording. Also a context manager: after it, read `recording`."""
 
     def __init__(self, session: Session, components: Iterable[str], every: int) -> None:
         self._session = session
@@ -91,7 +91,7 @@ class Recorder:
         self.every = every
         self.events: list[tuple[float, str, str, str]] = []
         self.belts = [name for name in self.components if name in session.belts]
-        self.belt_objects = BeltObjectLog()  # on these
+        self.belt_objects = BeltObjectLog()  # of `belts`
 
     def __repr__(self) -> str:
         ended = "lost" if self._recording is None else repr(self._recording)
@@ -109,9 +109,9 @@ class Recorder:
         return self._ended()
 
     def stop(self) -> Recording:
-        """Ends the recording, and again: returns it."""
+        """Ends the recording and returns it. Further calls return it again. Raises TaktError if it was lost."""
         if self.running:
-            self._session._recorders.remove(self)  # first: an end that was interrupted is not tried again
+            self._session._recorders.remove(self)  # first: an interrupted end is not retried
             self._recording = self._session._finish(self)
         return self._ended()
 
@@ -129,11 +129,11 @@ class Recorder:
 
 
 class Session(SessionWithCams):
-    """One engine. `axis("x")` gives an axis, whose commands return feedback objects; `wait` and `run` let engine time
-    pass."""
+    """A session with one engine. `axis("x")` returns an axis, whose commands return feedback objects; `wait` and `run`
+    let engine time pass."""
 
     def __init__(self, machine: Mapping[str, Any], machine_text: str) -> None:
-        self.machine = machine  # all parameters of the machine file, with the defaults
+        self.machine = machine  # all parameters of the machine file, including defaults
         self.machine_text = machine_text
         self._components: dict[str, Component] = {
             name: CLASSES[kind.name](self, number, parameters)
@@ -150,7 +150,7 @@ class Session(SessionWithCams):
         self._planar_groups = {name: c for name, c in self._components.items() if isinstance(c, PlanarGroup)}
         self._environments = {name: c for name, c in self._components.items() if isinstance(c, Environment)}
         self._parts = {name: c for name, c in self._components.items() if isinstance(c, Part)}
-        self._routers: dict[int, SurfaceRouter] = {}  # by coordinate system
+        self._routers: dict[int, SurfaceRouter] = {}  # by number of the coordinate system
         self._programs: list[Scheduled] = []
         self._scanning = False
         self._recorders: list[Recorder] = []
@@ -206,7 +206,7 @@ class Session(SessionWithCams):
 
     @property
     def poses(self) -> Mapping[str, FreePose]:
-        """All poses that come from elsewhere by name, in the order of the machine file."""
+        """All externally supplied poses by name, in the order of the machine file."""
         return MappingProxyType(self._poses)
 
     def pose(self, name: str) -> FreePose:
@@ -262,34 +262,42 @@ class Session(SessionWithCams):
 
     @property
     def components(self) -> Mapping[str, Component]:
-        """All axes and all other components that publish something, by name."""
+        """All components that publish values, axes included, by name."""
         return MappingProxyType(self._components)
 
     @property
     @abstractmethod
     def cycle(self) -> int:
-        """The cycle the engine is at, as far as is known here."""
+        """The engine's current cycle; over LCM the latest one received."""
 
     @property
     @abstractmethod
     def period(self) -> float:
-        """s, length of a cycle."""
+        """Cycle time [s]."""
 
     @property
     def now(self) -> float:
-        """s, engine time."""
+        """Engine time [s]."""
         return self.cycle * self.period
 
     @property
     @abstractmethod
     def figures(self) -> dict[str, Any]:
-        """The engine's own counts and histograms (times in ns)."""
+        """The engine's counters and histograms (times in [ns])."""
 
     # --- commands ---
 
     def command(self, target: str, verb: str, arguments: Mapping[str, Any] | str = "") -> Feedback:
-        """Gives any command by its names; the methods of components are made of this. What the engine refuses comes
-        back as a feedback in the state Error, with a sentence."""
+        """Gives a command by name; the methods of components use this. Returns its feedback; a refused command has the
+        state Error and a sentence.
+
+        target: the name of a component, or "machine".
+        verb: the name of the command.
+        arguments: by name, or as the one-line text that the engine reads.
+
+        Raises TypeError if an argument has the wrong type, ClosedError if the session is closed, and over LCM
+        ConnectionError if the engine does not answer.
+        """
         self._check_open()
         for what, text in (("target", target), ("verb", verb)):
             if not isinstance(text, str):
@@ -306,8 +314,8 @@ class Session(SessionWithCams):
 
     @property
     def unheeded(self) -> list[Feedback]:
-        """Commands that were refused, which the program has not noticed: it never asked what became of them. The last
-        1,000."""
+        """Refused commands whose feedback the program has never read (state, error_id, sentence, ...). Only the last
+        1,000 refused commands are kept."""
         return [feedback for feedback in self._refused if feedback._ignored]
 
     def _kind(self, target: str) -> str:
@@ -337,17 +345,20 @@ class Session(SessionWithCams):
         timeout: float = DEFAULT_TIMEOUT_S,
         **dynamics: float,
     ) -> dict[str, float]:
-        """Moves many movers along tracks at once, and lets engine time pass until all are there. How long each of those
-        that were moved took, in s.
+        """Moves several movers along tracks at once and lets engine time pass until all have arrived. Returns, for each
+        mover that was moved, the time [s] from the call to its arrival.
 
-        targets: by mover, a track and mm along it.
-        route: "auto" finds ways and an order of passing in which nobody waits for ever (takt.plan_routes), or raises
-            RoutingError before anything moves; should a mover be held up, it plans anew. "shortest" sends each its
-            shortest way at once, whatever the others do.
-        may_move: movers without a target that may be moved out of the way, or all of them (True).
-        gap: mm from centre to centre along the way, instead of the movers' own.
-        timeout: s of engine time for all of it.
+        targets: by mover, a track and the arc length [mm] along it.
+        route: "auto" plans routes and an order of passing without deadlock (takt.plan_routes), and plans again, up to
+            three plans in all, if a mover is held up. "shortest" commands the shortest route to every mover at once,
+            regardless of the other movers.
+        may_move: names of movers without a target that may be moved aside; True: all of them. Used by "auto" only.
+        gap: distance [mm] from centre to centre along the route; None: the movers' own.
+        timeout: engine time [s] for the whole call.
         dynamics: velocity, acceleration, deceleration, jerk of all moves.
+
+        Raises RoutingError if "auto" finds no plan (nothing has moved then) or the last plan fails, TimeoutError if a
+        mover has not arrived in time, CommandError if a move of "shortest" fails.
         """
         from takt.routing.journey import move_on_tracks
 
@@ -363,15 +374,17 @@ class Session(SessionWithCams):
         timeout: float = DEFAULT_TIMEOUT_S,
         **options: Any,
     ) -> dict[str, float]:
-        """Moves many movers over the free surface at once, and lets engine time pass until all are there. How long each
-        of those that were moved took, in s. RoutingError, before anything moves, if there is no plan
-        (takt.plan_surface).
+        """Moves several movers over the free surface at once and lets engine time pass until all have arrived. Returns,
+        for each mover that was moved, the time [s] from the start to its arrival.
 
-        targets: by mover, X and Y in mm; by several, as a tuple, a list of places for any of them. Or a list alone,
-            each for any of `movers` (all that can move).
-        may_move: movers without a target that may be moved out of the way, or all of them (True).
-        timeout: s of engine time for all of it.
-        options: as those of takt.plan_surface: environment, pitch, origin, effort, seed, velocity, acceleration, jerk.
+        targets: by mover, X and Y [mm]. By a tuple of movers, a list of positions that any of them may take. Or only a
+            list of positions that any of `movers` may take.
+        movers: candidates for a list of targets; None: all movers that can move.
+        may_move: names of movers without a target that may be moved aside; True: all of them.
+        timeout: engine time [s] for the motion.
+        options: as in takt.plan_surface: environment, pitch, origin, effort, seed, velocity, acceleration, jerk.
+
+        Raises RoutingError, before anything moves, if there is no plan (takt.plan_surface).
         """
         from takt.routing.surface_journey import move_on_surface
 
@@ -386,15 +399,16 @@ class Session(SessionWithCams):
         may_move: bool | Iterable[str] = False,
         **options: Any,
     ) -> SurfaceOrder:
-        """Sends movers over the free surface to their targets, and returns at once: `wait()` of the order lets engine
-        time pass until they are there. Given while others are on their way, routes are planned anew for all of them
-        from where they are; a mover that is on its way already goes to its new target instead.
+        """Sends movers over the free surface to their targets. Returns an order at once; its `wait()` lets engine time
+        pass until they have arrived. If other movers are under way, the routes of all of them are planned again from
+        their current positions; a mover that is already under way receives the new target instead of its old one.
 
-        targets, movers, may_move: as those of move_on_surface.
-        options: as those of takt.plan_surface, the same for all movers that are on their way at one time; `effort` is
-            3,000 unless given.
+        targets, movers, may_move: as in move_on_surface, except that None for `movers` means: all movers that can move
+            and are not under way.
+        options: as in takt.plan_surface, the same for all movers that are under way at one time; the default of
+            `effort` is 3,000.
 
-        Raises RoutingError if there is no plan; then all goes on as before.
+        Raises RoutingError if there is no plan; motions in progress then continue unchanged.
         """
         from takt.routing.router import router_for
 
@@ -411,8 +425,8 @@ class Session(SessionWithCams):
         may_move: bool | Iterable[str] = False,
         **options: Any,
     ) -> SurfaceOrder:
-        """Sends any of these movers to any of these places, X and Y in mm, as `route` does. Movers: those that can move
-        and are not on their way, unless they are given."""
+        """As `route`, with interchangeable targets: any of `movers` may take any of `points` (X and Y [mm]). Default of
+        `movers`: all that can move and are not under way."""
         return self.route(list(points), movers=movers, may_move=may_move, **options)
 
     # --- time ---
@@ -425,10 +439,17 @@ class Session(SessionWithCams):
         what: str = "",
         every: int = 1,
     ) -> None:
-        """Lets engine time pass until `condition()` is true; takt.TimeoutError when it is not within `timeout` s of
-        engine time. In process it is asked after every cycle, or after every so many, which takes less time of the
-        processor; over LCM whenever something new has come; what is published is then nowhere older than what the
-        condition saw."""
+        """Lets engine time pass until `condition()` is true.
+
+        In process the condition is evaluated every `every` cycles (a larger number saves processor time), over LCM
+        whenever a message has been received. On return, published values are not older than the cycle at which the
+        condition was true.
+
+        timeout: engine time [s].
+        what: names the condition in the text of the exception.
+
+        Raises takt.TimeoutError if the condition is not true within `timeout`.
+        """
         self._check_open()
         if not callable(condition):
             raise TypeError(f"a condition is a function, not {condition!r}")
@@ -439,18 +460,19 @@ class Session(SessionWithCams):
         self._catch_up(self.cycle)
 
     def run(self, duration: float) -> None:
-        """Lets so many seconds of engine time pass."""
+        """Lets `duration` [s] of engine time pass."""
         self._check_open()
         self._run(round(seconds(duration, "a duration", sys.float_info.max) / self.period))
 
     def program(self, scan: P, *, every: int = 1, on: Iterable[str] | None = None) -> P:
-        """Has `scan` called before every cycle, like a program in a PLC: the place for function blocks (takt.plcopen).
-        Over LCM it is called whenever the engine's state has come. Serves as a decorator.
+        """Registers `scan` to be called before every cycle, like a PLC program; function blocks (takt.plcopen) belong
+        there. Over LCM it is called whenever a message of the engine has been received. Usable as a decorator: returns
+        `scan`.
 
-        every: cycles from one call to the next. What need not look into every cycle holds the engine up less.
-        on: published values, as "component.field". Calls are left out while these are as they were at the last one,
-            until the s of engine time have passed that `scan` returned then (None: for ever), or `wake` was called.
-            Over LCM none is left out.
+        every: cycles from one call to the next; a larger number saves processor time.
+        on: published values, as "component.field". Calls are skipped while these values are as at the last call, until
+            the engine time [s] has passed that `scan` returned there (None: no such limit), or until `wake`. Over LCM
+            no call is skipped.
         """
         self._check_open()
         every = whole(every, "every", 1)
@@ -461,7 +483,8 @@ class Session(SessionWithCams):
         return scan
 
     def wake(self, scan: Program) -> None:
-        """Has a program that waits for changes (`program(on=...)`) called at its next turn."""
+        """Has a program that waits for changes (`program(on=...)`) called before the next cycle that its `every`
+        allows. Raises TaktError if `scan` is not a program of this session."""
         programs = [program for program in self._programs if program.scan == scan]
         if not programs:
             raise TaktError(f"{scan!r} is no program of this session: session.program(...) makes it one")
@@ -469,7 +492,7 @@ class Session(SessionWithCams):
             program.due = min(program.due, self.cycle)
 
     def _watched(self, signals: Iterable[str]) -> list[tuple[int, int]]:
-        """Components and their fields by number."""
+        """Returns (component number, field number) of each signal. Raises TaktError for unknown names."""
         found = []
         for signal in names_in(signals, "on", "published value", "published values"):
             name, field = split_signal(signal)
@@ -506,15 +529,18 @@ class Session(SessionWithCams):
         if asked is not None:
             if not isinstance(asked, (int, float)) or not asked >= 0:
                 raise TypeError(f"a program with `on` returns s until its next call, or None, not {asked!r}")
-            # Rather a call too early than one too late by a rounding.
+            # Rounding may make a call one cycle early, never one cycle late.
             cycles = min(asked / self.period, 1e15)
             program.due = min(program.due, now + max(1, math.ceil(cycles - 1e-6)))
 
     # --- recording ---
 
     def record(self, *components: str, every: int = 1) -> Recorder:
-        """Starts recording these axes and other components, or all; one sample every so many cycles (over LCM: of those
-        that are published)."""
+        """Starts a recording and returns its Recorder.
+
+        components: names of axes and other components; none: all.
+        every: one sample every `every` cycles; over LCM, every `every`-th published message of each component.
+        """
         self._check_open()
         names = [_named(self._components, name, "axis or other component").name for name in components]
         recorder = Recorder(self, names or self._components, whole(every, "every", 1))
@@ -523,8 +549,10 @@ class Session(SessionWithCams):
         return recorder
 
     def mark(self, text: str, axis: str = "") -> None:
-        """Puts a mark at this time into all recordings in progress: of this axis or other component, or of the whole
-        machine."""
+        """Adds a mark at the current time to all recordings in progress.
+
+        axis: the axis or other component that the mark belongs to; "": the whole machine.
+        """
         self._check_open()
         component = _named(self._components, axis, "axis or other component").name if axis != "" else ""
         self._event(component, text, "mark")
@@ -547,7 +575,7 @@ class Session(SessionWithCams):
         object_kind: int = 0,
         object_number: int = 0,
     ) -> None:
-        """Passes on what the engine says of a command."""
+        """Passes a report of the engine on to the command's feedback and to the recordings."""
         feedback.object = self._object(object_kind, object_number) or feedback.object
         if error_id:
             sentence = self._why_refused(error_id, feedback, sentence) or sentence
@@ -571,20 +599,20 @@ class Session(SessionWithCams):
         return why_refused(error_id, feedback.target, feedback.arguments, self._axes, self._movers, names)
 
     def _object(self, kind: int, number: int) -> Component | None:
-        """What the engine calls so."""
+        """Returns the component with the engine's numbers of kind and object (from 1); None for 0."""
         if not kind or not number:
             return None
         alike = [component for component in self._components.values() if OBJECTS[kind] == component.KIND]
         return alike[number - 1]
 
     def _object_of(self, kind: str, number: int) -> Component | None:
-        """The same, by the name of its kind."""
+        """As `_object`, with the kind by name; None for other kinds."""
         return self._object(OBJECTS.index(kind) if kind in OBJECTS else 0, number)
 
     # --- the end ---
 
     def close(self) -> None:
-        """Ends the session; what was recorded stays readable."""
+        """Ends the session. Recordings in progress are stopped and stay readable."""
         try:
             for recorder in list(self._recorders):
                 recorder.stop()
@@ -604,71 +632,72 @@ class Session(SessionWithCams):
         if self._closed:
             raise ClosedError("the session is closed")
 
-    # --- what the two kinds do in their own way ---
+    # --- implemented by the two kinds of session ---
 
     @abstractmethod
     def _submit(self, feedback: Feedback) -> None:
-        """Gives the command to the engine; afterwards the feedback is Busy at least, or Error."""
+        """Gives the command to the engine; afterwards the feedback is Busy, a later state, or Error."""
 
     @abstractmethod
     def _value(self, component: Component, field: str) -> Any:
-        """A published value of a component."""
+        """Returns a published value of a component; enumerated ones as their names."""
 
     @abstractmethod
     def _objects(self, belt: Belt) -> Iterable[tuple[Any, ...]]:
-        """What lies on a belt: the fields of a BeltObject, the state by number."""
+        """Returns the objects on a belt: the fields of a BeltObject, the state by number."""
 
     @abstractmethod
     def _history(self, mover: Mover) -> Iterable[tuple[Any, ...]]:
-        """The last commands of a mover: the fields of a MoverRecord, the state by number."""
+        """Returns the last commands of a mover: the fields of a MoverRecord, enumerated ones by number."""
 
     @abstractmethod
     def _trail(self, mover: Mover) -> Iterable[int]:
-        """Numbers of the tracks, from 0, that a mover is to go along."""
+        """Returns the numbers, from 0, of the tracks that a mover's command leads along."""
 
     @abstractmethod
     def _route(self, mover: Mover) -> tuple[int, FloatArray]:
-        """The number of the first visit of a mover's route over the free surface, and all places, (n, 2) mm."""
+        """Returns the number of the first visit of a mover's surface route, and all its positions [mm], shape
+        (n, 2)."""
 
     @abstractmethod
     def _track_at(self, track: Track, s: float) -> tuple[float, float, float, float]:
-        """A position along a track: x, y, direction in deg, curvature."""
+        """Returns x, y [mm], direction [deg], curvature [1/mm] of a track at arc length `s` [mm]."""
 
     @abstractmethod
     def _track_closest_to(self, track: Track, x: float, y: float) -> float:
-        """The arc length of a track where it is nearest to a position."""
+        """Returns the arc length [mm] of the point of a track closest to (x, y) [mm]."""
 
     @abstractmethod
     def _track_links(self, track: Track) -> tuple[list[int], list[int]]:
-        """Numbers of the tracks before and behind a track."""
+        """Returns the numbers, from 0, of the tracks before and after a track."""
 
     def _foresee(self, axis: Axis, verb: str, arguments: Mapping[str, Any]) -> Forecast:
         raise TaktError("forecasts are made in process only; over LCM a feedback has travel_time_s")
 
     @abstractmethod
     def _wait_for(self, condition: Callable[[], bool], timeout: float, *, on_feedback: bool, every: int = 1) -> bool:
-        """Lets time pass until the condition holds, which changes only with feedback if `on_feedback`, and else is
-        asked every so many cycles. False: timed out."""
+        """Lets time pass until the condition holds. Returns False on timeout. `on_feedback`: the condition changes only
+        with feedback; otherwise it is evaluated every `every` cycles."""
 
     @abstractmethod
     def _run(self, cycles: int) -> None:
-        """Lets so many cycles pass."""
+        """Lets `cycles` cycles pass."""
 
     def _watch(self, fields: list[tuple[int, int]], every: int) -> Any:
-        """Looks at these fields of components every so many cycles. None: it is not known which cycles are seen, and
-        programs are called whenever there is something new."""
+        """Starts comparing these fields of components every `every` cycles. Returns None where cycles may be missed
+        (over LCM); programs are then called at every message."""
         return None
 
     def _has_changed(self, watch: Any) -> bool:
-        """Whether a field is other than when they were kept last."""
+        """Returns whether a field differs from its value at the last `_keep`."""
         raise NotImplementedError
 
     def _keep(self, watch: Any) -> None:
-        """Keeps the fields of a watch as they are now."""
+        """Stores the current values of a watch's fields, for `_has_changed`."""
         raise NotImplementedError
 
     def _catch_up(self, cycle: int) -> None:
-        """Makes sure that published values are not older than this cycle."""
+        """Waits until published values are not older than `cycle`."""
 
     @abstractmethod
     def _begin(self, recorder: Recorder) -> None: ...
@@ -678,7 +707,7 @@ class Session(SessionWithCams):
 
 
 def _named(components: Mapping[str, C], name: str, what: str) -> C:
-    """The component of this name, or a sentence that says which there are."""
+    """Returns the component with this name. Raises TaktError, with the names that exist, if there is none."""
     article = "an" if what[0] in "aeiou" else "a"
     if not isinstance(name, str):
         raise TypeError(f"{article} {what} goes by its name, not by {name!r}")
@@ -692,16 +721,16 @@ def _named(components: Mapping[str, C], name: str, what: str) -> C:
 
 
 def is_held(kind: str, verb: str, arguments: Mapping[str, Any], text: str) -> bool:
-    """Whether this command acts until it is released; text: the arguments as the engine reads them."""
+    """Returns whether this command acts until it is released. `text`: the arguments as the engine reads them."""
     if (kind, verb) not in LEVEL_SENSITIVE:
         return False
     if any(value is True for value in arguments.values()):
         return True
-    return verb == "jog" and not _core.lets_go(kind, verb, text)  # without a direction it lets go
+    return verb == "jog" and not _core.lets_go(kind, verb, text)  # a jog without a direction releases
 
 
 def release_of(feedback: Feedback) -> Feedback:
-    """The command that lets go of this one, not given yet."""
+    """Returns the command that releases this one, not given yet, and marks this one as released."""
     arguments = to_text({"ticket": feedback.ticket})
     release = Feedback(feedback._session, "machine", "release", arguments, level_sensitive=False)
     feedback._release = release
@@ -710,7 +739,7 @@ def release_of(feedback: Feedback) -> Feedback:
 
 
 def _places() -> tuple[Place, ...]:
-    """Where the program is that gives a command: calls outside of this package, the innermost first."""
+    """Returns the call stack of the program that gives a command: calls outside this package, innermost first."""
     places: list[Place] = []
     frame: FrameType | None = sys._getframe(2)
     while frame is not None and len(places) < CALLS:
@@ -722,6 +751,6 @@ def _places() -> tuple[Place, ...]:
 
 
 def _clean(text: str) -> str:
-    """What cannot be written as UTF-8, and NUL, which ends a text in LCM, becomes a question mark, which the engine
-    then complains about."""
+    """Returns the text with question marks for NUL (which ends a text in LCM) and for characters that cannot be encoded
+    as UTF-8; the engine then rejects the text."""
     return text.replace("\0", "?").encode("utf-8", "replace").decode()

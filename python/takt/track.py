@@ -1,4 +1,4 @@
-"""One track of a session: a way in the plane along which movers go."""
+"""One track of a session: a path in the plane along which movers travel."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from takt.errors import TaktError
 
 @dataclass(frozen=True)
 class TrackPosition:
-    """Where a track leads, and how it runs there."""
+    """Position, direction and curvature of a track at an arc length."""
 
     x: float  # mm
     y: float  # mm
-    direction: float  # deg, counterclockwise from x; counts on along the track
-    curvature: float  # 1/mm, above 0 where the track bends to the left
+    direction: float  # deg, counterclockwise from x; unwrapped along the track
+    curvature: float  # 1/mm, positive where the track bends to the left
 
 
 class Track(Component, TrackCommands, TrackOutputs):
-    """A track. Over LCM its geometry is that of the machine file; one that was changed while the machine runs is
-    refused there."""
+    """A track. Over LCM its geometry is read from the machine file; methods that need it raise TaktError there if the
+    track's length has been changed at run time."""
 
     KIND = "track"
 
@@ -30,14 +30,16 @@ class Track(Component, TrackCommands, TrackOutputs):
         return f"<Track {self.name}: {self.state.value}, {self.length:.6g} mm>"
 
     def position_at(self, s: float) -> TrackPosition:
-        """The place so many mm along the track. A closed loop goes round, an open track ends at its ends."""
+        """Returns position, direction and curvature at arc length `s` [mm]. On a closed loop `s` wraps around, on an
+        open track it is clamped to the ends. Raises TaktError if `s` is not finite or the track has no length yet."""
         self._check_length()
         if not math.isfinite(s):
             raise TaktError(f"track {self.name}: {s} mm is no place on it")
         return TrackPosition(*self.session._track_at(self, s))
 
     def arc_length_closest_to(self, x: float, y: float) -> float:
-        """mm along the track where it is nearest to a place."""
+        """Returns the arc length [mm] of the point of the track closest to (x, y) [mm]. Raises TaktError if x or y is
+        not finite or the track has no length yet."""
         self._check_length()
         if not (math.isfinite(x) and math.isfinite(y)):
             raise TaktError(f"track {self.name}: ({x}, {y}) is no place in the plane")
