@@ -1,4 +1,4 @@
-"""Who follows whom, from what the axes publish: so that a refused coupling can be told with its names."""
+"""Couplings between axes, from their published values: to explain a refused coupling with the names involved."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 COUPLING_LOOP = 3018  # error numbers: the axis would follow itself ...
 UNKNOWN_TARGET = 3010  # ... there is no such component, or no such cam
-COORDINATES = ("", ".x", ".y", ".c")  # of a mover, that axes can follow; without: its way along tracks
+COORDINATES = ("", ".x", ".y", ".c")  # of a mover, that axes can follow; "": its distance along tracks
 
 
 def why_refused(
@@ -25,7 +25,7 @@ def why_refused(
     movers: Collection[str] = (),
     cams: Collection[str] = (),
 ) -> str:
-    """Why a command was refused, with the names it is about. Empty: there is nothing to add."""
+    """Returns why a command was refused, with the names involved; empty if there is nothing to add."""
     if error_id == COUPLING_LOOP:
         return loop_sentence(target, arguments, axes)
     if error_id != UNKNOWN_TARGET:
@@ -35,7 +35,8 @@ def why_refused(
 
 
 def unknown_sentence(arguments: str, axes: Mapping[str, Axis], movers: Collection[str]) -> str:
-    """Which name among the arguments nobody has."""
+    """Returns a sentence about a master or list of cam switches among the arguments that does not exist; empty: all
+    exist."""
     asked = texts_of(arguments)
     coordinates = [name + suffix for name in movers for suffix in COORDINATES]
     for key in ("master", "master1", "master2"):
@@ -50,7 +51,7 @@ def unknown_sentence(arguments: str, axes: Mapping[str, Axis], movers: Collectio
 
 
 def unknown_cam_sentence(arguments: str, cams: Collection[str]) -> str:
-    """Which name among the arguments no cam has; `cams` are the known names."""
+    """Returns a sentence about a cam among the arguments, with the known names `cams`; empty: there is none."""
     asked = texts_of(arguments)
     for key in ("cam", "profile"):
         if asked.get(key):
@@ -62,17 +63,17 @@ def unknown_cam_sentence(arguments: str, cams: Collection[str]) -> str:
 
 
 def masters_of(axis: Axis, axes: Mapping[str, Axis]) -> list[str]:
-    """Names of the axes that an axis follows: from load on, or by a coupling in force."""
+    """Returns the names of the axes that an axis follows, by the machine file or by a coupling in force."""
     names = list(axes)
     follows = axis.parameters.get("follows")
     from_load = [follows["axis"]] if follows else []
-    # Beyond all axes: what else an axis may follow, which follows none.
+    # Larger numbers are other masters, which follow no axis.
     return from_load + [names[number - 1] for number in (axis.master1, axis.master2) if 0 < number <= len(names)]
 
 
 def loop_sentence(target: str, arguments: str, axes: Mapping[str, Axis]) -> str:
-    """Why this coupling was refused: "x would follow itself: x follows z, z follows y, y follows x". Empty where what
-    closes the loop is not published (a coupling that still waits in a buffer)."""
+    """Returns why a coupling was refused: "x would follow itself: x follows z, z follows y, y follows x". Empty if the
+    coupling that closes the loop is not published (it still waits in a buffer)."""
     asked = texts_of(arguments)
     wanted = [asked[key] for key in ("master", "master1", "master2") if asked.get(key) in axes]
     chain = _chain(wanted, target, axes, [target])

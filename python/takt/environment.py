@@ -1,4 +1,4 @@
-"""One environment of a session: the surface that movers float on."""
+"""One environment of a session: the surface above which movers levitate."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from takt.counted import counted
 
 
 class Environment(Component, EnvironmentCommands, EnvironmentOutputs):
-    """An environment: stators, and the border around them."""
+    """An environment: stators and the border around them."""
 
     KIND = "environment"
 

@@ -1,4 +1,4 @@
-"""Events of LCM logs, whatever has become of the file: what is damaged costs itself alone.
+"""Events of LCM logs, also of damaged files: only damaged events are lost.
 
 The format is LCM's (lcm-proj.github.io, "LCM log file format"); numbers are big-endian:
 
@@ -6,10 +6,10 @@ The format is LCM's (lcm-proj.github.io, "LCM log file format"); numbers are big
     4 bytes    8             8          4                      4
 
 An event is whole if it ends at or before the next sync word behind its own, or at the end of the file. Its data may
-hold a sync word if it ends at another one, unless a whole event begins at that word: then its length is wrong by
-chance by just the events behind it. An event whose length is wrong, or of which bytes are missing, is left out, and
-reading goes on at the next sync word. Of an event that ends before the next sync word, what stands between is left
-out. LCM's own reader believes the lengths that it finds, crashes at some, and skips what follows a wrong one.
+contain a sync word if the event ends at another one, unless a whole event begins at the inner word: then its length is
+wrong and by chance covers the following events. An event with a wrong length or missing bytes is skipped, and reading
+resumes at the next sync word. Bytes between the end of an event and the next sync word are skipped. LCM's own reader
+trusts the lengths that it finds, crashes on some, and skips the events after a wrong one.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ from takt.errors import TaktError
 
 SYNC = b"\xed\xa1\xda\x01"
 HEADER = struct.Struct(">4sqqII")
-CHANNEL = 1000  # bytes of a channel's name, of which LCM allows fewer
-BEGINNING = 1 << 20  # bytes of a file with the sync word of an event, if it is a log whose beginning is damaged
+CHANNEL = 1000  # bytes of a channel's name, more than LCM allows
+BEGINNING = 1 << 20  # bytes searched for a sync word, in case the beginning of a log is damaged
 REPORT_EVERY = 1024  # events between two reports of progress
 
 Progress = Callable[[float], None]
 
 
 class LogError(TaktError, ValueError):
-    """A file is no LCM log, or has not in it what is wanted."""
+    """A file is not an LCM log, or lacks the requested content."""
 
 
 class Event(NamedTuple):
-    """One message as it was logged."""
+    """One logged message."""
 
     utime: int  # us, wall clock
     channel: str
@@ -45,10 +45,10 @@ class Event(NamedTuple):
 
 
 class EventLog:
-    """The events of a log in the order of the file. After iterating, `left_over` says how many bytes are none."""
+    """The events of a log in the order of the file. After iterating, `left_over` is the number of skipped bytes."""
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        """Raises LogError where the file cannot be read, or is no log."""
+        """Raises LogError if the file cannot be read or is not a log."""
         self.path = Path(path)
         self.left_over = 0
         try:
@@ -59,7 +59,7 @@ class EventLog:
             raise LogError(f"{self.path}: cannot be read: {error.strerror}") from None
 
     def events(self, progress: Progress | None = None) -> Iterator[Event]:
-        """Every event that is whole."""
+        """Yields every whole event. `progress` is called with the progress, 0 to 1."""
         text = self.path.read_bytes()
         size, at = len(text), _next_sync(text, 0)
         self.left_over = at
@@ -82,13 +82,13 @@ class EventLog:
 
 
 def is_log(path: Path) -> bool:
-    """Whether a file begins like a log, or at least has a sync word near its beginning."""
+    """Returns whether a file has the sync word of a log in its first 1 MiB."""
     with path.open("rb") as file:
         return SYNC in file.read(BEGINNING)
 
 
 def _end_of(text: bytes, at: int) -> int | None:
-    """Where the event ends that begins there; None: it says that it ends where none can."""
+    """Returns the end of the event that begins at `at`, by its lengths; None if these are impossible."""
     if at + HEADER.size > len(text):
         return None
     _, _, _, channel, data = HEADER.unpack_from(text, at)
@@ -97,12 +97,12 @@ def _end_of(text: bytes, at: int) -> int | None:
 
 
 def _is_exact(text: bytes, end: int | None) -> bool:
-    """Whether the next event, or the end of the file, is at the end that an event says."""
+    """Returns whether an event with this end is followed by the next event or the end of the file."""
     return end is not None and (end == len(text) or text.startswith(SYNC, end))
 
 
 def _next_sync(text: bytes, start: int) -> int:
-    """Where the next event may begin; the end of the file: nowhere."""
+    """Returns the position of the next sync word; the end of the file if there is none."""
     found = text.find(SYNC, start)
     return found if found >= 0 else len(text)
 

@@ -6,10 +6,9 @@
     expect.within_limits(rec, "x")
     expect.stays(rec, "|x.following_error| < 0.5", window=(1.0, 2.0))
 
-A failure raises `MotionAssertionError` with a sentence that says when and by how much, and where the picture
-of it is. Inside `with expect.collect() as verdicts:` nothing is raised; passed and failed verdicts are
-gathered instead. Data that is not a number, and a recording without samples, fail every assertion. The same
-functions without raising are in `takt.checks`.
+A failure raises `MotionAssertionError` with a sentence that says when and by how much, and the path of a picture.
+Inside `with expect.collect() as verdicts:` nothing is raised; passed and failed verdicts are collected instead. NaN
+values and a recording without samples fail every assertion. The same functions without raising are in `takt.checks`.
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ __all__ = [
 
 P = ParamSpec("P")
 
-# Where pictures of failures go; None: no pictures. The pytest plugin sets it for each test.
+# Folder for pictures of failures; None: no pictures. The pytest plugin sets it for each test.
 pictures: Path | str | None = Path("reports")
 
 # Called with every recording and verdict before anything is raised.
@@ -61,8 +60,8 @@ _numbers = itertools.count(1)
 
 @contextmanager
 def collect() -> Iterator[list[Verdict]]:
-    """Gathers verdicts instead of raising, and draws no pictures. Inner collectors keep theirs to
-    themselves."""
+    """A context that collects verdicts instead of raising, and draws no pictures. Verdicts inside an inner `collect` go
+    to the inner list only."""
     verdicts: list[Verdict] = []
     token = _collected.set(verdicts)
     try:
@@ -92,7 +91,8 @@ def _asserting(
 
 
 def _with_picture(verdict: Verdict, recording: Recording) -> tuple[Verdict, str]:
-    """Saves the picture; a picture that cannot be made must not hide the failure."""
+    """Saves a picture of the failure and returns the verdict with its path, and a note for the exception. A picture
+    that cannot be made must not hide the failure."""
     if pictures is None or not verdict.lanes:
         return verdict, ""
     stem = re.sub(r"[^\w.-]+", "_", "_".join((verdict.name, *verdict.components)))[:80]

@@ -29,9 +29,14 @@ class FlexCam(Component, FlexCamCommands, FlexCamOutputs):
         return f"<FlexCam {self.name}: {self.state.value}, cam {self.cam_table} at x = {self.set_x_position:.6g}>"
 
     def load_cam(self, slot: int, cam: Table | Mapping[str, Any], *, name: str | None = None) -> Feedback:
-        """Makes a cam at run time and puts it into a slot, while the module may run the cam of another one, or of this
-        one: that is left at its end. Lets engine time pass until the cam is built. The feedback is that of `set_cam`;
-        `cam` and `name` are those of `Session.make_cam`."""
+        """Makes a cam at run time and assigns it to a slot. Allowed while the module runs a cam of any slot; a running
+        cam of this slot is replaced at its end. Lets engine time pass until the cam is built.
+
+        slot: 1 to 4.
+        cam, name: as in `Session.make_cam`.
+
+        Returns the feedback of `set_cam`. Raises TaktError for other slots, takt.ConfigError if the cam has errors.
+        """
         if slot not in range(1, SLOTS + 1):  # before the cam is made
             raise TaktError(f"{self.name}.load_cam: slot: expected 1 to {SLOTS}, found {slot!r}")
         self.session.make_cam(cam, name=name).wait()
@@ -39,18 +44,18 @@ class FlexCam(Component, FlexCamCommands, FlexCamOutputs):
 
     @property
     def cam_in_force(self) -> Table:
-        """The cam that runs, made at run time or of the machine file: points, laws, extremes (CAM-71). Factors and
+        """The running cam, made at run time or from the machine file: points, laws, extremes (CAM-71). The factors and
         offsets in force are `set_scaling_master`, `set_scaling_slave`, `set_offset_master` and `set_offset_slave`."""
         return self.session._cam(self.cam_number)
 
     @property
     def slave(self) -> Axis:
-        """The axis that it moves."""
+        """The slave axis."""
         return self.session.axis(self.parameters["slave"])
 
     @property
     def master(self) -> Axis | Belt | Mover | None:
-        """The axis, belt or mover that it follows; None: a virtual master."""
+        """The master axis, belt or mover; None: a virtual master."""
         name = self.parameters.get("master")
         if name is None:
             return None

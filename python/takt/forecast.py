@@ -1,4 +1,4 @@
-"""What a motion is going to do, as it is planned now: commands, overrides and faults to come change it (AX-96)."""
+"""Forecasts of a motion as planned now; later commands, overrides and faults change it (AX-96)."""
 
 from __future__ import annotations
 
@@ -17,19 +17,20 @@ class Moment(NamedTuple):
 
 
 class Forecast:
-    """Times are in s from the last cycle on, positions as the axis publishes them. Commands that wait behind the motion
-    are not in it: each is asked for by itself."""
+    """The forecast of one motion. Times are in [s] from the last cycle on, positions as the axis publishes them.
+    Commands buffered behind the motion are not included; each has its own forecast."""
 
     def __init__(self, core: _core.Forecast, sentence: str) -> None:
         self._core = core
-        self.error_id: int = core.error_id  # the command would be refused, or would fail before its turn
+        self.error_id: int = core.error_id  # not 0: the command would be refused, or would fail before it starts
         self.sentence = sentence  # why
-        # There is a plan: the axis follows nothing (a master, a table, a torque, a switch), nothing lies on top of its
-        # motion, and the turn of the command comes within ten minutes. Otherwise the rest says nothing.
+        # Whether there is a plan: the axis follows nothing (a master, a table, a torque, a switch), nothing is
+        # superimposed on its motion, and the command starts within ten minutes. If False, the values below are
+        # meaningless.
         self.known: bool = core.known
-        self.held: bool = core.held  # by an override: it goes as far as where that stops it
+        self.held: bool = core.held  # by an override: the motion ends where the override stops it
         self.limited_by: str = named("axis", "limited_by", core.limited_by)
-        self.start_s: float = core.start_s  # begin of the motion; negative: it is under way
+        self.start_s: float = core.start_s  # start of the motion; negative: in progress
 
     def __repr__(self) -> str:
         if self.error_id:
@@ -38,13 +39,13 @@ class Forecast:
 
     @property
     def duration_s(self) -> float:
-        """Until the motion is at rest, or at the velocity with which it goes on. Infinity: held."""
+        """Time [s] until the motion is at rest or has reached its final velocity; infinity if it is held."""
         return self._core.duration_s
 
     def time_to(self, position: float) -> float:
-        """Until the set point is at `position` first; NaN: never."""
+        """Returns the time [s] until the set point first is at `position`; NaN: never."""
         return self._core.time_to(position)
 
     def at(self, time_s: float) -> Moment:
-        """The set point so many seconds from now; before a motion that has not begun, what it begins with."""
+        """Returns the set point in `time_s` [s] from now; the initial set point before a motion has begun."""
         return Moment(*self._core.at(time_s))

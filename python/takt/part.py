@@ -1,4 +1,4 @@
-"""One part of the surface of a planar motor: a rigid set of stators that is at one of its positions in a coordinate
+"""One part of the surface of a planar motor: a rigid set of stators with one or more positions in a coordinate
 system."""
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""One pick and place module of a session: it moves a group between static places and workpieces on belts."""
+"""One pick and place module of a session: it moves a group between static targets and workpieces on belts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TURNS = {"turn", "turns", "every"}
 
 
 def why_refused(error_id: int, verb: str, arguments: str) -> str:
-    """Which rule a command breaks together with what is set already. Empty: none is known."""
+    """Returns the rules that a command may violate together with the current settings; empty if none is known."""
     if error_id != PARAMETER:
         return ""
     asked = yaml.safe_load(arguments) or {}
@@ -57,30 +57,33 @@ class PickPlace(Component, PickPlaceCommands, PickPlaceOutputs):
 
     @property
     def group(self) -> Group:
-        """The group that it moves."""
+        """The group that the module moves."""
         return self.session.group(self.parameters["group"])
 
     @property
     def belts(self) -> list[Belt]:
-        """Belts that it knows, in the order of their numbers."""
+        """The belts of the module, in the order of their numbers."""
         return [self.session.belt(belt["belt"]) for belt in self.parameters["belts"]]
 
     def execute(self, target: int = 0) -> Feedback:
-        """A rising edge of execute: to the static target (0) or to a workpiece on a belt; or on with the path held."""
+        """Gives a rising edge of `execute`: moves to the static target (0) or to a workpiece on a belt, or continues a
+        held path. Returns the feedback."""
         self.control(execute=False)
         return self.control(execute=True, set_target=target)
 
     def abort(self) -> Feedback:
-        """A rising edge of abort: forgets the path held, or ends a tracking mode behind the path in progress."""
+        """Gives a rising edge of `abort`: discards a held path, or ends a tracking mode after the path in progress.
+        Returns the feedback."""
         self.control(abort=False)
         return self.control(abort=True)
 
     def ack_gripper(self) -> Feedback:
-        """A rising edge of ack_gripper: the tool lifts at once."""
+        """Gives a rising edge of `ack_gripper`: the tool lifts at once. Returns the feedback."""
         self.control(ack_gripper=False)
         return self.control(ack_gripper=True)
 
     def return_to_path(self) -> Feedback:
-        """A rising edge of return_to_path: the tool moves back to where it left its path."""
+        """Gives a rising edge of `return_to_path`: the tool moves back to the pose at which it left its path. Returns
+        the feedback."""
         self.control(return_to_path=False)
         return self.control(return_to_path=True)

@@ -1,4 +1,4 @@
-"""One group of movers of a session: while it is enabled, what would collide is refused."""
+"""One group of movers of a session: while it is enabled, commands that would lead to a collision are refused."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from takt.counted import counted
 
 
 class PlanarGroup(Component, PlanarGroupCommands, PlanarGroupOutputs):
-    """A group of movers. What is in it is told itself to come into it: `mover.add_to_group(group="cell")`."""
+    """A group of movers. Members are added by a command of their own: `mover.add_to_group(group="cell")`."""
 
     KIND = "planar_group"
 

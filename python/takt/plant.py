@@ -1,7 +1,8 @@
-"""What moves instead of simulated servos, in the process of a `takt.Engine` and in step with it (PY-23).
+"""Plants: simulations that move axes instead of simulated servos, in the process of a `takt.Engine` and in lockstep
+with it (PY-23).
 
-A `Plant` is told the set points of all its axes in one call a cycle and says what their wires read at its end. Time
-stands still meanwhile, and nothing goes over a network; drives in other processes are in takt.drive.
+A `Plant` receives the set points of all its axes in one call per cycle and returns the measured values at its end.
+Engine time does not advance meanwhile, and no network is involved; for drives in other processes see takt.drive.
 """
 
 from __future__ import annotations
@@ -24,38 +25,42 @@ if TYPE_CHECKING:
 TOLD: Final[np.dtype[np.void]] = _core.told_layout()
 MEASURED: Final[np.dtype[np.void]] = _core.measured_layout()
 
-Rows = npt.NDArray[np.void]  # one an axis; a column is told["position_counts"]
+Rows = npt.NDArray[np.void]  # one row per axis; a column is told["position_counts"]
 
 
 class PlantError(TaktError):
-    """A plant cannot go on. The engine's cycle before it is complete, and what was recorded stays readable."""
+    """A plant cannot continue. The engine's previous cycle is complete, and recordings stay readable."""
 
 
 class Plant(ABC):
-    """All that moves the axes named in `axes`, stepped once a cycle with the set points of all of them.
+    """Moves the axes named in `axes`; stepped once per cycle with the set points of all of them.
 
-    The columns of `told` and `measured` have the names and units of takt.drive.SetPoint and takt.drive.Measured; and
-    `measured` has true_position, where the load really is in the unit of the axis, which is only published. Both are
-    the engine's own memory: no reference to them may be kept. What is not written into `measured` stays as it was.
+    The columns of `told` and `measured` have the names and units of takt.drive.SetPoint and takt.drive.Measured; in
+    addition `measured` has true_position, the true position of the load in the unit of the axis, which is only
+    published. Both arrays are the engine's own memory: do not keep references to them. Values not written into
+    `measured` keep their previous value.
     """
 
-    axes: Sequence[str]  # names; the order of the rows
+    axes: Sequence[str]  # names, in the order of the rows
 
     def start(self, machine: Mapping[str, Any], period_s: float) -> None:  # noqa: B027 (may be left as it is)
-        """An engine of this machine has been made, and no cycle has run. `machine`: as `session.machine` has it."""
+        """Called when an engine of this machine has been made, before its first cycle. `machine`: as
+        `session.machine`."""
 
     @abstractmethod
     def step(self, cycle: int, told: Rows, measured: Rows) -> None:
-        """Carries the set points of a cycle out and writes what the wires read at its end. The first one has the number
-        -1 and says off. What it raises comes out of the engine's step, whose cycle `cycle + 1` then does not run; that
-        engine makes no further cycle. It must not use the engine itself."""
+        """Applies the set points `told` of a cycle and writes the values at its end into `measured`.
+
+        The first call has cycle -1 and set points that mean off. An exception is raised from the engine's step: cycle
+        `cycle + 1` and all later ones do not run. This method must not use the engine.
+        """
 
     def finish(self, recording: Recording) -> None:  # noqa: B027 (may be left as it is)
-        """A recording of the engine has ended: what the plant knows beside it may go into its `meta`."""
+        """Called when a recording of the engine has ended; may add data of the plant to its `meta`."""
 
 
 class Drives(Plant):
-    """Drives that answer each for itself (takt.drive.Drive), in this process.
+    """A plant of independent drives (takt.drive.Drive), in this process.
 
     drives: by the names of their axes.
     """
@@ -81,11 +86,11 @@ class Drives(Plant):
 
 
 class OnNetwork(Bus):
-    """A plant in a process of its own, for an engine on an LCM network, in real time or in step with it: hand it to
-    takt.drive.Plant as one of its buses. What it says of true_position stays here, and recordings of the engine do not
-    hear of it.
+    """A plant in a process of its own, for an engine on an LCM network, in real time or in simulated time: pass it to
+    takt.drive.Plant as a bus. Its true_position is not sent to the engine and is not in recordings.
 
-    make: a plant that nothing has moved yet; called again for each engine that starts.
+    make: returns a plant in its initial state; called again for each engine that starts.
+    machine: all parameters of the machine, as `session.machine`.
     """
 
     def __init__(self, make: Callable[[], Plant], machine: Mapping[str, Any]) -> None:
@@ -100,7 +105,7 @@ class OnNetwork(Bus):
         self._rows = {axis: row for row, axis in enumerate(self.plant.axes)}
         self._told, self._measured = np.zeros(len(self._rows), TOLD), np.zeros(len(self._rows), MEASURED)
         self._started: set[str] = set()
-        self._heard: set[str] = set()  # axes whose set point of this cycle has come
+        self._heard: set[str] = set()  # axes whose set point of this cycle has been received
         self._before: dict[str, Measured | None] = {}
         self._cycle = -1
 
@@ -110,11 +115,11 @@ class OnNetwork(Bus):
         if axis in self._started:  # of another engine
             self._begin()
         self._started.add(axis)
-        if real_time and self._cycle == -1:  # the first answer is what is measured before anything is told
+        if real_time and self._cycle == -1:  # the first answer is measured before any set point
             self._step()
 
     def exchange(self, told: Mapping[str, SetPoint], *, real_time: bool) -> Mapping[str, Measured | None]:
-        late = real_time and self._heard.isdisjoint(told)  # the rest of a cycle that was carried out without them
+        late = real_time and self._heard.isdisjoint(told)  # rest of a cycle already carried out without these axes
         for axis, point in told.items():
             self._told[self._rows[axis]] = tuple(getattr(point, name) for name in _TOLD)
         if late and self._heard:
@@ -126,7 +131,7 @@ class OnNetwork(Bus):
         return self._before if real_time else self._answers()
 
     def idle(self, stop: Collection[str]) -> None:
-        if stop:  # there was an engine: motors are off, brakes hold
+        if stop:  # there was an engine before: motors are off, brakes hold
             self._told[:] = np.zeros((), TOLD)
             self._step()
 
@@ -150,7 +155,7 @@ assert set(_SAID) == {field.name for field in fields(Measured)}
 
 
 def axes_of(plant: Plant, machine: Mapping[str, Any], file_name: str) -> list[str]:
-    """The axes that a plant moves, in its order. Raises ConfigError where it does not fit the machine."""
+    """Returns the axes that a plant moves, in its order. Raises ConfigError if the plant does not fit the machine."""
     axes = list(getattr(plant, "axes", ()))
     known = [axis["name"] for axis in machine["axes"]]
     external = [drive["axis"] for drive in machine["external"]["drives"]]

@@ -1,4 +1,4 @@
-"""One pose of a session that comes from elsewhere: whoever knows it gives it."""
+"""One externally supplied pose of a session: clients set it by commands."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from takt.component import Component
 
 
 class FreePose(Component, PoseCommands, PoseOutputs):
-    """A pose from elsewhere; groups can go along with it."""
+    """An externally supplied pose; groups can follow it."""
 
     KIND = "pose"
 

@@ -1,4 +1,4 @@
-"""A running engine (taktd), over LCM."""
+"""Sessions with a running engine (taktd) over LCM."""
 
 from __future__ import annotations
 
@@ -35,20 +35,20 @@ from takt.tables import KINDS, PREFIXES, State, is_possible, kind_of_channel, ma
 from takt.track import Track
 
 QUEUE = 100_000  # messages waiting to be received before LCM drops some
-DESCRIPTION_S = 2.5  # the engine describes itself within that, every second
-SILENCE_S = 3.0  # without any message: the engine is gone (it sends its own state, and the machine every second)
-RESEND_S = 0.1  # [s] between two tries of a command that is not answered: some 15 before it is given up
-REFRESH_S = 2.0  # after which a command that is not finished is asked about: its last answer may have been lost
-ANSWER_S = 2.0  # after which a command that is not answered is given up
+DESCRIPTION_S = 2.5  # longest wait for a description of the machine, which the engine sends every second
+SILENCE_S = 3.0  # without any message: connection lost (the engine sends its state and, every second, the machine)
+RESEND_S = 0.1  # between two transmissions of an unanswered command
+REFRESH_S = 2.0  # after which an unfinished command is sent again: its last answer may have been lost
+ANSWER_S = 2.0  # after which an unanswered command is given up
 LATE_S = 1.0  # how long published values may take to catch up with a feedback, or with one another
-IDLE_BEAT_S = 0.5  # between heartbeats that hold nothing but the client's name
+IDLE_BEAT_S = 0.5  # between heartbeats while no command is held
 ON_TRACK = ("OnTrack", "CRotationOnTrack")  # command modes of movers
-POLL_S = 0.1  # longest wait before looking at clocks and Ctrl-C again
-STILL_S = 10.0  # how long an engine that is heard may stay at one cycle
-OTHER_RUN = 3017  # error of what was meant for another start of the engine
-QUEUE_FULL = 3012  # error of what there is no room for
+POLL_S = 0.1  # longest wait between two checks of clocks and Ctrl-C
+STILL_S = 10.0  # how long a heard engine may stay at one cycle
+OTHER_RUN = 3017  # error: the message was for another start of the engine
+QUEUE_FULL = 3012  # error: a queue is full
 ANOTHER = "another engine runs on this network now: it was started again, or there are two"
-JUMP_S = 3600.0  # of engine time between two messages: a component that says more is not believed
+JUMP_S = 3600.0  # of engine time between two messages: component states with a larger jump are ignored
 
 
 @dataclass
@@ -60,7 +60,7 @@ class _Sent:
 
 
 class _Kept:
-    """Every n-th message of a component; a repeated or late one counts once."""
+    """Keeps every n-th message of a component; repeated and late messages are ignored."""
 
     def __init__(self, every: int) -> None:
         self.messages: list[State] = []
@@ -78,25 +78,25 @@ class _Kept:
 
 
 class RemoteSession(Session):
-    """A session with a running engine. Made by `connect`."""
+    """A session with a running engine; returned by `connect`."""
 
     def __init__(self, url: str, client: str, timeout: float, key: Key | None = None) -> None:
         self.url = url
         self.client = client
-        self.losses: dict[str, int] = {}  # messages lost on the way, by channel
-        self.ignored = 0  # messages whose cycle cannot be true
-        self.refused: Counter[str] = Counter()  # messages without a good tag where there is a key, by reason
+        self.losses: dict[str, int] = {}  # messages lost in transmission, by channel
+        self.ignored = 0  # messages with an implausible cycle
+        self.refused: Counter[str] = Counter()  # with a key: messages without a valid tag, by reason
         self._session_id = random.SystemRandom().getrandbits(62) + 1
-        self._news = threading.Condition()  # guards all that follows
+        self._news = threading.Condition()  # guards all members below
         self._sequences: dict[str, int] = {}
         self._states: dict[str, State] = {}
         self._engine_state: msgs.engine_state | None = None
         self._description: msgs.machine_description | None = None
         self._cycle = -1
         self._heard = 0.0
-        self._trouble = ""  # why the session cannot go on
+        self._trouble = ""  # why the session cannot continue
         self._key = key
-        self._key_trouble = ""  # why the engine's last description could not be believed
+        self._key_trouble = ""  # why the engine's last description was rejected
         self._belt_objects: dict[str, msgs.belt_objects] = {}
         self._trails: dict[str, msgs.mover_trail] = {}  # of movers on tracks
         self._routes: dict[str, msgs.mover_route] = {}  # of movers on the free surface
@@ -104,9 +104,9 @@ class RemoteSession(Session):
         self._sent: dict[int, _Sent] = {}
         self._held: list[Feedback] = []  # level-sensitive commands that need heartbeats
         self._last_id = 0
-        self._log: CommandLog | None = None  # of movers, once the machine is known
+        self._log: CommandLog | None = None  # of movers; set once the machine is known
         self._recorded: dict[Recorder, dict[str, _Kept]] = {}
-        self._before: dict[Recorder, tuple[dict[str, int], dict[str, int]]] = {}  # lost and dropped when it began
+        self._before: dict[Recorder, tuple[dict[str, int], dict[str, int]]] = {}  # counts of lost, dropped at its start
         self._stop = threading.Event()
         self._beat_now = threading.Event()
 
@@ -140,7 +140,7 @@ class RemoteSession(Session):
                 self._log = CommandLog(self.movers)
             self._dead_man_s = float(machine["lcm"]["dead_man_s"])
             self._command_age_s = float(machine["lcm"]["command_age_s"])
-            self._answer_s = max(ANSWER_S, self._command_age_s)  # then the engine refuses it
+            self._answer_s = max(ANSWER_S, self._command_age_s)  # the engine refuses older commands
             self._still_s = max(STILL_S, 3.0 / float(machine["lcm"]["engine_rate_hz"]))
             self._beater = threading.Thread(target=self._beat, name="takt heartbeat", daemon=True)
             self._beater.start()
@@ -166,7 +166,7 @@ class RemoteSession(Session):
         return figures_of(self._engine_state) if self._engine_state is not None else {}
 
     def close(self) -> None:
-        """Releases what is held and leaves the network; the engine runs on."""
+        """Releases held commands and leaves the network. The engine continues to run."""
         if self._closed:
             return
         with self._news:
@@ -176,7 +176,7 @@ class RemoteSession(Session):
                 feedback.release()
             except TaktError:
                 break
-        with self._news:  # what is still not released then ends without heartbeats
+        with self._news:  # commands still not released after that end for lack of heartbeats
             self._news.wait_for(
                 lambda: self._trouble or all(f._release_is_settled for f in self._held), self._dead_man_s
             )
@@ -189,7 +189,7 @@ class RemoteSession(Session):
             self._leave()
 
     def _leave(self) -> None:
-        """Unsubscribes; else LCM would queue messages for as long as the session object is referenced."""
+        """Unsubscribes; otherwise LCM would queue messages while the session object is referenced."""
         self._receiver.join()
         while self._subscriptions:
             self._lcm.unsubscribe(self._subscriptions.pop())
@@ -212,10 +212,10 @@ class RemoteSession(Session):
             self.losses[channel] = self.losses.get(channel, 0) + sequence - last - 1
             if channel == "takt/feedback":
                 for sent in self._sent.values():
-                    sent.answered = False  # asks again
+                    sent.answered = False  # is sent again
                 self._beat_now.set()
         self._sequences[channel] = sequence
-        if self._key is None or _core.is_tagged_channel(channel):  # the others may be of anyone
+        if self._key is None or _core.is_tagged_channel(channel):  # other channels are not authenticated
             self._heard = time.monotonic()
         self._news.notify_all()
 
@@ -224,8 +224,9 @@ class RemoteSession(Session):
             self._trouble = ANOTHER
 
     def _believable(self, message: msgs.engine_state | State) -> bool:
-        """Cycle and time say the same. A component besides cannot be far ahead of all that was heard; the engine's own
-        state, which has the run's number, can (this process may have slept)."""
+        """Returns whether cycle and time of a message agree and, for a component, its cycle is not far ahead of all
+        cycles received. The engine's own state carries the run's number and may be far ahead (this process may have
+        slept)."""
         if self._description is None:
             return False
         period = self._description.period_s
@@ -341,7 +342,10 @@ class RemoteSession(Session):
     def _take(self, message: msgs.feedback) -> None:
         sent = self._sent.get(message.id)
         if sent is None:
-            if message.id == 0 and message.error_id not in (0, QUEUE_FULL):  # a client without a place may stop things
+            if message.id == 0 and message.error_id not in (
+                0,
+                QUEUE_FULL,
+            ):  # a client refused for lack of room may stop
                 self._trouble = ANOTHER if message.error_id == OTHER_RUN else message.sentence
             return
         sent.answered = True
@@ -362,7 +366,7 @@ class RemoteSession(Session):
             del self._sent[message.id]
         self._held = [f for f in self._held if not f._final or (_outlasts_its_end(f) and not f._release_is_settled)]
 
-    # --- heartbeats and second tries, on a thread of their own ---
+    # --- heartbeats and retransmissions, on a thread of their own ---
 
     def _beat(self) -> None:
         beat = msgs.heartbeat()
@@ -375,8 +379,8 @@ class RemoteSession(Session):
                 for feedback in ending:
                     if feedback.ticket and (feedback._release is None or feedback._release_is_refused):
                         self._send(release_of(feedback))
-                # Beats renew whatever the client holds: without them the dead man ends what cannot be released, and
-                # what is held by a client that cannot command any more.
+                # Heartbeats renew every command that the client holds. Without them the dead-man switch ends commands
+                # that cannot be released, and those of a client that can no longer send commands.
                 beats = not self._trouble and (not ending or len(ending) < len(self._held))
                 again = [s for s in self._sent.values() if now - s.at > (REFRESH_S if s.answered else RESEND_S)]
                 for sent in again:
@@ -400,7 +404,7 @@ class RemoteSession(Session):
                 self._trouble = f"the LCM network {self.url} does not take messages: {error}"
                 self._news.notify_all()
 
-    # --- what the session is made of ---
+    # --- implementation of Session ---
 
     def _send(self, feedback: Feedback) -> _Sent:
         message = msgs.command()
@@ -420,7 +424,7 @@ class RemoteSession(Session):
         return sent
 
     def _submit(self, feedback: Feedback) -> None:
-        # What stops, releases or switches off is sent whatever state the session is in (EN-32).
+        # Commands that stop, release or switch off are sent in any state of the session (EN-32).
         lets_go = _core.lets_go(self._kind(feedback.target), feedback.verb, feedback.arguments)
         with self._news:
             if lets_go:
@@ -432,7 +436,7 @@ class RemoteSession(Session):
         with self._news:
             if not self._news.wait_for(lambda: sent.answered or (self._trouble and not lets_go), self._answer_s):
                 if feedback.level_sensitive:
-                    feedback.released = True  # should the engine have taken it up: goes on until it answers
+                    feedback.released = True  # the engine may have accepted it: retried until it answers
                 elif not feedback._lets_go_of_another:
                     del self._sent[sent.message.id]
                 late = "" if lets_go else f"; it refuses what reaches it later than {self._command_age_s:g} s"
@@ -445,7 +449,7 @@ class RemoteSession(Session):
                 raise ConnectionError(self._trouble)
 
     def _wrong_keys(self) -> int:
-        """How many messages the engine has refused for their key so far, by its last word."""
+        """Returns the number of messages that the engine has refused for a wrong key, by its last state."""
         return int(self._engine_state.wrong_key) if self._engine_state is not None else 0
 
     def _value(self, component: Component, field: str) -> Any:
@@ -465,7 +469,7 @@ class RemoteSession(Session):
         if message is None or message.cycle < self._states[mover.name].cycle:
             if mover.command_mode not in ON_TRACK:
                 return ()
-            # What the mover has left meanwhile is not ahead any more.
+            # Tracks that the mover has left since the message are dropped.
             tracks = tracks[tracks.index(here) :] if here in tracks else [here]
         return [track - 1 for track in tracks]
 
@@ -494,7 +498,7 @@ class RemoteSession(Session):
         return self._cam(number) if number else super().cam(name)
 
     def _await(self, condition: Callable[[], bool], timeout: float) -> None:
-        """Until something that is heard makes it true."""
+        """Waits until a received message makes the condition true, the session fails, or `timeout` [s] has passed."""
         with self._news:
             self._news.wait_for(lambda: condition() or self._trouble, timeout)
 
@@ -555,7 +559,7 @@ class RemoteSession(Session):
         return make_recording(self.machine, tables, recorder.events, meta, self.machine_text)
 
     def _dropped(self) -> dict[str, int]:
-        """What the engine had no room for so far, by its last word."""
+        """Returns the engine's counts of dropped messages, by its last state."""
         state = self._engine_state
         return {name: getattr(state, name) for name in DROPPED} if state is not None else {}
 
@@ -574,7 +578,7 @@ class RemoteSession(Session):
         end = time.monotonic() + timeout
         with self._news:
             self._news.wait_for(lambda: self._description or self._trouble or self._key_trouble, timeout)
-            if self._key_trouble:  # anyone may have sent that: another description comes within a second
+            if self._key_trouble:  # may be from a foreign sender: the next description is due within a second
                 left = min(DESCRIPTION_S, end - time.monotonic())
                 self._news.wait_for(lambda: self._description or self._trouble, left)
             if self._trouble:
@@ -598,14 +602,16 @@ class RemoteSession(Session):
 def connect(
     url: str | None = None, *, client: str | None = None, timeout: float = 5.0, key: KeyFile | None = None
 ) -> RemoteSession:
-    """Joins the LCM network and returns a session with its engine. Waits `timeout` seconds at most for the description
-    of its machine, then as long again for a first state of every component.
+    """Joins an LCM network and returns a session with its engine.
 
-    url: "udpm://239.255.76.67:7667?ttl=0" unless given here or in the environment (LCM_DEFAULT_URL).
-    client: a name of one's own; two clients of one name are refused by the engine. Made up unless given.
-    key: the file with the key that the engine was started with (`taktd --key`), unless the environment names it
-        (TAKT_KEY_FILE); "": none. Raises KeyFileError where the file cannot be used, ConnectionError where the engine
-        has another key, has none, or has one and this client has none.
+    url: the network; None: that of the environment (LCM_DEFAULT_URL), else "udpm://239.255.76.67:7667?ttl=0".
+    client: a unique name of this client; the engine refuses a second client with the same name. None: generated.
+    timeout: longest wait [s] for the description of the machine, and again for the first states of all components.
+    key: the file with the key that the engine was started with (`taktd --key`); None: the file named by the environment
+        (TAKT_KEY_FILE); "": no key.
+
+    Raises ConnectionError if no engine answers, or the keys of engine and client do not match; KeyFileError if the key
+    file cannot be used; ValueError if `client` cannot be encoded as UTF-8 or contains NUL.
     """
     url = url or usual_url()
     name = client if client is not None else f"python-{os.getpid()}-{random.SystemRandom().getrandbits(24):06x}"
@@ -615,13 +621,13 @@ def connect(
 
 
 def _outlasts_its_end(feedback: Feedback) -> bool:
-    """Whether a command that is final still needs its release. Power off, a fault or another stop ends a held stop as
-    aborted or with an error, and leaves its hold."""
+    """Returns whether a final command still needs its release. Power off, a fault or another stop ends a held stop as
+    aborted or in error, but its hold remains."""
     return feedback._done or (feedback.verb == "stop" and not feedback._refused)
 
 
 def _more(now: dict[str, int], then: dict[str, int]) -> dict[str, int]:
-    """By how much counts have grown; those that have not are left out."""
+    """Returns the increases of counts; unchanged ones are left out."""
     return {name: count - then.get(name, 0) for name, count in now.items() if count > then.get(name, 0)}
 
 
@@ -630,8 +636,8 @@ def _now_us() -> int:
 
 
 def _decoded(kind: Any, data: bytes) -> Any:
-    """The message, or None where the bytes are something else."""
+    """Returns the decoded message; None if the bytes are not of this type."""
     try:
         return kind.decode(data)
-    except Exception:  # generated code raises whatever comes: ValueError, struct.error, UnicodeDecodeError, IndexError
+    except Exception:  # generated code raises ValueError, struct.error, UnicodeDecodeError, IndexError ...
         return None

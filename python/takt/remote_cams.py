@@ -13,16 +13,16 @@ from takt.errors import ConnectionError, TaktError
 if TYPE_CHECKING:
     from takt.remote import RemoteSession
 
-HELD = 64  # pieces that have come
-WAIT_S = 0.5  # for a piece, once the engine has said that it is sent
-TRIES = 5  # of a piece that is lost on the way
+HELD = 64  # received pieces kept at most
+WAIT_S = 0.5  # for a piece, once the engine has confirmed the request
+TRIES = 5  # requests of a piece that is not received
 REFUSED = 3113
 
 Piece = tuple[str, int, int]  # name of the cam, cycle, first
 
 
 class RemoteCams:
-    """Reads cams piece by piece; pieces come on the thread that receives."""
+    """Reads cams piece by piece; pieces are received on the receiver thread."""
 
     def __init__(self, session: RemoteSession) -> None:
         self._session = session
@@ -34,13 +34,13 @@ class RemoteCams:
             self._pieces.popitem(last=False)
 
     def number_of(self, name: str) -> int:
-        """The number of the cam that this name stands for; 0: the engine has none of that name."""
+        """Returns the number of the cam with this name; 0 if the engine has none."""
         piece = self._piece({"cam": name}, 0)
         return 0 if piece is None else int(piece.number)
 
     def table(self, number: int) -> Table:
-        """Returns the cam with this number. Raises TaktError where the engine has none (any more) or refuses read_cam,
-        ConnectionError where a piece was not received."""
+        """Returns the cam with this number. Raises TaktError if the engine has no such cam (any more) or refuses
+        read_cam, ConnectionError if a piece was not received."""
         first = self._piece({"number": number}, 0)
         if first is None:
             raise TaktError(f"the engine has no cam of number {number} any more")
@@ -61,7 +61,7 @@ class RemoteCams:
         return Table.from_dict(cam)
 
     def _piece(self, which: dict[str, Any], first: int) -> msgs.cam_piece | None:
-        """Returns the piece that begins with point or segment `first`; None where the engine has no such cam."""
+        """Returns the piece that begins with point or segment `first`; None if the engine has no such cam."""
         for _ in range(TRIES):
             feedback = self._session.command("machine", "read_cam", {**which, "first": first}).wait_final()
             if feedback.error_id == REFUSED:

@@ -1,4 +1,4 @@
-"""The last commands of movers for a session over LCM: its own and those of other clients, since it was connected."""
+"""The last commands of movers for a session over LCM: those of all clients since it was connected."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from takt import msgs
 from takt._commands import MoverCommands
 from takt.feedback import FeedbackState
 
-KEPT = 100  # commands of each mover, as the engine keeps
-OPEN = 10_000  # commands that are not finished
-UNTOLD = frozenset({"set_external_setpoint"})  # the engine keeps none of these either
-BEFORE_MOVERS = frozenset({3015, 3033, 3100})  # errors of the cycle: stopping, too old, emergency stop
+KEPT = 100  # commands of each mover, as in the engine
+OPEN = 10_000  # unfinished commands kept at most
+UNTOLD = frozenset({"set_external_setpoint"})  # left out, as in the engine
+BEFORE_MOVERS = frozenset({3015, 3033, 3100})  # refused before movers see them: stopping, too old, emergency stop
 
 Key = tuple[str, int, int]  # client, session, number of the command
 
@@ -32,16 +32,16 @@ class _Row:
     changed: int = -1
     kind: int = 0
     number: int = 0
-    limited: int = -1  # -1: not told yet
+    limited: int = -1  # -1: not known yet
 
 
 class CommandLog:
-    """Takes messages as they come: commands, feedback, states of movers."""
+    """Assembles the history from received messages: commands, feedback, states of movers."""
 
     def __init__(self, movers: Iterable[str]) -> None:
         self._rows: dict[str, deque[_Row]] = {name: deque(maxlen=KEPT) for name in movers}
         self._open: dict[Key, tuple[str, _Row]] = {}
-        self._begun: dict[str, _Row] = {}  # of each mover, the command that began last
+        self._begun: dict[str, _Row] = {}  # by mover: the command that began last
 
     def command(self, message: msgs.command) -> None:
         key = (message.client, message.session, message.id)
@@ -59,7 +59,7 @@ class CommandLog:
         final = message.state > FeedbackState.ACTIVE
         if final:
             del self._open[key]
-        if message.cycle < 0:  # refused before, or still on its way to the engine's cycle
+        if message.cycle < 0:  # not processed by a cycle of the engine (yet)
             return
         if row.cycle < 0:
             if message.state == FeedbackState.ERROR and message.error_id in BEFORE_MOVERS:
@@ -75,13 +75,13 @@ class CommandLog:
         row.kind, row.number = message.object_kind, message.object_number
 
     def state(self, message: Any) -> None:
-        """Of a mover: what the dynamics of its last command were reduced by."""
+        """Takes a state of a mover: which of the dynamics of its last command was reduced."""
         row = self._begun.get(message.name)
         if row is not None and row.limited < 0 and message.cycle >= row.begun and _has_dynamics(row.verb):
             row.limited = message.limited_by
 
     def of(self, mover: str) -> list[tuple[Any, ...]]:
-        """Rows as an engine in process gives them, the oldest first."""
+        """Returns the rows of a mover in the form of an engine in process, oldest first."""
         return [
             (r.ticket, r.verb, r.state, r.error, r.cycle, r.begun, r.changed, r.kind, r.number, max(r.limited, 0))
             for r in self._rows[mover]

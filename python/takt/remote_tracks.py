@@ -1,4 +1,4 @@
-"""The geometry of tracks for a session over LCM: made from the machine file that the engine sends."""
+"""The geometry of tracks for a session over LCM, computed from the machine file that the engine sends."""
 
 from __future__ import annotations
 
@@ -16,27 +16,28 @@ SAME = 1e-6  # mm
 
 
 class RemoteTracks:
-    """Answers what an engine in process answers of its tracks; all positions in mm, in the coordinate system of their
-    part. The machine file has to have the tracks as they are: one whose length is another now is refused."""
+    """Computes the geometry of tracks as an engine in process does; positions in [mm]. The tracks must be unchanged
+    from the machine file: methods raise TaktError for a track whose current length differs."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
 
     def at(self, track: Track, s: float) -> tuple[float, float, float, float]:
-        """x, y, direction [deg], curvature [1/mm]."""
+        """Returns x, y [mm], direction [deg], curvature [1/mm] at arc length `s` [mm]."""
         number = self._number(track)
         x, y, direction, curvature = self._layout.at(number, s)
         origin_x, origin_y = self._origin(number)
         return x + origin_x, y + origin_y, direction, curvature
 
     def closest_to(self, track: Track, x: float, y: float) -> float:
-        """The arc length [mm]."""
+        """Returns the arc length [mm] of the closest point of the track."""
         number = self._number(track)
         origin_x, origin_y = self._origin(number)
         return self._layout.closest_to(number, x - origin_x, y - origin_y)
 
     def links(self, track: Track) -> tuple[list[int], list[int]]:
-        """Numbers of the tracks before and behind it, from 0, where parts are to be now."""
+        """Returns the numbers, from 0, of the tracks before and after the track, with all parts at their commanded
+        positions."""
         for other in self._session.tracks.values():
             self._number(other)
         self._layout.place_parts([part.commanded_index for part in self._session.parts.values()])

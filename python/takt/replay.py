@@ -1,4 +1,4 @@
-"""Runs a journal again and compares the whole state after every cycle, and what components published."""
+"""Replays a journal and compares the whole state after every cycle, and the published values of components."""
 
 from __future__ import annotations
 
@@ -26,35 +26,35 @@ Hashes = tuple[npt.NDArray[np.int64], npt.NDArray[np.uint64]]  # cycles, rising,
 
 @dataclass(frozen=True)
 class Difference:
-    """The first cycle after which the state was another one."""
+    """The first cycle after which the states differ."""
 
     cycle: int
-    recorded: int
+    recorded: int  # hash of the state
     replayed: int
 
 
 @dataclass(frozen=True)
 class ReplayResult:
     machine: str
-    cycles: int  # that were compared
-    of: int  # cycles from 0 to the last one that the log knows of
+    cycles: int  # compared cycles
+    of: int  # cycles from 0 to the last one mentioned in the log
     commands: int
     period_s: float
     version: str  # of the engine that wrote the log
     difference: Difference | None
-    missing: str  # why not all of them could be compared; empty: all were
-    states: int = 0  # recorded messages that were compared: of components, belts, tracks, and feedback
-    wrong_states: int = 0  # of these others than the replay's
+    missing: str  # why not all cycles could be compared; empty: all were
+    states: int = 0  # compared recorded messages: of components, belts, tracks, and feedback
+    wrong_states: int = 0  # those of them that differ from the replay
     state_difference: StateDifference | None = None
 
     @property
     def complete(self) -> bool:
-        """Nothing is missing in the journal, from the first cycle to the last the log knows of."""
+        """Whether the journal is complete from the first cycle to the last one mentioned in the log."""
         return not self.missing
 
     @property
     def same(self) -> bool:
-        """Every cycle was compared, and equal, and so was every message that the log holds."""
+        """Whether all cycles and all messages of the log were compared and equal."""
         return self.complete and self.difference is None and self.state_difference is None
 
     def __bool__(self) -> bool:
@@ -82,11 +82,19 @@ class ReplayResult:
 
 
 def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | None = None) -> ReplayResult:
-    """Rebuilds the engine from a log that taktd wrote (--log), gives every command so that it is applied in the same
-    cycle, and compares the hash of the state after every cycle, and every message that the log holds of components,
-    of what lies on belts, of the shapes of tracks, and of what became of commands with what is published in this cycle.
-    The run is the same only if every cycle from the first to the last one that the log knows of was compared; a hole in
-    the journal ends the comparison. Not compared: sentences of feedback, counts and times of the engine."""
+    """Replays a log written by taktd (--log): makes its engine, gives every command so that it is applied in the same
+    cycle, and compares the hash of the state after every cycle and the messages in the log (components, objects on
+    belts, shapes of tracks, trails and routes of movers, feedback) with those of the replay. Not compared: sentences of
+    feedback, counters and times of the engine.
+
+    log: the log file.
+    run: index of the run in the log; -1: the last one.
+    progress: called with the progress, 0 to 1.
+
+    Returns the result. It is `same` only if every cycle from the first to the last one mentioned in the log was
+    compared and equal; a gap in the journal ends the comparison. Raises LogError if the file is not a log or has no
+    journal.
+    """
     content = open_log(log, (lambda share: progress(share / 2)) if progress else None)
     one = run_of(content, run)
     if one.start is None:
@@ -145,7 +153,7 @@ def replay(log: str | os.PathLike[str], *, run: int = -1, progress: Progress | N
 
 
 class _Drives:
-    """Says what external drives had measured, without them."""
+    """Feeds the recorded measurements of external drives to the engine."""
 
     def __init__(self, engine: _core.Engine, run: Run) -> None:
         self._engine = engine
@@ -155,7 +163,7 @@ class _Drives:
         self._given = 0
 
     def give(self, cycle: int) -> int:
-        """Gives what this cycle took. The next cycle that took anything."""
+        """Feeds the measurements used in this cycle. Returns the next cycle with measurements."""
         while self._given < len(self._entries) and self._entries[self._given].cycle <= cycle:
             feedback = self._entries[self._given].feedback
             if feedback.axis not in self._axes:
@@ -167,7 +175,7 @@ class _Drives:
 
 
 def _hashes(run: Run) -> Hashes:
-    """All hashes of a run. LCM has no unsigned numbers."""
+    """Returns all hashes of a run, unsigned again (LCM has no unsigned numbers)."""
     parts = sorted((h for h in run.hashes if h.count > 0 and 0 <= h.first_cycle < 2**62), key=lambda h: h.first_cycle)
     if not parts:
         return np.empty(0, np.int64), np.empty(0, np.uint64)
@@ -176,13 +184,13 @@ def _hashes(run: Run) -> Hashes:
 
 
 def _in_a_row(cycles: npt.NDArray[np.int64]) -> int:
-    """How many cycles there are from 0 on without a hole."""
+    """Returns the number of cycles from 0 on without a gap."""
     breaks = np.flatnonzero(cycles != np.arange(len(cycles)))
     return int(breaks[0]) if len(breaks) else len(cycles)
 
 
 def _last_cycle(run: Run, cycles: npt.NDArray[np.int64]) -> int:
-    """The last cycle that anything in the log knows of; -1: none."""
+    """Returns the last cycle mentioned in the log; -1 if there is none."""
     known = [int(cycles[-1])] if len(cycles) else []
     known += [entry.cycle for entry in run.journal]
     known += [state.cycle for state in run.engine_states]
@@ -191,7 +199,7 @@ def _last_cycle(run: Run, cycles: npt.NDArray[np.int64]) -> int:
 
 
 def _missing(run: Run, cycles: npt.NDArray[np.int64], known: int) -> str:
-    """What keeps the journal from being run again as a whole; empty: nothing."""
+    """Returns why the journal cannot be replayed completely; empty if it can."""
     dropped = max((state.journal_dropped for state in run.engine_states), default=0)
     if dropped > 0:
         return f"the journal lost {dropped:,} entries"
@@ -206,7 +214,7 @@ def _missing(run: Run, cycles: npt.NDArray[np.int64], known: int) -> str:
 
 
 def _contradiction(run: Run, cycles: npt.NDArray[np.int64], recorded: npt.NDArray[np.uint64]) -> str:
-    """What else in the log says another thing than its journal; empty: nothing."""
+    """Returns what else in the log contradicts its journal; empty if nothing does."""
     start = run.start
     if start is not None and any(text != start.text for text, _, _ in run.descriptions):
         return "the machine that is described is not that of the journal"

@@ -1,4 +1,4 @@
-"""Compares what a log holds besides the journal with what a run of the journal published."""
+"""Compares the messages in a log with those that a replay of its journal publishes."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from takt.recording import Array
 from takt.tables import components_of, fields_of_kind, table_of
 
 OBJECT_FIELDS = ("number", "state", "place", "pose", "in_range", "kind", "colour", "quality")
-SHUTDOWN, TOO_OLD = 3015, 3033  # errors of commands: the engine is stopping; it was too old when it came
+SHUTDOWN, TOO_OLD = 3015, 3033  # errors of commands: the engine is stopping; too old when received
 ERROR, ABORTED = msgs.feedback.STATE_ERROR, msgs.feedback.STATE_ABORTED
 SHAPE_FIELDS = ("part", "length", "closed", "position", "x", "y", "direction")
 
 
 @dataclass(frozen=True)
 class StateDifference:
-    """A recorded message that differs from what the replay published in the same cycle."""
+    """A recorded message that differs from the replay's in the same cycle."""
 
     component: str
     field: str
@@ -34,8 +34,8 @@ class StateDifference:
 
 
 class Comparison:
-    """Compares the messages of components, what lies on belts, the shapes of tracks, trails and routes of movers, and
-    feedback. Steps the engine, and stops it where it has to look."""
+    """Compares the messages of components, objects on belts, shapes of tracks, trails and routes of movers, and
+    feedback. Steps the engine, cycle by cycle where values have to be sampled."""
 
     def __init__(self, engine: _core.Engine, run: Run) -> None:
         self._engine = engine
@@ -58,14 +58,14 @@ class Comparison:
         return min(found, key=lambda difference: difference.cycle, default=None)
 
     def step(self, end: int) -> None:
-        """Runs the engine up to a cycle, and collects what it publishes."""
+        """Runs the engine up to a cycle and collects its published values."""
         self._states.begin()
         while self._engine.cycle < end:
             self._engine.step(min(end, self._looks.next_cycle + 1) - self._engine.cycle)
             self._looks.compare()
 
     def compare(self, end: int) -> None:
-        """What was collected of the cycles before this one."""
+        """Compares the collected values of the cycles before `end`."""
         self._states.compare(end)
         self._feedback.compare(end)
 
@@ -95,12 +95,12 @@ class _Recorded:
     index: int  # among the components of the engine
     fields: tuple[str, ...]
     columns: dict[str, Array]
-    given: int = 0  # rows that were compared
+    given: int = 0  # rows compared so far
 
 
 class _States:
-    """Compares the states of components that a log holds with those that are published now. It compares what a
-    recording of the log would hold."""
+    """Compares the states of components in a log with those published now, in the form in which a recording of the log
+    would hold them."""
 
     def __init__(self, engine: _core.Engine, run: Run) -> None:
         self.tally = Tally()
@@ -114,12 +114,12 @@ class _States:
                 self._all.append(_Recorded(name, index, fields_of_kind(kind.name), columns))
 
     def begin(self) -> None:
-        """Records the cycles from now on."""
+        """Starts recording the next cycles."""
         if self._all:
             self._recorder = self._engine.start_recorder([one.index for one in self._all], 1)
 
     def compare(self, end: int) -> None:
-        """Those of the cycles that were recorded, before this one."""
+        """Compares the recorded cycles before `end`."""
         if self._recorder is None:
             return
         self._engine.stop_recorder(self._recorder)
@@ -133,7 +133,7 @@ class _States:
             wrong = np.zeros(len(chosen), dtype=bool)
             for field in one.fields:
                 was, now = one.columns[field][one.given : last], rows[field][chosen]
-                differs = ~((was == now) | ((was != was) & (now != now)))  # nan is like itself
+                differs = ~((was == now) | ((was != was) & (now != now)))  # NaN equals NaN
                 if differs.any():
                     at = int(np.flatnonzero(differs)[0])
                     cycle = int(cycles[0] + chosen[at])
@@ -146,8 +146,7 @@ class _States:
 
 
 class _Looks:
-    """Compares what lies on belts, the shapes of tracks, and the trails and routes of movers, in the cycles of the
-    messages that say so."""
+    """Compares objects on belts, shapes of tracks, and trails and routes of movers, in the cycles of their messages."""
 
     def __init__(self, engine: _core.Engine, run: Run) -> None:
         self.tally = Tally()
@@ -175,7 +174,7 @@ class _Looks:
         while self.next_cycle <= at:
             message = self._messages[self._given]
             self._given += 1
-            if message.cycle < at:  # there is no such cycle
+            if message.cycle < at:  # not a cycle of this run
                 difference: StateDifference | None = StateDifference(message.name, "cycle", at, message.cycle, at)
             else:
                 difference = next(self._differences(message), None)
@@ -215,9 +214,9 @@ class _Looks:
 
 
 class _Feedback:
-    """Compares what became of commands. Not compared: sentences (a run says more than a replay, which does not check
-    paths against the cell), which client a command came from, and refusals of what a stopping engine or an old command
-    never began: the journal does not know of them."""
+    """Compares the feedback of commands. Not compared: sentences (a replay does not check paths against the cell and so
+    knows less), the client of a command, and refusals by a stopping engine or of commands that were too old: these are
+    not in the journal."""
 
     def __init__(self, engine: _core.Engine, run: Run) -> None:
         self.tally = Tally()
@@ -239,7 +238,7 @@ class _Feedback:
             report = self._reports[self._given]
             self._given += 1
             where = (report.object_kind, report.object_number)
-            # A replay stops all without knowing why.
+            # A replay has no reason for the stop.
             stopped = report.state == ABORTED and report.error_id == SHUTDOWN
             error_id = 0 if stopped else report.error_id
             recorded = (report.state, bool(report.reached), error_id, report.value, *where)
@@ -263,7 +262,7 @@ def _said(report: tuple[Any, ...]) -> str:
 
 
 def _same(one: Any, other: Any) -> bool:
-    """Bit for bit but for the sign of 0; nan is like itself."""
+    """Returns whether two values are equal bit for bit, except for the sign of 0; NaN equals NaN."""
     if isinstance(one, (list, tuple)):
         return len(one) == len(other) and all(map(_same, one, other))
     return bool(one == other or (one != one and other != other))

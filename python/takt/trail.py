@@ -1,4 +1,4 @@
-"""Tracks one behind the other, along which a mover goes with its master."""
+"""Trails: consecutive tracks along which a mover follows its master."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class TrailInformation:
-    """The tracks of a trail as they are in a session."""
+    """The geometry of a trail in a session."""
 
-    length: float  # mm, of all together
-    begins: Mapping[str, float]  # by track: mm from the start of the trail to its start
+    length: float  # mm, of all tracks together
+    begins: Mapping[str, float]  # by track: mm from the start of the trail to the start of the track
 
     def position(self, track: str | Track, s: float) -> float:
-        """The arc length [mm] from the start of the trail of a position on one of its tracks."""
+        """Returns the arc length [mm] from the start of the trail of arc length `s` [mm] on one of its tracks. Raises
+        TaktError if the track is not on the trail."""
         name = track if isinstance(track, str) else track.name
         if name not in self.begins:
             raise TaktError(f"track {name} is not on the trail {', '.join(self.begins)}")
@@ -29,8 +30,8 @@ class TrailInformation:
 
 
 class TrackTrail(Sequence[str]):
-    """Names of tracks, each of which starts where the one before it ends, each once. It lives here alone: commands take
-    what is on it when they are given."""
+    """Names of distinct tracks, each of which starts where the one before it ends. The engine does not hold trails: a
+    command receives the tracks that are on it when it is given."""
 
     def __init__(self, tracks: Iterable[str | Track] = ()) -> None:
         self._names: list[str] = []
@@ -40,15 +41,16 @@ class TrackTrail(Sequence[str]):
             self.add_track(track)
 
     def add_track(self, track: str | Track) -> None:
-        """At the end of the last one. Whether it starts there is found when a command uses the trail."""
+        """Appends a track. Whether it starts at the end of the last one is checked when the trail is used. Raises
+        ValueError if the track is on the trail already."""
         name = track if isinstance(track, str) else track.name
         if name in self._names:
             raise ValueError(f"{name} is on the trail already")
         self._names.append(name)
 
     def information(self, session: Session) -> TrailInformation:
-        """Lengths, and where each track begins on the trail. Raises TaktError where a track has no geometry, or does
-        not start where the one before it ends."""
+        """Returns the length of the trail and the arc lengths at which its tracks begin. Raises TaktError if a track
+        has no geometry, or does not start where the one before it ends."""
         begins: dict[str, float] = {}
         length, before = 0.0, None
         for name in self._names:

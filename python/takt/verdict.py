@@ -1,4 +1,4 @@
-"""What a motion assertion answers: passed or not, when, by how much, and the data needed to draw it."""
+"""Verdicts of motion assertions: passed or not, when, by how much, and the data needed for a picture."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ class Trace:
     label: str  # "x.set_position"
     time_s: FloatArray
     values: Array
-    modulus: float | None = None  # the curve is not joined where it wraps
+    modulus: float | None = None  # the curve is interrupted where it wraps around
 
 
 @dataclass(frozen=True)
 class Bound:
-    """A line that must not be crossed towards `forbidden`; "none" for a line to aim at."""
+    """A line that must not be crossed towards `forbidden`; "none": a target line."""
 
     label: str
     time_s: FloatArray
@@ -40,7 +40,7 @@ class Bound:
 
 @dataclass(frozen=True)
 class Lane:
-    """Curves and bounds that share one axis of values."""
+    """Curves and bounds that share one value axis."""
 
     quantity: str  # "position"
     unit: str
@@ -56,13 +56,11 @@ class Verdict:
     name: str  # of the assertion: "reaches"
     components: tuple[str, ...]
     passed: bool
-    sentence: str  # for people; says when and by how much
-    when_s: float | None  # failed: the first moment that breaks it; passed: the closest call, where there is one
-    by_how_much: (
-        float | None
-    )  # failed: how far beyond the bound at its worst; passed: the room that was left; None: cannot be said
+    sentence: str  # readable; says when and by how much
+    when_s: float | None  # failed: time of the first violation; passed: time of the smallest margin, if there is one
+    by_how_much: float | None  # failed: the largest violation of the bound; passed: the smallest margin; None: unknown
     unit: str  # of by_how_much
-    place: Interval | None  # what to look at
+    place: Interval | None  # the time interval of interest
     lanes: tuple[Lane, ...] = ()
     picture: Path | None = None
 
@@ -83,19 +81,18 @@ class Verdict:
 
 
 class MotionAssertionError(AssertionError):
-    """A motion assertion failed. `verdict` says everything; the text is its sentence and where the picture
-    is."""
+    """A motion assertion failed. `verdict` has the details; the text is its sentence and the path of the picture."""
 
     def __init__(self, verdict: Verdict, note: str = "") -> None:
         self.verdict, self._note = verdict, note
         super().__init__(f"{verdict.title}: {verdict.sentence}" + (f"\n{note}" if note else ""))
 
     def __reduce__(self) -> tuple[type[MotionAssertionError], tuple[Verdict, str]]:
-        return type(self), (self.verdict, self._note)  # pickled, as by tests in several processes
+        return type(self), (self.verdict, self._note)  # for pickling, as between processes
 
 
 def seconds(time_s: float) -> str:
-    """A time for people: "1.2345 s"."""
+    """Returns a time as readable text: "1.2345 s"."""
     if not math.isfinite(time_s):
         return f"{time_s} s"
     text = f"{time_s:.4f}".rstrip("0").rstrip(".")
@@ -103,5 +100,5 @@ def seconds(time_s: float) -> str:
 
 
 def number(value: float, unit: str = "") -> str:
-    """A value for people: "12.3457 mm"."""
+    """Returns a value as readable text: "12.3457 mm"."""
     return f"{value:.6g} {unit}".rstrip()
