@@ -1,4 +1,4 @@
-"""How fast virtual time goes, beside the bare C++ loop (PY-08)."""
+"""Measures the speed of virtual time against the bare C++ loop (PY-08)."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ AXIS = """\
 class Speed:
     name: str  # "idle" or "moving"
     cycles_s: float
-    pace: float  # seconds of engine time a second
-    ratio: float  # of the time it takes to that of the bare C++ loop
+    pace: float  # seconds of engine time per second
+    ratio: float  # duration relative to the bare C++ loop
 
 
 def machine_text(axes: int) -> str:
-    """A machine with so many linear axes."""
+    """Returns the text of a machine with this number of linear axes."""
     return "name: bench\naxes:\n" + "".join(AXIS.format(i=i) for i in range(axes))
 
 
 def measure(
     machine: str | os.PathLike[str] | None, axes: int, cycles: int, progress: Progress | None = None
 ) -> list[Speed]:
-    """Times stepping with all axes idle and with all axes moving."""
+    """Measures stepping with all axes idle and with all axes moving. Returns both speeds."""
     results = []
     for count, moving in enumerate((False, True)):
         stepped = bare = float("inf")

@@ -1,7 +1,7 @@
-"""Frames from points that were measured with a tool: of tables, cameras and belts, with what is left over.
+"""Computes frames of tables, cameras and belts from points measured with a tool, with their residuals.
 
-Points are places of the tool centre point in mm, as a group publishes them, one in each row. Frames come back as poses
-(x, y, z in mm, a, b, c in deg), as `origin` of a belt, `base` of a group or `set_cartesian_transform` take them.
+Points are positions of the tool centre point [mm], as a group publishes them, one per row. Frames are returned as poses
+(x, y, z [mm], a, b, c [deg]), in the form of `origin` of a belt, `base` of a group and `set_cartesian_transform`.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
     Array = npt.NDArray[np.float64]
 
-REACH = 1e9  # mm or u: numbers beyond it are a mistake, and their squares would be infinite
-LEAST_SPREAD = 0.1  # mm: points that are no further apart, or no further from one line, define no frame
+REACH = 1e9  # mm or u: larger numbers are taken for mistakes; sums of their squares could overflow
+LEAST_SPREAD = 0.1  # mm: points closer together, or closer to one line, define no frame
 
 
 class CalibrationError(TaktError):
@@ -29,26 +29,26 @@ class CalibrationError(TaktError):
 
 @dataclass(frozen=True)
 class Calibration:
-    """A frame, and how far each measured point is from where the frame has it."""
+    """A frame, and the distance of each measured point from its position by the frame."""
 
-    pose: Array  # x, y, z in mm, a, b, c in deg
-    residuals: Array  # mm, one for each point; empty where the points leave none
+    pose: Array  # x, y, z [mm], a, b, c [deg]
+    residuals: Array  # mm, one for each point; empty if the frame is exactly determined
     ratio: float | None = None  # of a belt: mm along X per unit of its axis
 
     @property
     def largest(self) -> float:
-        """The largest residual in mm; 0 without any."""
+        """The largest residual [mm]; 0 without residuals."""
         return float(self.residuals.max(initial=0.0))
 
     @property
     def yaml(self) -> str:
-        """The pose as a machine file has it, to 1e-6 mm and deg."""
+        """The pose in the form of a machine file, rounded to 1e-6 mm and deg."""
         numbers = (f"{key}: {_text(value)}" for key, value in zip("xyzabc", self.pose, strict=True))
         return "{" + ", ".join(numbers) + "}"
 
 
 def _text(value: float) -> str:
-    """A number to six places after the point, without trailing zeros."""
+    """Returns a number with up to six decimals, without trailing zeros."""
     text = f"{value:.6f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
@@ -56,10 +56,11 @@ def _text(value: float) -> str:
 def three_points(
     origin: npt.ArrayLike, on_x: npt.ArrayLike, on_xy: npt.ArrayLike, *, at: npt.ArrayLike | None = None
 ) -> Calibration:
-    """The frame with this origin, whose X leads to the second point, and whose Y lies on the side of the third one.
-    With a fourth point, `at`, the frame turned so has its origin there.
+    """Returns the frame of three points: the origin, a point on +X, and a point of the XY plane with y > 0.
 
-    Raises CalibrationError where the points coincide or lie on one line.
+    at: the origin instead of the first point; the first three points then give the orientation only.
+
+    Raises CalibrationError if the points coincide or lie on one line.
     """
     o, x, xy = (_points(point, 1, "a point")[0] for point in (origin, on_x, on_xy))
     if np.linalg.norm(x - o) < LEAST_SPREAD:
@@ -78,8 +79,11 @@ def three_points(
 
 
 def fit(seen: npt.ArrayLike, measured: npt.ArrayLike) -> Calibration:
-    """The frame in which the `seen` points (as of a camera or a drawing) are nearest to the measured ones, by the sum
-    of squares. Three points that do not lie on one line, or more.
+    """Returns the least-squares frame that maps the `seen` points (as of a camera or a drawing) to the measured ones.
+
+    seen, measured: the same points in both frames, three or more that do not lie on one line, shape (n, 3).
+
+    Raises CalibrationError for other points.
 
     Kabsch, A solution for the best rotation to relate two sets of vectors, Acta Crystallographica A32 (1976).
     """
@@ -97,10 +101,14 @@ def fit(seen: npt.ArrayLike, measured: npt.ArrayLike) -> Calibration:
 
 
 def belt(positions: npt.ArrayLike, measured: npt.ArrayLike, beside: npt.ArrayLike) -> Calibration:
-    """The origin and the ratio of a straight belt: of one mark on it, measured at two or more positions of the belt's
-    axis (u), and of a point `beside` it, on the belt and towards its Y. The origin is where the mark is at position 0.
+    """Returns the origin and the ratio of a straight belt, from a mark on it. The origin is the position of the mark at
+    position 0 of the belt's axis.
 
-    Raises CalibrationError where the mark did not move, or the point is on its line.
+    positions: two or more positions of the belt's axis [u].
+    measured: the mark at each of these positions, shape (n, 3).
+    beside: a point on the belt on the +Y side of the line of the mark.
+
+    Raises CalibrationError if the mark did not move, or `beside` is on its line.
     """
     at = np.asarray(positions, dtype=float).reshape(-1)
     points = _points(measured, 2, "measured points")

@@ -1,4 +1,4 @@
-"""Tables of measured points, as `takt calibrate` reads them."""
+"""Files of measured points for `takt calibrate`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ SEEN = ("seen_x", "seen_y", "seen_z")
 
 
 def lines(kind: str, file: Path) -> Iterator[str]:
-    """What there is to be said of the points in a file: the pose, and how far each point is from it."""
+    """Yields the lines of the report on the points in a file: the pose, and the residual of each point. Raises
+    CalibrationError."""
     rows = _read(file)
     found = _belt(file, rows) if kind == "belt" else _frame(file, rows)
     yield f"origin: {found.yaml}"

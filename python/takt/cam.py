@@ -1,12 +1,12 @@
-"""Cams: where a slave is for every place of its master.
+"""Cams: the position of a slave as a function of the position of its master.
 
     table = cam.Table.from_points([0, 90, 180, 360], [0, 10, 40, 0], cyclic=True)
     table = cam.Table.from_segments([{"to": {"x": 180, "y": 40}, "law": "modified_sine"}, {"to": {"x": 360, "y": 0}}])
     table = cam.Table.from_csv("press.csv", cyclic=True)
     y, dy, ddy, dddy = table.at(np.linspace(0, 360, 1000))
 
-x is in the master's unit, y in the slave's; velocity, acceleration and jerk of a cam are derivatives over x: y/x, y/x²,
-y/x³. What is wrong with a cam is told as `takt.ConfigError`, what is only worth knowing in `Table.warnings`.
+x is in the master's unit, y in the slave's; velocity, acceleration and jerk of a cam are derivatives with respect to x:
+[y/x], [y/x²], [y/x³]. Errors of a cam raise `takt.ConfigError`; `Table.warnings` has remarks.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ Interpolation = Literal["linear", "quintic", "cubic_spline", "monotone"]
 
 
 class Value(NamedTuple):
-    """What a cam says at one x."""
+    """The values of a cam at one x."""
 
     y: float
     dy: float  # velocity, y/x
@@ -45,7 +45,7 @@ class Value(NamedTuple):
 
 
 class Values(NamedTuple):
-    """What a cam says at many x; each has the shape of x."""
+    """The values of a cam at several x; each array has the shape of x."""
 
     y: FloatArray
     dy: FloatArray  # velocity, y/x
@@ -54,7 +54,7 @@ class Values(NamedTuple):
 
 
 class Points(NamedTuple):
-    """The points a cam was made from, shape (n,) each; NaN: free."""
+    """The points that a cam was made from, each of shape (n,); NaN: free."""
 
     x: FloatArray
     y: FloatArray
@@ -63,21 +63,21 @@ class Points(NamedTuple):
 
 
 class Extreme(NamedTuple):
-    """A value, and the first x that has it."""
+    """A value and the first x at which it occurs."""
 
     x: float
     value: float
 
 
 class Bounds(NamedTuple):
-    """The least and the greatest."""
+    """The least and the greatest value."""
 
     least: Extreme
     greatest: Extreme
 
 
 class Extremes(NamedTuple):
-    """Of a whole cam; where something jumps, both sides count."""
+    """The extremes of a whole cam; at discontinuities both one-sided values count."""
 
     y: Bounds
     dy: Bounds  # velocity, y/x
@@ -87,7 +87,7 @@ class Extremes(NamedTuple):
 
 @dataclass(frozen=True)
 class SlavePeaks:
-    """What a slave meets behind a master with given limits."""
+    """The peaks of a slave behind a master with given limits."""
 
     position: Bounds  # slave's unit
     velocity: Extreme  # largest, slave's unit/s
@@ -95,7 +95,7 @@ class SlavePeaks:
 
 
 class Factors(NamedTuple):
-    """The peaks of a law of motion from (0, 0) to (1, 1)."""
+    """The peak values of a law of motion from (0, 0) to (1, 1)."""
 
     velocity: float
     acceleration: float
@@ -103,10 +103,10 @@ class Factors(NamedTuple):
 
 
 class Table:
-    """A cam. It never changes; make another one instead."""
+    """A cam; immutable."""
 
     def __init__(self, core: _core.CamTable, warnings: Sequence[str] = ()) -> None:
-        """For the functions below, which make tables."""
+        """For internal use: tables are made by the functions below."""
         self._core = core
         self.warnings = tuple(warnings)
         """Sentences about what may surprise: jumps of velocity in linear cams."""
@@ -125,12 +125,15 @@ class Table:
         x_unit: str = "u",
         y_unit: str = "u",
     ) -> Table:
-        """A curve through points: 2 to 100,000, x growing, each array of shape (n,).
+        """Returns a cam through points.
 
-        v, a: velocity (y/x) and acceleration (y/x²) at the points; NaN or None leaves them free, and the curve becomes
-        as smooth as it can.
-        cyclic: the end goes over into the beginning, raised by the stroke.
-        x_unit, y_unit: the master's and the slave's, for people.
+        x, y: 2 to 100,000 points, x strictly increasing, each of shape (n,).
+        v, a: velocity [y/x] and acceleration [y/x²] at the points; NaN or None: free, chosen for a smooth curve.
+        interpolation: "linear", "quintic", "cubic_spline" or "monotone".
+        cyclic: the end continues at the beginning, raised by the stroke.
+        x_unit, y_unit: units of master and slave, for display.
+
+        Raises takt.ConfigError if the points make no cam.
         """
         px, py = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
         pv, pa = (None if one is None else np.asarray(one, dtype=np.float64) for one in (v, a))
@@ -146,20 +149,22 @@ class Table:
         x_unit: str = "u",
         y_unit: str = "u",
     ) -> Table:
-        """Laws of motion one behind the other, each as in a machine file: {"to": {"x": 90, "y": 10}, "law": "cycloid"},
-        perhaps with "from", and for quintics with "begin_v", "begin_a", "end_v", "end_a"."""
+        """Returns a cam of consecutive laws of motion, each as in a machine file: {"to": {"x": 90, "y": 10}, "law":
+        "cycloid"}, optionally with "from", and for quintics with "begin_v", "begin_a", "end_v", "end_a". Raises
+        takt.ConfigError if the segments make no cam."""
         units = {"x_unit": x_unit, "y_unit": y_unit}
         return cls.from_dict({"name": name, "cyclic": cyclic, **units, "segments": list(segments)})
 
     @classmethod
     def from_dict(cls, cam: Mapping[str, Any]) -> Table:
-        """A cam as it stands in a machine file, and in `source`."""
+        """Returns a cam from a dict as in a machine file and in `source`. Raises takt.ConfigError."""
         text = to_json(_plain(cam))  # which is YAML, too
         return cls(*_core.cam_from_yaml(text.encode(), "cam"))
 
     @classmethod
     def from_yaml(cls, file: str | os.PathLike[str]) -> Table:
-        """One cam, as it stands in a machine file: the path of a file, or the text itself (of more than one line)."""
+        """Returns one cam in the form of a machine file. `file`: a path, or the text itself (more than one line).
+        Raises takt.ConfigError."""
         text, file_name = read_machine(file)
         return cls(*_core.cam_from_yaml(text, file_name))
 
@@ -174,8 +179,8 @@ class Table:
         x_unit: str = "u",
         y_unit: str = "u",
     ) -> Table:
-        """Points from a file with the columns x, y and perhaps v, a; called like the file unless `name` says
-        otherwise."""
+        """Returns a cam through the points of a CSV file with the columns x, y and optionally v, a. Other parameters
+        as in `from_points`; the default of `name` is that of the file. Raises takt.ConfigError."""
         path = Path(file)
         how = (name or shown(path.stem), interpolation, cyclic, x_unit, y_unit)
         return cls(*_core.cam_from_csv(path.read_bytes(), shown(path), *how))
@@ -192,14 +197,17 @@ class Table:
         x_unit: str | None = None,
         y_unit: str | None = None,
     ) -> Table:
-        """A cam from a file of another system, recognised by its content (CAM-92): a table of numbers with any
+        """Returns a cam from a file of another system, recognised by its content (CAM-92): a table of numbers with any
         separator, decimal point or comma, with or without a header; an array of CODESYS (SMC_CAMXYVA) or TwinCAT
         (MC_MotionFunctionPoint, positions) as structured text; a cam table of TwinCAT CNC, which is cyclic.
 
-        columns: which column has x, y, v and a, by its title or its number from 1; None: by their usual titles, or in
-            this order.
-        interpolation: "quintic" unless given or said by the file.
-        x_unit, y_unit: those of a second line of titles, else "u".
+        columns: the columns of x, y, v and a, by title or by number from 1; None: by their usual titles, or in this
+            order.
+        name: None: the name of the file.
+        interpolation: None: that of the file, else "quintic".
+        x_unit, y_unit: None: those of a second header line, else "u".
+
+        Raises takt.ConfigError if the file holds no cam.
         """
         from takt.cam_files import read
 
@@ -216,42 +224,42 @@ class Table:
 
     @property
     def x_unit(self) -> str:
-        """The master's unit, for people."""
+        """The master's unit, for display."""
         return self._core.x_unit
 
     @property
     def y_unit(self) -> str:
-        """The slave's unit, for people."""
+        """The slave's unit, for display."""
         return self._core.y_unit
 
     @property
     def begin(self) -> float:
-        """First x, master's unit."""
+        """First x [master's unit]."""
         return self._core.begin
 
     @property
     def end(self) -> float:
-        """Last x, master's unit."""
+        """Last x [master's unit]."""
         return self._core.end
 
     @property
     def stroke(self) -> float:
-        """y at the end less y at the beginning, slave's unit."""
+        """y at the end minus y at the beginning [slave's unit]."""
         return self._core.stroke
 
     @property
     def joints(self) -> FloatArray:
-        """Where the pieces of the curve meet, ends included; x, shape (pieces + 1,)."""
+        """The x at which the pieces of the curve meet, including both ends, shape (pieces + 1,)."""
         return self._core.joints
 
     @property
     def points(self) -> Points:
-        """The points it was made from; empty for segments."""
+        """The points that the cam was made from; empty for segments."""
         return Points(*self._core.points)
 
     @property
     def source(self) -> dict[str, Any]:
-        """What it was made from, as it stands in a machine file (CAM-71)."""
+        """The definition of the cam in the form of a machine file (CAM-71)."""
         source: dict[str, Any] = json.loads(self._core.source)
         return source
 
@@ -260,8 +268,8 @@ class Table:
     @overload
     def at(self, x: ArrayLike) -> Values: ...
     def at(self, x: ArrayLike) -> Value | Values:
-        """y and its derivatives at x (master's unit): floats for a number, arrays of the same shape for an array.
-        Outside the cam as at its nearer end; NaN at NaN."""
+        """Returns y and its derivatives at x [master's unit]: floats for a number, arrays of the same shape for an
+        array. Outside the cam, the values at the nearer end; NaN for NaN."""
         places = np.asarray(x, dtype=np.float64)
         arrays = self._core.at(places)
         if np.isnan(places).any():
@@ -272,29 +280,32 @@ class Table:
         return Values(*arrays)
 
     def extremes(self) -> Extremes:
-        """Least and greatest y, velocity, acceleration and jerk, from roots, not from samples (CAM-24)."""
+        """Returns the least and greatest y, velocity, acceleration and jerk, computed from roots, not from samples
+        (CAM-24)."""
         return Extremes(*(Bounds(Extreme(*low), Extreme(*high)) for low, high in self._core.extremes()))
 
     def slave_peaks(self, master_velocity: float, master_acceleration: float = 0.0) -> SlavePeaks:
-        """What the slave meets whose master goes up to these (master's unit/s, unit/s²; both at least 0): |dy| V and
-        |ddy| V² + |dy| A at most (CAM-24)."""
+        """Returns the peaks of the slave for limits of the master's velocity V [master's unit/s] and acceleration A
+        [unit/s²], both at least 0: the maxima of |dy| V and |ddy| V² + |dy| A (CAM-24)."""
         least, greatest, velocity, acceleration = self._core.slave_peaks(master_velocity, master_acceleration)
         return SlavePeaks(Bounds(Extreme(*least), Extreme(*greatest)), Extreme(*velocity), Extreme(*acceleration))
 
     def inverse(self, y: float) -> FloatArray:
-        """Every x at which the cam has this y, growing; both ends of a stretch that stays there (CAM-71)."""
+        """Returns every x at which the cam has this y, increasing; for a dwell at y, both of its ends (CAM-71)."""
         return self._core.all_x(y)
 
     def nearest(self, y: float, near: float) -> float | None:
-        """The x nearest to `near` at which the cam has this y; None: it never has."""
+        """Returns the x nearest to `near` at which the cam has this y; None if there is none."""
         return self._core.nearest_x(y, near)
 
     def to_csv(self, file: str | os.PathLike[str] | None = None, *, count: int | None = None) -> str:
-        """The points as CSV, also written to a file where one is named; reads back as the very same cam (its
-        interpolation and whether it is cyclic are told when reading).
+        """Returns the points as CSV text and writes it to `file`, if given. `from_csv` reads back an identical cam if
+        interpolation and cyclic are passed to it again.
 
-        count: so many points of the curve at even distances with velocity and acceleration instead, as quintic point
-        tables of other systems take them; for cams of segments that is the only way.
+        count: number of equidistant points of the curve, with velocity and acceleration, to write instead, as for the
+            quintic point tables of other systems; None: the cam's own points.
+
+        Raises ValueError for a cam of segments without `count`.
         """
         if count is not None:
             x = np.linspace(self.begin, self.end, count)
@@ -309,7 +320,7 @@ class Table:
         return text
 
     def to_yaml(self, file: str | os.PathLike[str] | None = None) -> str:
-        """The cam as it stands in a machine file, also written to a file where one is named."""
+        """Returns the cam as YAML text in the form of a machine file and writes it to `file`, if given."""
         text = self._core.to_yaml()
         if file is not None:
             write_text(file, text)
@@ -326,12 +337,12 @@ class Table:
 
 
 def of_machine(machine: str | os.PathLike[str]) -> list[Table]:
-    """The cams of a machine file, given as a path or as its text."""
+    """Returns the cams of a machine file, given as a path or as its text. Raises takt.ConfigError."""
     return [Table(core, warnings) for core, warnings in _core.cams_of_machine(*read_machine(machine))]
 
 
 def is_machine(text: bytes) -> bool:
-    """Whether a text of YAML is a machine file rather than a cam: whose keys it has."""
+    """Returns whether a YAML text is a machine file rather than a cam, by its first known key."""
     depth, key = 0, True  # of mappings and lists; whether a key comes next
     try:
         for event in yaml.parse(legible(text.decode()), Loader=yaml.SafeLoader):
@@ -343,17 +354,17 @@ def is_machine(text: bytes) -> bool:
                 key = not key
             depth += isinstance(event, yaml.CollectionStartEvent)
     except (yaml.YAMLError, UnicodeError):
-        pass  # whoever reads it says where it is wrong
+        pass  # reported when the text is read as a cam
     return False
 
 
 def law_factors(law: str, *, sine_share: float = 0.25, cosine_share: float = 0.5) -> Factors:
-    """The largest velocity, acceleration and jerk of a law of motion (CAM-02)."""
+    """Returns the largest velocity, acceleration and jerk of a law of motion from (0, 0) to (1, 1) (CAM-02)."""
     return Factors(*_core.law_factors(law, sine_share, cosine_share))
 
 
 def _plain(value: Any) -> Any:
-    """As JSON has it: without NumPy's numbers and without what is None."""
+    """Returns the value without NumPy numbers and without keys whose value is None, for JSON."""
     if isinstance(value, Mapping):
         return {key: _plain(one) for key, one in value.items() if one is not None}
     if isinstance(value, (list, tuple)):

@@ -1,4 +1,4 @@
-"""A cam held against what its master does and what its slave may do.
+"""Checks a cam, at a given motion of its master, against the limits of its slave.
 
 result = check(table, master_velocity=360.0, limits=Limits.of_axis("machine.yaml", "x"))
 print(result.passed, result.continuity, result.fastest)
@@ -19,18 +19,18 @@ from takt.cam import Bounds, Extreme, Table
 from takt.engine import read_machine
 from takt.errors import ConfigError
 
-SAME = 1e-6  # of the largest velocity or acceleration: what rounding and decimals in a file may leave
-TOUCHING = 1e-9  # a cam that was made for a limit touches it
+SAME = 1e-6  # of the largest velocity or acceleration: jumps up to this are rounding, or decimals of a file
+TOUCHING = 1e-9  # relative tolerance of limits: a cam made for a limit touches it
 
 
 def figure(value: float, scale: float = 0.0, digits: int = 6) -> str:
-    """A number with the digits that mean something where others get as large as `scale`."""
+    """Returns a number as text; 0 if it is negligible against `scale`."""
     return f"{0.0 if abs(value) < 1e-12 * abs(scale) else value:.{digits}g}"
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What a slave may do, in its unit and seconds; None: whatever it likes."""
+    """Limits of a slave in its unit and [s]; None: no limit."""
 
     velocity: float | None = None
     acceleration: float | None = None  # and deceleration
@@ -40,7 +40,7 @@ class Limits:
 
     @classmethod
     def of_axis(cls, machine: str | os.PathLike[str], name: str) -> Limits:
-        """Those of an axis of a machine file."""
+        """Returns the limits of an axis of a machine file. Raises ConfigError if it has no such axis."""
         text, file_name = read_machine(machine)
         axes = {axis["name"]: axis for axis in json.loads(_core.load_machine(text, file_name))["axes"]}
         if name not in axes:
@@ -58,19 +58,19 @@ class Limits:
 
 @dataclass(frozen=True)
 class Peak:
-    """The most of something, and what the limits say to that."""
+    """A peak value of the slave and its limit."""
 
     what: str  # "velocity"
     unit: str
-    value: float  # infinite: something jumps
+    value: float  # infinite at a jump
     x: float
     limit: float | None = None
-    least: bool = False  # value and limit are the least, not the greatest
-    slack: float = 0.0  # what rounding may have added
+    least: bool = False  # value and limit are lower bounds, not upper ones
+    slack: float = 0.0  # tolerance for rounding
 
     @property
     def passed(self) -> bool:
-        """Within the limit, if there is one."""
+        """Whether the value is within the limit, if there is one."""
         if self.limit is None:
             return True
         if self.least:
@@ -80,12 +80,12 @@ class Peak:
 
 @dataclass(frozen=True)
 class Check:
-    """What became of a check."""
+    """The result of a check."""
 
     peaks: tuple[Peak, ...]
     jump_of_velocity: Extreme | None  # the largest, y/x
     jump_of_acceleration: Extreme | None  # the largest where the velocity does not jump, y/x²
-    fastest: Extreme | None  # master's velocity up to which every limit holds, and the x that says so
+    fastest: Extreme | None  # highest velocity of the master within all limits, and the x that determines it
 
     @property
     def passed(self) -> bool:
@@ -93,7 +93,7 @@ class Check:
 
     @property
     def continuity(self) -> str:
-        """In a sentence."""
+        """The continuity of the cam in a sentence."""
         if self.jump_of_velocity:
             jump = self.jump_of_velocity
             return f"the velocity jumps, by {jump.value:.6g} at x {jump.x:.6g}"
@@ -104,8 +104,8 @@ class Check:
 
 
 def jumps(table: Table) -> tuple[Extreme | None, Extreme | None]:
-    """The largest jump of velocity, and of acceleration where the velocity has none; over the seam of a cyclic cam,
-    too."""
+    """Returns the largest jump of velocity, and of acceleration where the velocity does not jump, including the seam of
+    a cyclic cam; None: no jump."""
     joints = table.joints
     inner = joints[1:-1]
     before, behind = table.at(np.nextafter(inner, -math.inf)), table.at(inner)
@@ -118,7 +118,7 @@ def jumps(table: Table) -> tuple[Extreme | None, Extreme | None]:
     all_behind = [np.append(one, [end[1]] * seam) for one, end in zip(behind, ends, strict=True)]
     size = [max(abs(low.value), abs(high.value)) for low, high in table.extremes()]
     velocity, acceleration = (np.abs(all_behind[k] - all_before[k]) for k in (1, 2))
-    # What is left of y's digits on a way of that length is no jump.
+    # Differences within the rounding of y over a piece of that length are not jumps.
     rough = velocity > SAME * size[1] + 1e-11 * size[0] / lengths
     hard = ~rough & (acceleration > SAME * size[2] + 1e-11 * size[0] / lengths**2)
     return _largest(x, velocity, rough), _largest(x, acceleration, hard)
@@ -137,8 +137,13 @@ def check(
     master_acceleration: float = 0.0,
     limits: Limits | None = None,
 ) -> Check:
-    """What the slave meets while its master goes up to these (master's unit/s, unit/s²), against its limits; its jerk
-    at constant velocity of the master. Without a velocity: only what does not depend on it."""
+    """Compares the peaks of the slave with its limits.
+
+    master_velocity: largest velocity of the master [unit/s], unit of the master; None: checks positions only.
+    master_acceleration: its largest acceleration [unit/s²]; the jerk of the slave is computed at constant velocity of
+        the master.
+    limits: None: no limits.
+    """
     limits = limits or Limits()
     low, high = table.extremes().y
     unit = table.y_unit
@@ -172,7 +177,8 @@ def _magnitude(bounds: Bounds) -> Extreme:
 
 
 def _fastest(table: Table, limits: Limits, rough: bool, hard: bool) -> Extreme | None:
-    """None: there are no limits, or every velocity is too much because something jumps."""
+    """Returns the highest velocity of the master within the limits, and its x; None if there are no limits, or a jump
+    exceeds them at any velocity."""
     _, *derivatives = table.extremes()
     bounds = []
     for power, (bound, limit) in enumerate(

@@ -26,7 +26,7 @@ NAMES = (("y", ""), ("y'", ""), ("y''", "²"), ("y'''", "³"))
 
 @dataclass(frozen=True)
 class Options:
-    """Those of the command line, by their names there."""
+    """The options of the command line, by their names there."""
 
     interpolation: cam.Interpolation | None = None
     cyclic: bool = False
@@ -43,7 +43,7 @@ class Options:
 
 
 def run(file: Path, name: str | None, options: Options, out: Console) -> int:
-    """Reads, checks, says, draws, writes. 1: a limit is exceeded."""
+    """Reads, checks, reports, draws and writes cams. Returns 1 if a limit is exceeded, else 0."""
     _refuse_nonsense(file, options)
     tables = _read(file, name, options)
     writes = options.target or options.csv or options.yaml_file
@@ -86,7 +86,8 @@ def _refuse_nonsense(file: Path, options: Options) -> None:
 
 
 def _named_by(machine: Path | None) -> Iterator[Path]:
-    """The files that a machine file names: of points, elements, kinematics and shapes; none where it cannot be read."""
+    """Returns the files that a machine file names (points, elements, kinematics, shapes); none if it cannot be
+    read."""
     if machine is None or not _is_machine(machine):
         return
     try:

@@ -1,6 +1,6 @@
 """Cams from files of other systems, recognised by their content (CAM-92).
 
-- a table of numbers, with any separator, decimal point or comma, with or without a header: of spreadsheets, and of
+- a table of numbers, with any separator, decimal point or comma, with or without a header: from spreadsheets, and from
   CODESYS' "Write Cam Data to ASCII Table";
 - (dX := 0, dY := 0, dV := 0, dA := 0), ...: an ARRAY OF SMC_CAMXYVA of CODESYS;
 - (MasterPos := 0, SlavePos := 0, FunctionType := ..., ...), ..., or columns of these names: an ARRAY OF
@@ -26,7 +26,7 @@ from takt.csv_rows import DECIMAL_COMMA, surplus
 from takt.errors import ConfigError
 from takt.names import shown
 
-ERRORS = 20  # of one file, at most
+ERRORS = 20  # reported for one file at most
 TURN = 360.0  # deg, the master's range of TwinCAT CNC tables
 
 Row = dict[str, Any]
@@ -39,8 +39,8 @@ ALIASES = {
     "type": {"pointtype"},
     "ignored": {"ignored"},
 }
-TEXTS = ("law", "type", "ignored")  # fields that are no numbers
-# Points that TwinCAT leaves out: of the type MOTIONPOINTTYPE_IGNORE, 0, and those of MC3 with Ignored := TRUE.
+TEXTS = ("law", "type", "ignored")  # fields that are not numbers
+# Points that TwinCAT ignores: of the type MOTIONPOINTTYPE_IGNORE, 0, and those of MC3 with Ignored := TRUE.
 IGNORED = {"type": {"ignore", "0"}, "ignored": {"true", "1"}}
 # Functions of TwinCAT and CODESYS between two points, by name or number.
 LAWS = {
@@ -55,7 +55,7 @@ _POSITION = re.compile(r"[(,]\s*(dX|dY|MasterPos|SlavePos)\s*:=", re.IGNORECASE)
 _ARRAY = re.compile(r"ARRAY\s*\[([^\],]*),\s*0\s*\.\.\s*1\s*\]\s*OF\s*L?REAL\s*:=\s*\[([^\]]*)\]", re.IGNORECASE)
 _STRUCTS = re.compile(r"ARRAY\s*\[([^\],]*)\]\s*OF\s*\w+\s*:=([^;]*)", re.IGNORECASE)
 _BOUNDS = re.compile(r"\s*([-+]?\d{1,9})\s*\.\.\s*([-+]?\d{1,9})\s*")
-# Not part of structured text, at the place where it begins: comments in (* *), which nest, and /* */, pragmas, texts.
+# The beginning of skipped parts of structured text: comments in (* *), which nest, and /* */, pragmas, string literals.
 _SKIPPED = re.compile(r"\(\*|/\*|//[^\r\n]*|\{[^{}]*\}|'(?:\$.|[^'$\r\n])*'?", re.DOTALL)
 _COMMENTS = {"(*": "*)", "/*": "*/"}
 _NESTED = re.compile(r"\(\*|\*\)")
@@ -76,7 +76,7 @@ def read(
     x_unit: str | None,
     y_unit: str | None,
 ) -> Table:
-    """See Table.from_file."""
+    """As Table.from_file."""
     path = Path(file)
     text = _decoded(path.read_bytes())
     code = _code(text)
@@ -113,7 +113,7 @@ def _decoded(data: bytes) -> str:
 
 
 class _Content:
-    """What a file holds: rows with x, y and perhaps v, a, law; and what is wrong with it."""
+    """The content of a file: rows with x, y and optionally v, a, law; and its errors."""
 
     def __init__(self, file: str) -> None:
         self.file = file
@@ -128,7 +128,7 @@ class _Content:
             raise ConfigError(self._wrong)
 
     def placed(self, problem: str) -> str:
-        """What is wrong with the cam, with its place in the file."""
+        """Returns a problem of the cam with its line in the file."""
         match = _FINDING.search(problem)
         if not match:
             return f"{self.file}: {problem}"
@@ -157,7 +157,7 @@ class _Content:
         if not lines:
             return self._add(None, "expected a table of numbers, found an empty file")
         separator = _separator(lines[0][1].strip())
-        if separator != "\t" or lines[0][1][0].isspace():  # else the first field of a line may be empty
+        if separator != "\t" or lines[0][1][0].isspace():  # otherwise the first field of a line may be empty
             lines = [(i, line.strip()) for i, line in lines]
         try:
             cells = [(i, _split(line, separator)) for i, line in lines]
@@ -189,7 +189,7 @@ class _Content:
     def _places(
         self, header: list[str] | None, cells: Sequence[tuple[int, list[str]]], columns: Mapping[str, str | int] | None
     ) -> dict[str, int] | None:
-        """Which column has what, from 0."""
+        """Returns the column of each field, from 0; None after an error."""
         width = len(header) if header else max(len(row) for _, row in cells)
         if columns is not None:
             return self._chosen(header, width, columns)
@@ -243,7 +243,7 @@ class _Content:
             self.read_array(code)
 
     def read_structs(self, code: str) -> None:
-        structs = list[tuple[int, int, dict[str, str], dict[str, str]]]()  # place, line, names and texts of the fields
+        structs = list[tuple[int, int, dict[str, str], dict[str, str]]]()  # offset, line, names and texts of the fields
         line, at = 1, 0
         for match in _STRUCT.finditer(code):
             line, at = line + code.count("\n", at, match.start()), match.start()
@@ -251,7 +251,7 @@ class _Content:
             fields = {re.sub(r"[^a-z']", "", key.lower()): value.strip() for key, value in pairs.items()}
             known = {key: field for key, names in ALIASES.items() for field in names if field in fields}
             structs.append((at, line, known, {key: fields[field] for key, field in known.items()}))
-        begins = list[int]()  # of points
+        begins = list[int]()  # offsets of points
         ignored = _ignored([texts for *_, texts in structs])
         for k, (at, line, known, texts) in enumerate(structs):
             if ignored[k]:
@@ -293,7 +293,7 @@ class _Content:
         return None
 
     def _check_count(self, bounds: str, count: int, line: int) -> None:
-        """Of an array, whose bounds may be names of constants."""
+        """Checks the number of points of an array against its bounds, unless these are names of constants."""
         declared = _BOUNDS.fullmatch(bounds)
         if declared and (expected := int(declared[2]) - int(declared[1]) + 1) != count:
             self._add(line, f"ARRAY[{bounds.strip()}]: expected {expected} points, found {count}")
@@ -301,7 +301,7 @@ class _Content:
     # --- TwinCAT CNC ---
 
     def read_cnc(self, text: str) -> tuple[bool, Interpolation]:
-        """Whether it is cyclic, and how it is interpolated."""
+        """Reads a table of TwinCAT CNC. Returns whether it is cyclic, and its interpolation."""
         head: dict[str, str] = {}
         values: list[tuple[int, list[float]]] = []
         for i, line in enumerate(text.splitlines(), 1):
@@ -323,7 +323,7 @@ class _Content:
             self._add(None, f"Functiontype: expected 1 (linear), 4 (line, poly5) or 5 (poly5, line), found {function}")
         if self._wrong or not values:
             return True, "linear"
-        if len(values[0][1]) == 1:  # slave positions at even distances; the turn closes with the first one
+        if len(values[0][1]) == 1:  # equidistant slave positions; the turn closes with the first one
             step = TURN / len(values)
             self.rows = [{"line": i, "x": k * step, "y": row[0]} for k, (i, row) in enumerate(values)]
         else:
@@ -331,7 +331,7 @@ class _Content:
         first = self.rows[0]
         self.rows.append({**first, "x": first["x"] + TURN})
         if function != "1":
-            # The segment that ends at the first point is the one that is named first.
+            # The first name is that of the segment that ends at the first point.
             names = ("quintic", "line") if function == "4" else ("line", "quintic")
             for k, row in enumerate(self.rows[:-1]):
                 row["law"] = names[k % 2]
@@ -340,7 +340,7 @@ class _Content:
     # --- laws of motion between points ---
 
     def segments(self) -> list[dict[str, Any]]:
-        """Of rows with laws, each of which holds from its point to the next one."""
+        """Returns the segments of rows with laws; a law holds from its point to the next one."""
         segments = []
         for row, following in zip(self.rows, self.rows[1:], strict=False):
             law = self._law(row)
@@ -366,7 +366,7 @@ class _Content:
 
 
 def _titled(header: Sequence[str]) -> dict[str, int]:
-    """The first column, from 0, of each field that a title names."""
+    """Returns the first column, from 0, of each field named by a title."""
     found: dict[str, int] = {}
     for k, title in enumerate(header):
         plain = re.sub(r"[\[(].*|[^a-z']", "", title.lower())
@@ -377,21 +377,21 @@ def _titled(header: Sequence[str]) -> dict[str, int]:
 
 
 def _ignored(points: Sequence[Mapping[str, str]]) -> list[bool]:
-    """Of each point whether it is left out. A type of 0 of every point means that the file gives no types."""
+    """Returns, for each point, whether it is ignored. If all types are 0, the file has no types."""
     typed = any(point.get("type", "0") != "0" for point in points)
     keys = [key for key in IGNORED if typed or key != "type"]
     return [any(point.get(key, "").lower().rpartition("type_")[2] in IGNORED[key] for key in keys) for point in points]
 
 
 def _code(text: str) -> str:
-    """The text with blanks in place of comments, pragmas and quoted texts, up to a comment without an end; lines keep
-    their numbers."""
+    """Returns the text with comments, pragmas and string literals replaced by blanks, up to an unterminated comment;
+    line numbers do not change."""
     kept, at, nested = list[str](), 0, True
     while match := _SKIPPED.search(text, at):
         end = match.end()
         if match[0] in _COMMENTS:
             closed = _end_of_nested(text, match.end()) if nested and match[0] == "(*" else None
-            nested = nested and (match[0] != "(*" or closed is not None)  # else comments do not nest in this text
+            nested = nested and (match[0] != "(*" or closed is not None)  # if not closed, comments do not nest here
             end = closed or text.find(_COMMENTS[match[0]], match.end()) + 2
             if end < match.end():
                 break
@@ -401,7 +401,7 @@ def _code(text: str) -> str:
 
 
 def _end_of_nested(text: str, at: int) -> int | None:
-    """Where the comment ends of which `at` is within, if comments nest; None: nowhere."""
+    """Returns the end of the comment around `at`, if comments nest; None if it does not end."""
     depth = 1
     for mark in _NESTED.finditer(text, at):
         depth += 1 if mark[0] == "(*" else -1
@@ -419,7 +419,7 @@ def _line(text: str, at: int) -> int:
 
 
 def _separator(line: str) -> str:
-    """Of the columns; blank: any number of blanks."""
+    """Returns the column separator; " ": any number of blanks."""
     line = _QUOTED.sub('""', line)
     for candidate in ("\t", ";", "|"):
         if candidate in line:

@@ -1,9 +1,9 @@
-"""Cams from the data of a machine and its product, checked against the limits of the slave.
+"""Cams computed from the data of a machine and its product, checked against the limits of the slave.
 
     knife = RotaryKnife(circumference=500, blades=1, cut_zone=20, limits=Limits(velocity=3000, acceleration=200_000))
     table = knife.cam(437.5, speed=1000)  # x: mm of web, y: deg of the knife
 
-What is impossible is told as `takt.ConfigError`: which limit, by how much, and what would do.
+Impossible cams raise `takt.ConfigError`, which says which limit is exceeded, by how much, and what would be possible.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ import numpy as np
 from takt.cam import Table
 from takt.errors import ConfigError
 
-SEARCH_STEPS = 60  # of a bisection: as near as numbers go
-REVERSAL_POINTS = 1001  # at which the way of a knife that turns back is looked at
+SEARCH_STEPS = 60  # of a bisection: down to the precision of floats
+REVERSAL_POINTS = 1001  # samples of the motion of a knife that reverses
 
 
 @dataclass(frozen=True)
 class Limits:
-    """Of a slave, in its own unit: deg/s, deg/s², deg/s³ for a knife."""
+    """Limits of a slave in its own unit: [deg/s], [deg/s²], [deg/s³] for a knife."""
 
     velocity: float = math.inf
     acceleration: float = math.inf
@@ -31,7 +31,8 @@ class Limits:
 
 
 def peaks(table: Table, speed: float) -> dict[str, float]:
-    """The slave's largest velocity, acceleration and jerk at this speed of the master, exact from the polynomials."""
+    """Returns the slave's largest velocity, acceleration and jerk at this speed of the master, exact from the
+    polynomials."""
     extremes = table.extremes()
     most = [max(abs(b.least.value), abs(b.greatest.value)) for b in (extremes.dy, extremes.ddy, extremes.dddy)]
     names = ("velocity", "acceleration", "jerk")
@@ -39,7 +40,7 @@ def peaks(table: Table, speed: float) -> dict[str, float]:
 
 
 def fastest(table: Table, limits: Limits) -> float:
-    """The highest speed of the master at which the slave keeps its limits."""
+    """Returns the highest speed of the master at which the slave keeps its limits; infinity without limits."""
     at_one = peaks(table, 1.0)
     return min(
         (getattr(limits, name) / peak) ** (1 / k) if peak else math.inf
@@ -48,7 +49,7 @@ def fastest(table: Table, limits: Limits) -> float:
 
 
 def beyond(table: Table, limits: Limits, speed: float, slave: str) -> str:
-    """Which limit the slave does not keep at this speed of the master; empty: it keeps all."""
+    """Returns a sentence about a limit that the slave exceeds at this speed of the master; empty: it keeps all."""
     for name, peak in peaks(table, speed).items():
         limit = getattr(limits, name)
         if peak > limit * (1 + 1e-9):
@@ -61,7 +62,7 @@ def is_number(value: object) -> bool:
 
 
 class Wrong(list[str]):
-    """What is wrong with the data of a machine or a product."""
+    """Problems of the data of a machine or a product."""
 
     def expect(self, name: str, value: float, above: float, what: str = "a number") -> None:
         if not (is_number(value) and value > above):
@@ -86,12 +87,14 @@ class Wrong(list[str]):
 class RotaryKnife:
     """A rotary knife or cross cutter above a running web.
 
-    circumference: mm, of the circle of the blades' edges.
-    blades: evenly spaced around it.
-    cut_zone: mm of web before and behind each cut in which the blade runs with the web.
-    limits: of the knife's axis, which counts deg.
-    may_reverse: the knife may turn back between two cuts; else long products are refused where it would. A blade
-        that would come back to the web between two cuts, into the cut zone, is refused all the same.
+    circumference: [mm] of the circle of the blades' edges.
+    blades: number of blades, evenly spaced on it, from 1.
+    cut_zone: length [mm] of web before and behind each cut in which the blade moves synchronously with the web.
+    limits: of the knife's axis [deg].
+    may_reverse: the knife may turn backwards between two cuts; otherwise long products that need it are refused. A
+        motion in which a blade would re-enter the cut zone between two cuts is always refused.
+
+    Raises takt.ConfigError if the data is inconsistent.
     """
 
     circumference: float
@@ -116,13 +119,16 @@ class RotaryKnife:
 
     @property
     def pitch(self) -> float:
-        """deg from one blade to the next."""
+        """Angle [deg] from one blade to the next."""
         return 360.0 / self.blades
 
     def cam(self, length: float, *, speed: float, name: str | None = None) -> Table:
-        """The cyclic cam for products of `length` mm: x in mm of web from one cut to the next, y in deg.
+        """Returns the cyclic cam for products of `length` [mm]: x [mm] of web from one cut to the next, y [deg].
 
-        speed: mm/s, the highest of the web: the limits hold up to there.
+        speed: highest speed of the web [mm/s], up to which the limits hold.
+        name: None: "knife_" and the length.
+
+        Raises takt.ConfigError if a limit is exceeded or the motion is not possible.
         """
         if not (is_number(speed) and speed > 0):
             raise ConfigError([f"speed: expected a number of mm/s above 0, found {speed!r}"])
@@ -152,7 +158,7 @@ class RotaryKnife:
         return Table.from_segments(segments, name=name, cyclic=True, x_unit="mm", y_unit="deg")
 
     def _blocked(self, table: Table) -> str:
-        """Why the knife cannot go this way at any speed; empty: it can."""
+        """Returns why the motion is impossible at any speed; empty if it is possible."""
         least = table.extremes().dy.least.value
         if least >= -1e-9 * 360 / self.circumference:
             return ""
@@ -169,8 +175,8 @@ class RotaryKnife:
         return self._blocked(table) or beyond(table, self.limits, speed, "knife")
 
     def highest_speed(self, length: float) -> float:
-        """mm/s of web up to which the limits hold for products of this length; 0: the knife would turn back, or come
-        back into the cut zone."""
+        """Returns the web speed [mm/s] up to which the limits hold for products of `length` [mm]; 0 if the knife would
+        turn backwards without `may_reverse`, or re-enter the cut zone."""
         table = self._made(self._product(length), "knife")
         if self._blocked(table):
             return 0.0
@@ -196,11 +202,13 @@ class RotaryKnife:
 
 @dataclass(frozen=True)
 class FlyingSaw:
-    """A saw, a printer or a gripper on a carriage that rides along with a running web and goes back.
+    """A saw, a printer or a gripper on a carriage that moves along with a running web and returns.
 
-    travel: mm, how far the carriage can ride from its rear end, which is y = 0.
-    ride: mm of web over which it runs with the web.
-    limits: of the carriage's axis, which counts mm.
+    travel: longest travel of the carriage [mm] from its rear end, which is y = 0.
+    ride: length [mm] of web over which it moves synchronously with the web.
+    limits: of the carriage's axis [mm].
+
+    Raises takt.ConfigError if the data is inconsistent.
     """
 
     travel: float
@@ -217,11 +225,14 @@ class FlyingSaw:
         wrong.tell()
 
     def cam(self, length: float, *, speed: float, name: str | None = None) -> Table:
-        """The cyclic cam for products of `length` mm: x in mm of web from one product to the next, y in mm of the
-        carriage. It gets up to the web's speed over `run_up(length)` mm of web, rides along, brakes likewise, and goes
-        back under a modified sine.
+        """Returns the cyclic cam for products of `length` [mm]: x [mm] of web from one product to the next, y [mm] of
+        the carriage. The carriage accelerates to the web's speed over `run_up(length)` of web, moves along with it,
+        brakes over the same length, and returns by a modified sine.
 
-        speed: mm/s, the highest of the web: the limits hold up to there.
+        speed: highest speed of the web [mm/s], up to which the limits hold.
+        name: None: "saw_" and the length.
+
+        Raises takt.ConfigError if a limit is exceeded.
         """
         wrong = Wrong()
         wrong.expect("speed", speed, 0, "a number of mm/s")
@@ -236,15 +247,15 @@ class FlyingSaw:
         return table
 
     def run_up(self, length: float) -> float:
-        """mm of web over which the carriage gets up to speed: where the web may run fastest. Without limits: as long
-        as travel and product allow."""
+        """Returns the length [mm] of web over which the carriage accelerates, chosen for the highest web speed. Without
+        limits: a third of the product's length beyond `ride`, or what the travel leaves."""
         wrong = Wrong()
         wrong.expect("length", length, self.ride, "a number of mm")
         wrong.tell()
-        # The faster the run-up, the more is left for the way back: the highest speed has one greatest value.
+        # A shorter run-up leaves more for the return: the highest speed has a single maximum.
         most = min(self.travel - self.ride, (length - self.ride) / 2)
         if self.limits == Limits():
-            return min(self.travel - self.ride, (length - self.ride) / 3)  # a third of the rest each: up, down, back
+            return min(self.travel - self.ride, (length - self.ride) / 3)  # a third each: run-up, braking, return
         low, high = 0.0, most
         for _ in range(SEARCH_STEPS):
             third = (high - low) / 3
@@ -255,7 +266,7 @@ class FlyingSaw:
         return (low + high) / 2
 
     def highest_speed(self, length: float) -> float:
-        """mm/s of web up to which the limits hold for products of this length."""
+        """Returns the web speed [mm/s] up to which the limits hold for products of `length` [mm]."""
         return self._highest(length, self.run_up(length))
 
     def _highest(self, length: float, run_up: float) -> float:
@@ -290,12 +301,14 @@ class FlyingSaw:
 
 @dataclass(frozen=True)
 class WinderTraverse:
-    """The guide that lays a thread, a wire or a band onto a turning spool, layer by layer.
+    """The guide that lays a thread, a wire or a band onto a rotating spool, layer by layer.
 
-    pitch: mm of guide per turn of the spool.
-    reversal: deg of the spool over which the guide turns round at an edge.
-    dwell: deg of the spool for which it stays at each edge.
-    limits: of the guide's axis, which counts mm.
+    pitch: travel of the guide [mm] per turn of the spool.
+    reversal: angle [deg] of the spool over which the guide reverses at an edge.
+    dwell: angle [deg] of the spool for which it dwells at each edge.
+    limits: of the guide's axis [mm].
+
+    Raises takt.ConfigError if the data is inconsistent.
     """
 
     pitch: float
@@ -313,14 +326,17 @@ class WinderTraverse:
 
     @property
     def _edge(self) -> float:
-        """mm from where the guide begins to brake to the edge."""
+        """Distance [mm] to the edge at which the guide begins to brake."""
         return self.pitch / 360 * self.reversal * (1 / 4 if self.dwell else 5 / 16)
 
     def cam(self, width: float, *, speed: float, name: str | None = None) -> Table:
-        """The cyclic cam of two layers: x in deg of the spool, y in mm of the guide from one edge, 0, to the other,
-        `width`, and back. Between the reversals the guide moves evenly by the pitch.
+        """Returns the cyclic cam of two layers: x [deg] of the spool, y [mm] of the guide from one edge, 0, to the
+        other, `width` [mm], and back. Between the reversals the guide moves at constant pitch.
 
-        speed: deg/s, the highest of the spool: the limits hold up to there.
+        speed: highest speed of the spool [deg/s], up to which the limits hold.
+        name: None: "traverse_" and the width.
+
+        Raises takt.ConfigError if a limit is exceeded.
         """
         wrong = Wrong()
         wrong.expect("speed", speed, 0, "a number of deg/s")
@@ -336,7 +352,7 @@ class WinderTraverse:
         return table
 
     def highest_speed(self, width: float) -> float:
-        """deg/s of the spool up to which the limits hold for this width."""
+        """Returns the spool speed [deg/s] up to which the limits hold for this `width` [mm]."""
         wrong = Wrong()
         wrong.expect("width", width, 2 * self._edge, "a number of mm")
         wrong.tell()
@@ -344,7 +360,7 @@ class WinderTraverse:
 
     def _made(self, width: float, name: str) -> Table:
         per_deg, edge, half = self.pitch / 360, self._edge, self.reversal / 2
-        # Without a dwell the guide turns round along u - 2 u³ + u⁴, the least polynomial that has no jump of
+        # Without a dwell the guide reverses along u - 2 u³ + u⁴, the polynomial of lowest degree without a jump of
         # acceleration; at the edge, u = 1/2, its second derivative is -3.
         bend = 0.0 if self.dwell else 3 * per_deg / self.reversal
         even = (width - 2 * edge) / per_deg

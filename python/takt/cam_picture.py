@@ -15,8 +15,8 @@ from takt import plot, style
 from takt.cam import Extreme, Table
 from takt.cam_check import Limits, figure
 
-EVENLY = 2000  # x, besides the joints
-MOST_POINTS, MOST_SEGMENTS = 150, 40  # that can be told apart
+EVENLY = 2000  # equidistant x, besides the joints
+MOST_POINTS, MOST_SEGMENTS = 150, 40  # that can be distinguished in a picture
 NAMES = (("y", "position"), ("y'", "velocity"), ("y''", "acceleration"), ("y'''", "jerk"))
 POWERS = ("", "", "²", "³")
 
@@ -28,15 +28,19 @@ def picture(
     limits: Limits | None = None,
     title: str | None = None,
 ) -> Path:
-    """Writes what `draw` draws into a file."""
+    """Draws a cam as `draw` does and writes it to a file. Returns the path."""
     return plot.save(draw(table, master_velocity, limits, title), path)
 
 
 def draw(
     table: Table, master_velocity: float | None = None, limits: Limits | None = None, title: str | None = None
 ) -> plot.Picture:
-    """Draws y and its derivatives one below the other, with extremes, points and segments. Where the velocity of the
-    master is given: on the right what that is for the slave in seconds, with limits that are near as lines."""
+    """Returns a picture of y and its derivatives, one below the other, with extremes, points and segments.
+
+    master_velocity: if given, the scales on the right are for the slave over time, and nearby limits are lines.
+    limits: of the slave.
+    title: None: the name of the cam.
+    """
     x = _places(table)
     values, extremes = table.at(x), table.extremes()
     ends = [segment["to"]["x"] for segment in table.source["segments"]]
@@ -69,14 +73,14 @@ def draw(
 
 
 def _places(table: Table) -> Any:
-    """x, evenly, and both sides of every joint."""
+    """Returns equidistant x and both sides of every joint."""
     joints = table.joints
     evenly = np.linspace(table.begin, table.end, EVENLY)
     return np.unique(np.concatenate([evenly, joints, np.nextafter(joints[1:], -math.inf)]))
 
 
 def _limits_at(limits: Limits | None, power: int, master_velocity: float | None) -> list[float]:
-    """On the scale of the left side."""
+    """Returns the limits of a derivative on the scale of the left side."""
     if limits is None:
         return []
     if power == 0:
@@ -88,7 +92,7 @@ def _limits_at(limits: Limits | None, power: int, master_velocity: float | None)
 
 
 def _frame(ax: Axes, values: list[float], limits: list[float]) -> None:
-    """Room for the curve and for limits that are near enough not to flatten it."""
+    """Scales the axis for the curve and for limits that are near enough not to flatten it."""
     low, high = min(values), max(values)
     reach = max(high - low, 1e-9 * max(abs(low), abs(high)), 1e-300)
     near = [one for one in limits if low - 0.6 * reach <= one <= high + 0.6 * reach]
@@ -133,7 +137,7 @@ def _for_slave(ax: Axes, table: Table, power: int, master_velocity: float) -> No
 
 
 def _name_laws(ax: Axes, table: Table) -> None:
-    """Above the picture, where there is room between two joints of segments."""
+    """Writes the names of the laws above the picture, where a segment is wide enough."""
     segments = table.source["segments"]
     ends = [table.begin, *(segment["to"]["x"] for segment in segments)]
     for (begin, end), segment in zip(pairwise(ends), segments, strict=True):

@@ -1,4 +1,4 @@
-"""A scenario on an engine of its own, in real time and over LCM, judged from a log of the network."""
+"""Runs a scenario on an engine of its own, in real time and over LCM, and judges it from a log of the network."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Say = Callable[[str], None]
 Beside = Callable[[str], contextlib.AbstractContextManager[Any]]
 Judged = Callable[["Outcome", dict[str, Any]], None]
 
-ENDED_AT_ONCE = 130  # what taktd returns after a second signal
+ENDED_AT_ONCE = 130  # exit status of taktd after a second signal
 
 
 def nothing(_: str) -> contextlib.AbstractContextManager[None]:
@@ -39,8 +39,8 @@ def nothing(_: str) -> contextlib.AbstractContextManager[None]:
 
 @dataclass(frozen=True)
 class DemoResult:
-    """What became of it: the verdicts on the log, the engine's own figures, and whether its journal runs again bit for
-    bit; None: none was kept."""
+    """The result of a demo: the verdicts on the log, the engine's own figures, and the result of replaying its journal
+    (None: no journal was kept)."""
 
     outcome: Outcome
     figures: dict[str, Any]
@@ -62,11 +62,19 @@ def run_demo(
     judged: Judged = lambda *_: None,
     stays: bool = False,
 ) -> DemoResult:
-    """Starts taktd on the machine, logs the network beside it, runs the scenario through a connection, ends both, and
-    judges what the log holds. Everything is kept in `directory`. `beside`: what else runs meanwhile, on the network
-    with this URL. `judged` hears the verdicts and the engine's figures. When `stays`, the engine runs on until `judged`
-    returns; it keeps no journal then, which would grow on and on with it."""
-    _core.load_machine(*read_machine(machine))  # says what is wrong with it
+    """Starts taktd on the machine, logs its network, runs the scenario over LCM, ends both, and judges the log. Returns
+    the result.
+
+    directory: where all files are kept.
+    say: called with progress messages.
+    pace: as `taktd --pace`.
+    beside: returns a context to enter while the engine runs, for the network with this URL.
+    judged: called with the outcome and the engine's figures.
+    stays: the engine runs on until `judged` returns, and keeps no journal, which would grow without limit.
+
+    Raises ConfigError if the machine file is wrong, TaktError if taktd does not start or fails.
+    """
+    _core.load_machine(*read_machine(machine))  # raises ConfigError if it is wrong
     directory.mkdir(parents=True, exist_ok=True)
     log, kept = directory / "network.log", directory / "taktd.log"
     for old in (log, kept):
@@ -77,7 +85,7 @@ def run_demo(
             say(f"taktd runs {machine} ({pace} time), {log.name} records {url}")
             with _connected(url, engine, directory / "taktd.txt") as session:
                 started, began = time.monotonic(), session.now
-                with session.record(every=1000) as notes:  # for its marks, which do not travel over LCM
+                with session.record(every=1000) as notes:  # for its marks, which are not sent over LCM
                     played = play(scenario, session)
                 took, seconds = session.now - began, time.monotonic() - started
                 say(f"scenario done: {took:.1f} s of engine time in {seconds:.1f} s")
@@ -100,7 +108,8 @@ def run_demo(
 
 
 def _connected(url: str, engine: subprocess.Popen[bytes], text: Path, timeout: float = 15.0) -> RemoteSession:
-    """A session as soon as the engine answers, unless it has ended by then."""
+    """Returns a session as soon as the engine answers. Raises TaktError if the engine has ended, ConnectionError after
+    `timeout` [s]."""
     end = time.monotonic() + timeout
     while True:
         try:
@@ -114,7 +123,7 @@ def _connected(url: str, engine: subprocess.Popen[bytes], text: Path, timeout: f
 
 
 def _end(engine: subprocess.Popen[bytes], text: Path, also: int = 0) -> None:
-    """In order, or says where it says why not."""
+    """Ends the engine in an orderly way. Raises TaktError, with the file of its output, if it reports a failure."""
     engine.send_signal(signal.SIGINT)
     if engine.wait(20) not in (0, also):
         raise TaktError(f"taktd ended with {engine.returncode}: see {text}")
@@ -129,12 +138,12 @@ _TRIES = 5
 
 
 def free_url() -> str:
-    """A network that stays on this host, on a port that no other program has, with room for a burst."""
+    """Returns the URL of a network that stays on this host, on an unused port, with a receive buffer for bursts."""
     *others, last = random.sample(range(*_PORTS), _TRIES)
     for port in others:
         with contextlib.suppress(ConnectionError):
             return _opened(port)
-    return _opened(last)  # says in one line what is wrong with the network, before anything is started
+    return _opened(last)  # raises the reason, before anything is started
 
 
 def _opened(port: int) -> str:
@@ -147,9 +156,9 @@ def _opened(port: int) -> str:
 def taktd(
     machine: Path, url: str, journal: Path | None, pace: str, directory: Path, key: Key | None = None
 ) -> Iterator[subprocess.Popen[bytes]]:
-    """The engine as a process of its own, which is ended in order. What it says goes into taktd.txt. Without a key it
-    has the one that the environment names, if any."""
-    beside = str(Path(sys.executable).parent)  # the one that came with this package comes first
+    """Runs the engine as a process of its own, ended in an orderly way. Its output is written to taktd.txt. Without a
+    key it uses that of the environment, if any. Raises TaktError if taktd is not installed."""
+    beside = str(Path(sys.executable).parent)  # prefer the one installed with this package
     program = shutil.which("taktd", path=beside) or shutil.which("taktd")
     if program is None:
         raise TaktError("taktd is not installed (or not on PATH)")
@@ -165,7 +174,7 @@ def taktd(
 
 @contextlib.contextmanager
 def _ended(process: subprocess.Popen[bytes]) -> Iterator[subprocess.Popen[bytes]]:
-    """Ends it in order, whatever happens."""
+    """Ends the process in any case, in an orderly way if possible."""
     try:
         yield process
     finally:

@@ -1,5 +1,5 @@
-"""What a scenario ends with besides verdicts, as a verdict: a plain `assert` that failed, a command that was refused,
-nothing that was judged. When it was, where it stands, and curves of what its line names."""
+"""Endings of a scenario other than verdicts, expressed as a verdict: a failed plain `assert`, a refused command, or
+no assertion at all. With its time, its source line, and curves of the signals that the line names."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ Signal = tuple[str, str]
 
 @dataclass(frozen=True)
 class FailedAssertion:
-    text: str  # what it says, and where it stands
-    when_s: float | None  # None: it was asked of the whole recording
-    components: frozenset[str] = frozenset()  # what it names, some of which are components
-    words: frozenset[str] = frozenset()  # of its line, some of which are fields of them
+    text: str  # the message and the source line
+    when_s: float | None  # None: about the whole recording
+    components: frozenset[str] = frozenset()  # names in its line, some of which are components
+    words: frozenset[str] = frozenset()  # words of its line, some of which are fields of the components
     name: str = ASSERT
 
     @staticmethod
     def of(error: AssertionError, path: Path, when_s: float | None = None) -> FailedAssertion:
-        """`path`: the scenario's file, whose line says where it stands; what it names is told by the line that raised
-        it."""
+        """From a failed `assert`. `path`: the scenario's file, whose line is reported; the names are read from the line
+        that raised the error."""
         stack = traceback.extract_tb(error.__traceback__)
         frames = [frame for frame in stack if Path(frame.filename).name == path.name]
         said = str(error) or (frames[-1].line if frames else "") or "an assertion failed"
@@ -54,17 +54,18 @@ class FailedAssertion:
 
     @staticmethod
     def of_broken(error: TaktError, path: Path, when_s: float) -> FailedAssertion:
-        """A command that was waited for ended in an error, or something that was waited for did not happen."""
+        """From an error that ended the scenario: a command that it waited for failed, or a condition was not met in
+        time."""
         stack = traceback.extract_tb(error.__traceback__)
         places: Sequence[Place] = [(frame.filename, frame.lineno or 0) for frame in reversed(stack)]
         name, target = "wait", frozenset[str]()
-        if isinstance(error, CommandError):  # where it was given says more than where it was waited for
+        if isinstance(error, CommandError):  # the line that gave the command says more than the line that waited
             name, target, places = COMMAND, frozenset({error.feedback.target}), error.feedback.given_at or places
         return FailedAssertion(f"{error}{_where(places, path)}{_at(when_s)}", when_s, target, name=name)
 
     @staticmethod
     def of_ignored(ignored: Sequence[Feedback], path: Path) -> FailedAssertion | None:
-        """Commands that were refused, which the scenario never noticed; None: there are none."""
+        """From refused commands whose feedback the scenario did not read; None if there are none."""
         if not ignored:
             return None
         first = ignored[0]
@@ -75,24 +76,25 @@ class FailedAssertion:
         return FailedAssertion(text, when, frozenset({first.target}), name=COMMAND)
 
     def told(self) -> dict[str, Any]:
-        """As recordings keep it."""
+        """Returns the values as recordings keep them."""
         return {**asdict(self), "components": sorted(self.components), "words": sorted(self.words)}
 
     @staticmethod
     def again(told: Mapping[str, Any]) -> FailedAssertion:
-        """The one that was told."""
+        """Restores what `told` returned."""
         sets = {name: frozenset(told[name]) for name in ("components", "words")}
         return FailedAssertion(told["text"], told["when_s"], **sets, name=told["name"])
 
     def verdict(self, recording: Recording) -> Verdict:
-        """With the curves of the components that are named; of the fields that are, or of the usual ones."""
+        """Returns the verdict, with curves of the named components: of their named fields or, without any, the usual
+        ones."""
         named = tuple(name for name in recording if name in self.components)
         place = None if self.when_s is None else (self.when_s, self.when_s)
         lanes = _lanes(recording, [signal for name in named for signal in self._signals(recording, name)])
         return Verdict(self.name, named, False, self.text, self.when_s, None, "", place, lanes)
 
     def _signals(self, recording: Recording, name: str) -> list[Signal]:
-        from takt import plot  # which takes long to import, and few need it
+        from takt import plot  # here, because its import is slow and rarely needed
 
         fields = [(name, field) for field in recording.fields(name)[2:] if field in self.words]
         return fields or plot.select(recording, [name])
@@ -116,7 +118,7 @@ def _at(when_s: float | None) -> str:
 
 
 def _where(places: Iterable[Place], path: Path) -> str:
-    """The line in the scenario's folder that did it, and the lines there that called that one."""
+    """Returns the innermost line in the scenario's folder, and the lines there that called it, as text."""
     folder = path.resolve().parent
     own = [(Path(file).resolve(), line) for file, line in places if not file.startswith("<")]
     lines = [f"{shown(file.relative_to(folder))}:{line}" for file, line in own if file.is_relative_to(folder)]

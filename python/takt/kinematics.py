@@ -1,14 +1,14 @@
-"""Frames and kinematics of axes groups, on NumPy arrays.
+"""Frames and kinematics of axis groups, on NumPy arrays.
 
 import takt.kinematics as kin
 
 robot = kin.Kinematics(delta={"base_radius": 200, "platform_radius": 45, "upper_arm": 235, "lower_arm": 800})
 robot.forward([10, 20, 30])                    # [x, y, z, a, b, c]
-robot.inverse([[0, 0, -700, 0, 0, 0]]).joints  # one row a pose
+robot.inverse([[0, 0, -700, 0, 0, 0]]).joints  # one row per pose
 
-A pose is six numbers: X, Y, Z in mm and A, B, C in degrees. A, B, C turn about X, then Y, then Z of the frame the pose
-is given in, which stand still. Positions of axes are in their own units, mm or deg. Wherever an array with a row a pose
-goes in, a single row may.
+A pose is six numbers: X, Y, Z [mm] and A, B, C [deg]. A, B, C rotate about the fixed axes X, then Y, then Z of the
+reference frame. Positions of axes are in their own units, [mm] or [deg]. Arguments with one row per pose also accept a
+single row; results then lack the first dimension, too, except those of `inverse` and `inverse_motion`.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ assert get_args(Reason) == _REASONS
 
 
 class KinematicsError(TaktError, ValueError):
-    """There is no such position, or no such pose. `row` says which, `reason` why."""
+    """No pose exists for a position of the axes, or no position for a pose: `row` is its index, `reason` says why."""
 
     def __init__(self, row: int, reason: int) -> None:
         self.row = row
@@ -46,7 +46,7 @@ class KinematicsError(TaktError, ValueError):
 
 
 class Configuration(NamedTuple):
-    """Which of several positions of the axes for one pose; "keep": as the axes are that are given as near."""
+    """The branch among several positions of the axes for one pose; "keep": the branch of the given near position."""
 
     shoulder: Shoulder = "keep"
     elbow: Bend = "keep"
@@ -55,27 +55,28 @@ class Configuration(NamedTuple):
 
 @dataclass(frozen=True)
 class Solution:
-    """What `inverse` found: rows of NaN where a reason says why not."""
+    """The result of `inverse`: rows of NaN where there is no solution."""
 
     joints: Array  # (n, axes), mm or deg
-    reasons: npt.NDArray[np.str_]  # (n,), "none" where there is an answer
+    reasons: npt.NDArray[np.str_]  # (n,), why a row has no solution; "none": it has one
 
     @property
     def ok(self) -> npt.NDArray[np.bool_]:
-        """(n,): which rows have an answer."""
+        """Whether each row has a solution, shape (n,)."""
         return np.asarray(self.reasons == "none")
 
 
 @dataclass(frozen=True)
 class MotionSolution(Solution):
-    """The same with velocities and accelerations of the axes."""
+    """The result of `inverse_motion`: a Solution with velocities and accelerations of the axes."""
 
     velocities: Array  # (n, axes), mm/s or deg/s
     accelerations: Array  # (n, axes), mm/s² or deg/s²
 
 
 class ToolMotion(NamedTuple):
-    """A tool's pose with its velocity and acceleration, those of turning about X, Y, Z of the frame it is seen from."""
+    """Poses of the tool with its velocities and accelerations; angular ones are about X, Y, Z of the reference
+    frame."""
 
     poses: Array  # (n, 6), mm and deg
     velocities: Array  # (n, 6), mm/s and deg/s
@@ -83,10 +84,13 @@ class ToolMotion(NamedTuple):
 
 
 class Kinematics:
-    """One mechanism, with the parameters a machine file would give it: Kinematics(scara={"first_arm": 325, ...}).
+    """One mechanism, with the parameters of a machine file: Kinematics(scara={"first_arm": 325, ...}).
 
-    Exactly one of gantry, core_xy, scara, delta, six_axis, serial; `joints` may say for each axis its zero and whether
-    it counts the other way round; files (`serial`) are looked for in `folder`. Raises takt.ConfigError."""
+    mechanism: exactly one of gantry, core_xy, scara, delta, six_axis, serial.
+    joints: per axis, its zero position and whether its direction is inverted, as in a machine file; empty: defaults.
+    folder: base of relative file names (`serial`).
+
+    Raises takt.ConfigError if the parameters are wrong."""
 
     def __init__(
         self,
@@ -102,17 +106,17 @@ class Kinematics:
 
     @property
     def axes(self) -> int:
-        """How many axes it has."""
+        """Number of axes."""
         return self._core.axes
 
     @property
     def rotary(self) -> tuple[bool, ...]:
-        """Which of the axes turn and count in deg."""
+        """Whether each axis is rotary, with positions in [deg]."""
         return tuple(self._core.rotary)
 
     @property
     def ranges(self) -> Array:
-        """(axes, 2): where each axis may be, mm or deg; infinite without limits. Can be set."""
+        """Lower and upper limit of each axis [mm] or [deg], shape (axes, 2); infinite without limits. Settable."""
         return self._core.ranges
 
     @ranges.setter
@@ -120,8 +124,8 @@ class Kinematics:
         self._core.ranges = np.asarray(ranges, float)
 
     def forward(self, joints: npt.ArrayLike) -> Array:
-        """The poses (n, 6) in mm and deg of positions (n, axes) in mm or deg. Raises KinematicsError where a Delta's
-        arms do not meet."""
+        """Returns the poses [mm, deg], shape (n, 6), of positions of the axes [mm or deg], shape (n, axes). Raises
+        KinematicsError if a row has no pose (the arms of a delta do not meet)."""
         rows, single = _rows(joints, self.axes)
         poses, reasons = self._core.forward(rows)
         _raise_first(reasons)
@@ -130,8 +134,9 @@ class Kinematics:
     def forward_motion(
         self, joints: npt.ArrayLike, velocities: npt.ArrayLike, accelerations: npt.ArrayLike
     ) -> ToolMotion:
-        """The tool's motion of positions (mm or deg), velocities and accelerations (per s and s²) of the axes, each
-        (n, axes). Raises KinematicsError where a Delta's arms do not meet."""
+        """Returns the motion of the tool for positions [mm or deg], velocities [per s] and accelerations [per s²] of
+        the axes, each of shape (n, axes). Raises KinematicsError if a row has no pose (the arms of a delta do not
+        meet)."""
         rows, single = _rows(joints, self.axes)
         poses, rates, changes, reasons = self._core.forward_motion(
             rows, _rows(velocities, self.axes)[0], _rows(accelerations, self.axes)[0]
@@ -149,10 +154,12 @@ class Kinematics:
         elbow: Bend = "keep",
         wrist: Bend = "keep",
     ) -> Solution:
-        """Where the axes must be for poses (n, 6) in mm and deg.
+        """Returns the positions of the axes for poses [mm, deg], shape (n, 6); never raises KinematicsError.
 
-        `near`: where the axes are, (axes,) or (n, axes); without it they come near the middle of their ranges. `path`:
-        the poses are one path, each is solved from the one before and no axis jumps. The rest says which branch."""
+        near: current positions of the axes, shape (axes,) or (n, axes); None: near the middle of their ranges.
+        path: the poses form one path: each is solved from the one before, so that no axis jumps.
+        shoulder, elbow, wrist: the branch, as in Configuration.
+        """
         rows, _ = _rows(poses, 6)
         wanted = _configuration(shoulder, elbow, wrist)
         joints, reasons = self._core.inverse(rows, self._near(near), wanted, path)
@@ -170,7 +177,8 @@ class Kinematics:
         elbow: Bend = "keep",
         wrist: Bend = "keep",
     ) -> MotionSolution:
-        """The same with velocities (n, 6; mm/s, deg/s) and accelerations (n, 6; mm/s², deg/s²) of the tool."""
+        """As `inverse`, also for velocities [mm/s, deg/s] and accelerations [mm/s², deg/s²] of the tool, each of shape
+        (n, 6)."""
         rows, _ = _rows(poses, 6)
         wanted = _configuration(shoulder, elbow, wrist)
         joints, rates, changes, reasons = self._core.inverse_motion(
@@ -179,7 +187,8 @@ class Kinematics:
         return MotionSolution(joints, _names(reasons), rates, changes)
 
     def jacobian(self, joints: npt.ArrayLike) -> Array:
-        """(n, 6, axes): velocity of the tool (mm/s, deg/s about X, Y, Z) for 1 mm/s or deg/s of each axis."""
+        """Returns the Jacobian matrices, shape (n, 6, axes): the velocity of the tool [mm/s, deg/s about X, Y, Z] for
+        1 mm/s or deg/s of each axis. Raises KinematicsError if a row has no pose."""
         rows, single = _rows(joints, self.axes)
         matrices, reasons = self._core.jacobian(rows)
         _raise_first(reasons)
@@ -187,12 +196,13 @@ class Kinematics:
 
     @property
     def links(self) -> tuple[str, ...]:
-        """Names of the links, from the base to the tool."""
+        """The names of the links, from the base to the tool."""
         return tuple(self._core.links)
 
     def link_places(self, joints: npt.ArrayLike) -> Array:
-        """(n, links, 6): X, Y, Z of where each link begins, at its own axis, and where it ends, at the next one, in mm.
-        Links without such an extent end where they begin. Raises KinematicsError where a Delta's arms do not meet."""
+        """Returns the end points [mm] of each link, shape (n, links, 6): X, Y, Z of its start, at its own axis, and of
+        its end, at the next axis; equal for links without an extent. Raises KinematicsError if a row has no pose (the
+        arms of a delta do not meet)."""
         rows, single = _rows(joints, self.axes)
         places, reasons = self._core.link_places(rows)
         _raise_first(reasons)
@@ -200,12 +210,13 @@ class Kinematics:
 
     @property
     def link_spans(self) -> Array:
-        """(links, 3): where the next axis is, seen from each link, in mm; 0 for links without such an extent."""
+        """The position [mm] of the next axis in the frame of each link, shape (links, 3); 0 for links without an
+        extent."""
         return self._core.link_spans
 
     def link_frames(self, joints: npt.ArrayLike) -> Array:
-        """(n, links, 4, 4): where each link is, seen from the base, as a homogeneous matrix in mm. Raises
-        KinematicsError where a Delta's arms do not meet."""
+        """Returns the pose of each link in the base frame as a homogeneous matrix [mm], shape (n, links, 4, 4). Raises
+        KinematicsError if a row has no pose (the arms of a delta do not meet)."""
         rows, single = _rows(joints, self.axes)
         upper, reasons = self._core.link_frames(rows)
         _raise_first(reasons)
@@ -215,7 +226,7 @@ class Kinematics:
         return _like(frames, single)
 
     def configuration(self, joints: npt.ArrayLike) -> Configuration:
-        """Which branch one position (axes,) is in; "keep" for what the mechanism has no choice of."""
+        """Returns the branch of one position of the axes, shape (axes,); "keep" where the mechanism has no choice."""
         return Configuration(*self._core.configuration(_rows(joints, self.axes)[0]))  # type: ignore[arg-type]
 
     def _near(self, near: npt.ArrayLike | None) -> Array:
@@ -223,27 +234,28 @@ class Kinematics:
 
 
 def pose_to_matrix(poses: npt.ArrayLike) -> Array:
-    """Homogeneous matrices (n, 4, 4), in mm, of poses (n, 6) in mm and deg."""
+    """Returns the homogeneous matrices [mm], shape (n, 4, 4), of poses [mm, deg], shape (n, 6)."""
     rows, single = _rows(poses, 6)
     return _like(_core.poses_to_matrices(rows), single)
 
 
 def matrix_to_pose(matrices: npt.ArrayLike) -> Array:
-    """Poses (n, 6) in mm and deg of homogeneous matrices (n, 4, 4) in mm. B is in [-90, 90]; with B = ±90 A is 0."""
+    """Returns the poses [mm, deg], shape (n, 6), of homogeneous matrices [mm], shape (n, 4, 4). B is in [-90, 90]; with
+    B = ±90, A is 0."""
     array = np.asarray(matrices, float)
     single = array.ndim == 2
     return _like(_core.matrices_to_poses(array[np.newaxis] if single else array), single)
 
 
 def interpolate(start: npt.ArrayLike, end: npt.ArrayLike, shares: npt.ArrayLike) -> Array:
-    """Poses (n, 6) on the straight line from one pose (6,) to another, turning along the great arc: `shares` (n,) of
-    the way, 0 to 1."""
+    """Returns poses, shape (n, 6), between two poses, shape (6,): positions on the straight line, orientations along
+    the great arc. `shares`: fractions of the distance, 0 to 1, shape (n,)."""
     ends = np.concatenate([_rows(start, 6)[0], _rows(end, 6)[0]])
     return _core.poses_between(ends, np.atleast_1d(np.asarray(shares, float)))
 
 
 def _rows(values: npt.ArrayLike, columns: int) -> tuple[Array, bool]:
-    """As rows, and whether it was a single one."""
+    """Returns the values as rows, and whether they were a single row."""
     array = np.asarray(values, float)
     single = array.ndim == 1
     table = array[np.newaxis] if single else array

@@ -1,4 +1,4 @@
-"""What a motor moves, identified from a recording: the values of `drive: torque_offset` of an axis (PY-23).
+"""Identifies the load of a motor from a recording: the values of `drive: torque_offset` of an axis (PY-23).
 
 found = takt.load.identify(recording, "x")
 print(found.machine_file())
@@ -14,7 +14,7 @@ import numpy as np
 
 from takt.recording import Array, Recording, RecordingError
 
-LEAST = 100  # samples that a fit needs
+LEAST = 100  # least number of samples for a fit
 FULL_AT = 1.0  # u/s: default of torque_offset.full_at
 HALF = 8  # half width of the triangular filter, samples
 LATE = np.arange(-2, 5.1, 0.25)  # delays of the torque against the position that are tried, samples
@@ -54,18 +54,19 @@ class Load:
 
 
 def _averaged(values: Array) -> Array:
-    """By a triangle of HALF samples to either side."""
+    """Returns the values filtered by a triangle of HALF samples to either side."""
     weights = HALF - np.abs(np.arange(-HALF + 1, HALF))
     return np.convolve(values, weights / HALF**2, "same")
 
 
 def identify(recording: Recording, axis: str, *, full_at: float = FULL_AT) -> Load:
     """Returns inertia, friction and load torque of an axis: a least-squares fit of the reported torque to acceleration,
-    velocity and direction of motion while the loop is closed. Requires equidistant samples with motion both ways, with
-    acceleration and at more than one speed. Raises RecordingError where the samples do not determine the values.
+    velocity and direction of motion while the loop is closed. Requires equidistant samples with motion in both
+    directions, with acceleration and at more than one speed. Raises RecordingError if the samples do not determine the
+    values.
 
-    full_at: speed [u/s]; slower samples are left out, in which Coulomb friction is not fully developed; as in the
-    machine file.
+    full_at: speed [u/s]; slower samples, in which Coulomb friction is not fully developed, are left out; as in the
+        machine file.
     """
     table = recording[axis]
     period = float(np.median(np.diff(table["time_s"]))) if len(table) > 1 else 1.0
@@ -87,7 +88,7 @@ def identify(recording: Recording, axis: str, *, full_at: float = FULL_AT) -> Lo
     if whole.sum() < LEAST:
         least = LEAST + 2 * HALF
         raise RecordingError(f"axis '{axis}': {len(rows)} samples with a closed loop, at least {least} are needed")
-    moves = whole & (np.abs(velocity) >= full_at)  # at rest friction holds with any torque up to its own
+    moves = whole & (np.abs(velocity) >= full_at)  # at rest, friction balances any torque up to its own
     if not np.any(np.asarray(table["set_velocity"])[inside]):
         raise RecordingError(f"axis '{axis}': it does not move in this recording")
     if moves.sum() < LEAST:
@@ -103,7 +104,7 @@ def identify(recording: Recording, axis: str, *, full_at: float = FULL_AT) -> Lo
             f"axis '{axis}': its friction cannot be told from its load in this recording: it needs motion both "
             "ways and at more than one speed"
         )
-    # The torque is delayed against the position by an unknown part of cycles: that with the least residual is taken.
+    # The torque is delayed against the position by an unknown fraction of cycles: the one with the least residual wins.
     at = np.flatnonzero(moves).astype(float)
     best, found, left, torque_told = math.inf, np.zeros(4), torque, torque
     for late in LATE:

@@ -1,4 +1,4 @@
-"""Cams made at run time (CAM-88): how they are sent to an engine, and which ones this session knows."""
+"""Cams made at run time (CAM-88): sends them to an engine, and remembers those of this session."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
     from takt.cam import Table
     from takt.session import Session
 
-POINTS = 20  # in one command
-SEGMENTS = 8
-UNANSWERED = 128  # commands under way
+POINTS = 20  # per command
+SEGMENTS = 8  # per command
+UNANSWERED = 128  # commands without an answer at most
 KNOWN = 256  # cams whose data is kept; an engine holds 64
-MOST_KEPT = 5_000  # points of a cam, in recordings
+MOST_KEPT = 5_000  # points of a cam kept in recordings
 BUILDS = 2  # cams that an engine builds at a time
 
 
 @dataclass
 class MadeCam:
-    """A cam that this session has given."""
+    """A cam that this session has sent to the engine."""
 
     name: str
     table: Table
@@ -35,12 +35,12 @@ class MadeCam:
 
     @property
     def found(self) -> bool:
-        """Whether its name stands for it, unless a later one has it."""
+        """Whether commands find it by its name, unless a later cam has the same name."""
         return self.feedback._done and not (self.dropped and self.dropped._done)
 
     @cached_property
     def named(self) -> Table:
-        """The cam under the name it was sent with, as the engine has it."""
+        """The cam with the name under which the engine has it."""
         from takt.cam import Table
 
         if self.table.name == self.name:
@@ -80,12 +80,12 @@ class MadeCams:
 
     @property
     def names(self) -> list[str]:
-        """Of all cams that commands find, as far as this session knows."""
+        """The names of all cams that commands find, as far as this session knows."""
         names = [cam["name"] for cam in self._session.machine["cams"]]
         return list(dict.fromkeys(names + [made.name for made in self.cams if made.found]))
 
     def find(self, name: str) -> Table:
-        """The cam that this name stands for, as far as this session knows."""
+        """Returns the cam with this name, as far as this session knows. Raises TaktError if there is none."""
         for made in reversed(self.cams):
             if made.name == name and made.found:
                 return made.named
@@ -95,7 +95,7 @@ class MadeCams:
         raise TaktError(f"there is no cam '{name}' (there are {', '.join(self.names)})")
 
     def known(self, number: int) -> Table | None:
-        """The cam with this number; None: it was made by another client."""
+        """Returns the cam with this number; None if this session does not know it (made by another client)."""
         from takt.cam import Table
 
         if 1 <= number <= len(self._session.machine["cams"]):
@@ -106,7 +106,7 @@ class MadeCams:
         return None
 
     def kept(self) -> dict[str, Any]:
-        """What recordings keep of the cams made so far, by number; of the largest ones nothing."""
+        """Returns the cams made so far, by number, for the `meta` of recordings; without the largest ones."""
         made = [
             (made.feedback.value, made.named.source)
             for made in self.cams
@@ -118,7 +118,7 @@ class MadeCams:
         self._wait_for_fewer(UNANSWERED, "pieces of cams unanswered", lambda: self._given)
         feedback = self._session.command("machine", verb, arguments)
         if verb != "build_cam":
-            feedback._heeded = True  # build_cam is refused where one of them was
+            feedback._heeded = True  # if one of them is refused, build_cam is refused, too
         self._given.append(feedback)
         return feedback
 
@@ -133,7 +133,7 @@ class MadeCams:
 
 
 def is_kept(table: Table) -> bool:
-    """Whether recordings keep the data of a cam: of the largest ones they do not."""
+    """Returns whether recordings keep the data of a cam; they do not for the largest ones."""
     return _count(table) <= MOST_KEPT
 
 
@@ -142,7 +142,7 @@ def _count(table: Table) -> int:
 
 
 def _commands(table: Table, name: str) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The commands that send a cam, without the last one."""
+    """Returns the commands that send a cam, except the final build_cam."""
     source = table.source
     begin = {key: source[key] for key in ("cyclic", "interpolation", "x_unit", "y_unit")}
     yield "begin_cam", {"name": name, **begin}
@@ -157,7 +157,7 @@ def _commands(table: Table, name: str) -> Iterator[tuple[str, dict[str, Any]]]:
 
 
 def _given(value: float) -> float | None:
-    """None: free, which points of cams write as NaN."""
+    """Returns the value; None for NaN, which means free in points of cams."""
     return value if value == value else None
 
 
@@ -170,15 +170,16 @@ class SessionWithCams(MachineCommands):
         raise NotImplementedError
 
     def make_cam(self, cam: Table | Mapping[str, Any], *, name: str | None = None) -> Feedback:
-        """Makes a cam at run time (CAM-88): the engine checks and builds it outside its cycle, and the feedback is done
-        when it can be used, by `set_cam` of a cam module or `cam_in` of an axis. What runs an earlier cam of this name
-        keeps it until it is left.
+        """Makes a cam at run time (CAM-88). The engine checks and builds it outside its cycle; the feedback is done
+        when the cam can be used by `set_cam` of a cam module or `cam_in` of an axis. A module or axis that runs an
+        earlier cam of this name keeps that cam until it leaves it.
 
         cam: a takt.cam.Table (points, segments, a file, the result of a maker), or a cam as in a machine file.
-        name: how commands call it, 40 bytes at most; its own name unless given.
+        name: its name for commands, up to 40 bytes; None: the cam's own name.
 
-        A cam is sent in pieces. More than 2,500 points, and a third cam while two are being built, let engine time pass
-        until there is room. Raises takt.ConfigError if the cam has errors; nothing is sent then.
+        Returns the feedback; its value is the number of the cam. A cam is sent in pieces: for more than 2,500 points,
+        or a third cam while two are being built, engine time passes until there is room. Raises takt.ConfigError if the
+        cam has errors; nothing is sent then.
         """
         self._check_open()
         return self._made_cams.make(cam, name)
@@ -191,11 +192,12 @@ class SessionWithCams(MachineCommands):
     drop_cam.__doc__ = MachineCommands.drop_cam.__doc__
 
     def cam(self, name: str) -> Table:
-        """The cam that this name stands for now, of the machine file or made at run time, whoever made it: points,
-        laws, extremes. Over LCM what this session does not know is read from the engine: some time for a large cam."""
+        """Returns the cam with this name, from the machine file or made at run time by any client: points, laws,
+        extremes. Over LCM the cam is read from the engine unless this session knows it, which takes some time for a
+        large cam. Raises TaktError if there is no such cam."""
         self._check_open()
         return self._made_cams.find(name)
 
     def _cam(self, number: int) -> Table:
-        """The cam with this number."""
+        """Returns the cam with this number."""
         raise NotImplementedError

@@ -342,10 +342,7 @@ class RemoteSession(Session):
     def _take(self, message: msgs.feedback) -> None:
         sent = self._sent.get(message.id)
         if sent is None:
-            if message.id == 0 and message.error_id not in (
-                0,
-                QUEUE_FULL,
-            ):  # a client refused for lack of room may stop
+            if message.id == 0 and message.error_id not in (0, QUEUE_FULL):  # when full, stopping is still possible
                 self._trouble = ANOTHER if message.error_id == OTHER_RUN else message.sentence
             return
         sent.answered = True

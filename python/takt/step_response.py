@@ -1,7 +1,6 @@
-"""Step responses: what a position loop makes of a small move, in a picture's worth of figures.
+"""Step responses of position loops and their characteristic values.
 
-A step is a small move at all that the axis' limits allow: nearly a step for the loop, and within the limits like any
-other move.
+A step is a short move at the axis' limits: nearly a step for the loop, and within the limits like any other move.
 """
 
 from __future__ import annotations
@@ -21,26 +20,26 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 SETTLED = 0.02  # share of the step, peak to peak
-LEAD_S = 0.02  # s to look at where the axis stands before a step
-SLICES = 50  # of a watch, after each of which it is asked whether the axis rests
+LEAD_S = 0.02  # s of recording before a step, for the initial position
+SLICES = 50  # per watch time; after each, the axis is checked for rest
 STILL = 15  # slices without motion that count as rest
-LONGEST = 6  # watches until a step that does not come to rest is given up
+LONGEST = 6  # watch times after which a step without rest is given up
 STANDS_STILL_TOO_SOON = 3  # error number: not inside the in-position window in time
 
 
 @dataclass(frozen=True)
 class StepResponse:
-    """What a loop makes of a step. Times in s from the beginning of the step; NaN: never."""
+    """The response of a loop to a step. Times in [s] from the beginning of the step; NaN: never."""
 
     time_s: NDArray[np.float64]
-    response: NDArray[np.float64]  # share of the step: the set point goes from 0 to 1
-    overshoot: float  # % of the step, beyond where the loop holds the axis
+    response: NDArray[np.float64]  # share of the step: the set point moves from 0 to 1
+    overshoot: float  # % of the step, beyond the final position of the loop
     rise_s: float  # from 10 % to 90 %
-    settling_s: float  # until it stays within 2 %, peak to peak, around where it ends; never, where it does not rise
+    settling_s: float  # until it stays within 2 %, peak to peak, around its end; NaN if it does not rise
     rest: float  # share of the step that is missing at the end
-    turns: int  # turning points that are larger than that band
-    hum: int = 0  # smaller turning points in the second half, where it should rest
-    error: int = 0  # fault that the axis fell into; 0: none
+    turns: int  # turning points larger than that band
+    hum: int = 0  # smaller turning points in the second half, in which it should be at rest
+    error: int = 0  # fault of the axis; 0: none
 
     @property
     def text(self) -> str:
@@ -58,9 +57,13 @@ def analyse(
     grain: float = SETTLED,
     error: int = 0,
 ) -> StepResponse:
-    """Figures of a response. All in shares of the step: `start` is where the axis stood before it; `bias` is how far
-    beyond the set point the loop holds the axis (a load does that), which counts as left, but not as overshoot. Turning
-    points smaller than `grain` are no hum."""
+    """Returns the step response with its characteristic values. All arguments in shares of the step.
+
+    start: position of the axis before the step.
+    bias: offset of the final position beyond the set point (as by a load); counts as `rest`, not as overshoot.
+    grain: smaller turning points do not count as hum.
+    error: fault of the axis; 0: none.
+    """
     travelled = (response - start) / (1 + bias - start)
     last = max(1, len(response) // 20)
     end = float(np.mean(travelled[-last:]))
@@ -91,7 +94,7 @@ def analyse(
 
 
 def _turning_points(response: NDArray[np.float64], band: float) -> int:
-    """How often it turns round by more than the band."""
+    """Returns the number of reversals by more than the band."""
     turns, sense, extreme = 0, 1, float(response[0])
     for value in response.tolist():
         if sense * (value - extreme) > 0:
@@ -102,8 +105,9 @@ def _turning_points(response: NDArray[np.float64], band: float) -> int:
 
 
 def step_response(session: Session, axis: Axis, distance: float, watch_s: float = 0.5) -> StepResponse:
-    """Makes a step of `distance` [u] and back, and returns the response on the way there. Each way is watched until the
-    axis rests: `watch_s` at least, six times that at most. Raises TaktError where the axis does not take the step."""
+    """Makes a step of `distance` [u] and back, and returns the response of the first. Each step is watched until the
+    axis is at rest: at least `watch_s` [s], at most six times that. Raises TaktError if the axis does not complete the
+    step."""
     if not math.isfinite(distance) or distance == 0:
         raise TaktError(f"{axis.name}: a step has a length; {distance:g} {axis.unit} is none")
     there, _ = there_and_back(session, axis, distance, watch_s)
@@ -115,9 +119,9 @@ def step_response(session: Session, axis: Axis, distance: float, watch_s: float 
 def there_and_back(
     session: Session, axis: Axis, distance: float, watch_s: float, noise: float = 0.0
 ) -> tuple[StepResponse, StepResponse]:
-    """The responses of both ways; after a fault of the axis, which is part of the answer, twice the one that there is.
-    `noise` [u]: of the measured position, peak to peak."""
-    grain = max(SETTLED / 2, 2 * noise / abs(distance))  # smaller swings are those of encoder and converter
+    """Returns the responses of a step and of the step back; after a fault of the axis, twice the one with the fault.
+    `noise`: of the measured position, peak to peak [u]."""
+    grain = max(SETTLED / 2, 2 * noise / abs(distance))  # smaller oscillations are encoder and converter noise
     tolerance = max(abs(distance) * SETTLED / 8, noise)
     there = _one_way(session, axis, distance, watch_s, tolerance)
     if there.error:
@@ -127,7 +131,7 @@ def there_and_back(
     if back.error:
         only = back.figures(0.0, grain)
         return only, only
-    # What holds it to one side on both ways is no overshoot; what carries it too far on both ways is.
+    # An offset to the same side in both directions is a bias; one beyond the target in both directions is overshoot.
     bias = (there.beyond - back.beyond) / 2
     return there.figures(bias, grain), back.figures(-bias, grain)
 
@@ -144,7 +148,7 @@ class _OneWay:
         return float(np.mean(self.response[-max(1, len(self.response) // 20) :])) - 1
 
     def figures(self, bias: float, grain: float) -> StepResponse:
-        # Beside a bias of a whole step there is no response to speak of.
+        # With a bias near a whole step the response would be meaningless.
         bias = min(max(bias, self.start - 0.9), self.start + 0.9)
         return analyse(self.time_s, self.response, start=self.start, bias=bias, grain=grain, error=self.error)
 
@@ -171,7 +175,8 @@ def _one_way(session: Session, axis: Axis, distance: float, watch_s: float, tole
 
 
 def come_to_rest(session: Session, axis: Axis, watch_s: float, tolerance: float) -> None:
-    """Lets time pass until the axis rests within `tolerance` [u], or falls into a fault."""
+    """Lets engine time pass until the axis is at rest within `tolerance` [u] or has a fault, at most LONGEST times
+    `watch_s` [s]."""
     errors: deque[float] = deque(maxlen=STILL)
     for i in range(1, LONGEST * SLICES + 1):
         session.run(max(watch_s / SLICES, session.period))
@@ -181,7 +186,7 @@ def come_to_rest(session: Session, axis: Axis, watch_s: float, tolerance: float)
 
 
 def relative(axis: Axis, difference: Any) -> Any:
-    """A difference of positions; rotary axes: the shorter way round."""
+    """Returns a difference of positions; of a rotary axis, the shorter one around the turn."""
     if not axis.rotary:
         return difference
     turn = axis.parameters["modulus"]

@@ -1,6 +1,6 @@
 """The tuning of position loops by the procedure of the GT-775x manual (its chapter 5.5): Kd is doubled until the axis
-rings and then found by halving, Kp likewise until it overshoots, then Ki takes away what is left at rest. Feed-forward
-is off meanwhile, so that the loop alone answers.
+rings and then found by halving, Kp likewise until it overshoots, then Ki removes the remaining deviation at rest.
+Feedforward is off meanwhile, so that the response is that of the loop alone.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ __all__ = ["StepResponse", "Tuning", "analyse", "picture", "step_response", "tun
 
 HALVINGS = 5
 FIRST_KD, MOST_KD = 0.001, 4.0
-MOST_KP = 1.0  # all of the error within one cycle
-MARGIN = 2.0  # all gains may become so many times larger before it rings
+MOST_KP = 1.0  # corrects the whole deviation within one cycle
+MARGIN = 2.0  # factor of all gains up to which the axis must not ring
 LEFT = SETTLED / 4  # share of the step that may be missing at rest
-MOST_LEFT = 0.1  # with more than that it is no answer
+MOST_LEFT = 0.1  # with more, the tuning has failed
 SMALLER = 0.8
-VERIFICATIONS = 3  # of the answer
+VERIFICATIONS = 3  # steps with the final gains
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,9 @@ class Tuning:
     axis: str
     gains: Mapping[str, float]  # kp, ki, kd
     before: StepResponse
-    after: StepResponse  # the worst of some
-    steps: int  # that were tried
-    remark: str = ""  # what could not be had
+    after: StepResponse  # the worst of several
+    steps: int  # number of trials
+    remark: str = ""  # what could not be achieved
 
     @property
     def yaml(self) -> str:
@@ -54,10 +54,16 @@ def tune(
     *,
     keep: bool = False,
 ) -> Tuning:
-    """Finds kp, ki and kd of a loop that is closed by the engine, with steps of `distance` [u] on one side of where the
-    axis stands. However it ends, the axis stays powered where it stood, with the supervision and the gains that it had;
-    with `keep` a success leaves it with the new ones. Raises TaktError, with the reason in one sentence, where the axis
-    cannot be tuned as it is or no gains damp it."""
+    """Finds kp, ki and kd of a position loop that the engine closes. Returns them with the responses before and after.
+
+    distance: length of the steps [u]; its sign is the preferred side of the current position.
+    watch_s: shortest watch time of a step [s].
+    say: called with a sentence for each trial.
+    keep: sets the new gains after a success.
+
+    In any case the axis ends powered at its initial position with its former supervision and, unless kept, its former
+    gains. Raises TaktError, with the reason in one sentence, if the axis cannot be tuned or no gains damp it.
+    """
     with Bench(session, axis, distance, watch_s, say) as bench:
         before = bench.step(bench.found)
         gains = _with_damping(bench, _least(bench))
@@ -93,7 +99,7 @@ def _remark(bench: Bench, after: StepResponse) -> str:
 
 
 def _least(bench: Bench) -> dict[str, float]:
-    """Gains with a kp that is small, but moves the axis: half of the last that is damped, by doubling."""
+    """Returns gains with a small kp that still moves the axis: half of the largest damped one, found by doubling."""
     gains = {**NO_GAINS, "kp": bench.base_kp}
     while not damped(response := bench.step(gains)):
         gains["kp"] /= 2
@@ -106,8 +112,8 @@ def _least(bench: Bench) -> dict[str, float]:
 
 
 def _with_damping(bench: Bench, gains: Mapping[str, float]) -> dict[str, float]:
-    """Half the largest kd with which it does not ring (at the edge it rings a little), and the largest kp that is
-    damped with it; where so much kd overshoots alone, less of it."""
+    """Returns gains with half the largest kd without ringing (at the limit it rings slightly), and the largest kp that
+    is damped with it; with less kd if that much overshoots by itself."""
     kd = _largest(FIRST_KD, lambda kd: steady(bench.step({**gains, "kd": kd})), MOST_KD)
     while kd > FIRST_KD / 2:
         kd /= 2
@@ -118,7 +124,7 @@ def _with_damping(bench: Bench, gains: Mapping[str, float]) -> dict[str, float]:
 
 
 def _with_margin(bench: Bench, gains: Mapping[str, float]) -> dict[str, float]:
-    """As much less of all gains as it takes until they are far from ringing."""
+    """Reduces all gains until they do not ring even when multiplied by MARGIN."""
     less = dict(gains)
     while not steady(bench.step(_scaled(less, MARGIN))):
         less = _scaled(less, SMALLER)
@@ -128,7 +134,7 @@ def _with_margin(bench: Bench, gains: Mapping[str, float]) -> dict[str, float]:
 
 
 def _verified(bench: Bench, gains: Mapping[str, float]) -> tuple[dict[str, float], StepResponse]:
-    """These gains, or with a smaller kp (friction and play make the edge uncertain), and the worst of their
+    """Returns these gains, or a smaller kp (friction and play make the limit uncertain), and the worst of their
     responses."""
     tried = dict(gains)
     while True:
@@ -143,8 +149,8 @@ def _verified(bench: Bench, gains: Mapping[str, float]) -> tuple[dict[str, float
 def _with_integral(
     bench: Bench, gains: Mapping[str, float], without: StepResponse
 ) -> tuple[dict[str, float], StepResponse]:
-    """The smallest ki, by doubling, that takes away what is left at rest, or else the one that leaves least, without
-    overshoot. The integral's time is from 1000 to 4 times the loop's own."""
+    """Returns gains with the smallest ki, by doubling, that removes the deviation at rest without overshoot, or else
+    the ki with the least deviation. The integral time is from 1000 to 4 times that of the loop."""
     best, after = dict(gains), without
     ki = gains["kp"] ** 2 / 1000
     while ki < gains["kp"] ** 2 / 4 and abs(after.rest) > LEFT:
@@ -163,7 +169,7 @@ def _scaled(gains: Mapping[str, float], factor: float) -> dict[str, float]:
 
 
 def _largest(first: float, good: Callable[[float], bool], most: float) -> float:
-    """By doubling, then halving the interval: the largest value up to `most` that is good; 0: none."""
+    """Returns the largest good value up to `most`, by doubling and then halving the interval; 0 if there is none."""
     low, high = 0.0, first
     while high < most and good(high):
         low, high = high, min(2 * high, most)
@@ -174,7 +180,7 @@ def _largest(first: float, good: Callable[[float], bool], most: float) -> float:
 
 
 def picture(tuning: Tuning, path: Path) -> Path:
-    """Both step responses, one above the other, with their figures."""
+    """Draws both step responses, one above the other, with their values, and writes the picture. Returns the path."""
     from matplotlib.figure import Figure
 
     from takt import style
@@ -194,7 +200,7 @@ def picture(tuning: Tuning, path: Path) -> Path:
         ax.set_title(f"{title}: {step.text}", loc="left", fontsize=10)
         ax.set_ylabel("share of the step")
         ax.grid(alpha=0.3)
-    axes[0].set_ylim(max(lowest, -1.0) - 0.1, min(highest, 2.0) + 0.1)  # one that runs away leaves the picture
+    axes[0].set_ylim(max(lowest, -1.0) - 0.1, min(highest, 2.0) + 0.1)  # an unstable response leaves the picture
     axes[0].set_xlim(0, 1000 * _shown_s(tuning))
     axes[1].set_xlabel("time [ms]")
     figure.suptitle(f"{tuning.axis}: {tuning.yaml}", fontweight="bold")
@@ -202,7 +208,7 @@ def picture(tuning: Tuning, path: Path) -> Path:
 
 
 def _shown_s(tuning: Tuning) -> float:
-    """Until both have settled, and a little longer; all of one that never does."""
+    """Returns the time shown: a little longer than both settling times; the whole response if it never settles."""
     ends = []
     for step in (tuning.before, tuning.after):
         whole = float(step.time_s[-1])

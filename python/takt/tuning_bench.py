@@ -1,4 +1,4 @@
-"""An axis while its position loop is tuned: looked over first, kept near where it stands, and left as it was found."""
+"""An axis under tuning: it is checked first, kept near its initial position, and restored afterwards."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from takt.step_response import SETTLED, StepResponse, come_to_rest, relative, th
 GAINS = ("kp", "ki", "kd")
 NO_GAINS = dict.fromkeys(GAINS, 0.0)
 CRITICAL = 1.0  # % of overshoot that still counts as critically damped
-RINGS = 3  # turning points of the band's size after the arrival
-HUMS = 8  # smaller turning points in the second half, where it should rest
-LEAST_COUNTS = 100  # of a step: 1 % of overshoot is a count
+RINGS = 3  # turning points larger than the band from which on it rings
+HUMS = 8  # smaller turning points in the second half, in which it should be at rest
+LEAST_COUNTS = 100  # of a step: 1 % of overshoot is one count
 MOST_NOISE = 0.01  # share of the step, peak to peak
-GUARD = 3.0  # steps between set point and axis at which the engine opens the loop
-FEED = 0.5  # share of a step that is fed forward to see which way the axis moves
-DEVIATION, ENCODER = 2001, 3001  # error numbers that ringing leads to: too far off, too fast for the encoder
-ROOM = 1.0  # steps of room behind the start and beyond the target
-LOOK_S = 0.05  # s to look at what the axis does without a set point
-LEAST_SPEED_GAIN = 5.0  # 1/s, where the search begins
-AS_GOOD_AS_NONE = 1e9  # u
-MOST_DRIFT = 5.0  # steps per s that the axis may run with nothing commanded
+GUARD = 3.0  # following error, in steps, at which the engine opens the loop
+FEED = 0.5  # share of a step that is fed forward to find the direction of motion
+DEVIATION, ENCODER = 2001, 3001  # errors caused by ringing: following error, too fast for the encoder
+ROOM = 1.0  # steps of clearance behind the start and beyond the target
+LOOK_S = 0.05  # s of observation without a set point
+LEAST_SPEED_GAIN = 5.0  # 1/s, start of the search
+AS_GOOD_AS_NONE = 1e9  # u, stands for no limit
+MOST_DRIFT = 5.0  # largest drift without a command, in steps per s
 
 # Numbers of parameters: of PLCopen, and of Takt.
 LIMIT_POSITIVE, LIMIT_NEGATIVE, LIMIT_POSITIVE_ON, LIMIT_NEGATIVE_ON, LAG_ON, LAG = 2, 3, 4, 5, 6, 7
@@ -41,7 +41,7 @@ def damped(response: StepResponse) -> bool:
 
 
 def steady(response: StepResponse) -> bool:
-    """It does not ring."""
+    """Returns whether the response neither rings nor hums, without a fault."""
     return not response.error and response.turns < RINGS and response.hum < HUMS
 
 
@@ -53,10 +53,10 @@ def worse(one: StepResponse, other: StepResponse) -> StepResponse:
 
 
 class Bench:
-    """Entered, it has looked the axis over and holds its supervision as wide as steps of `distance` [u] need; left, for
-    whatever reason, the axis has the gains, the supervision and the place that it had, and is powered.
+    """A context for tuning an axis. On entry it checks the axis and widens its supervision for steps of `distance`
+    [u]; on exit, for any reason, the axis has its former gains, supervision and position, and is powered.
 
-    Raises TaktError, with the axis untouched or as found, where it cannot be tuned."""
+    Raises TaktError, with the axis unchanged or restored, if it cannot be tuned."""
 
     def __init__(
         self, session: Session, axis: Axis, distance: float, watch_s: float, say: Callable[[str], object]
@@ -65,19 +65,19 @@ class Bench:
         self.name = axis.name
         self._check_axis(distance)
         self.distance = self._with_room(distance)
-        self.steps = 0  # that were made
-        self.base_kp = LEAST_SPEED_GAIN * session.period  # a gain to begin with
+        self.steps = 0  # number of steps made
+        self.base_kp = LEAST_SPEED_GAIN * session.period  # initial gain
         self.found = {name: self._read(number) for name, number in zip(GAINS, (KP, KI, KD), strict=True)}
         self._ff = self._read(FF)
         self._lag, self._lag_at_rest, self._lag_on = self._read(LAG), self._read(LAG_AT_REST), self._read(LAG_ON)
         self._origin = axis.set_position
-        self._safe: Mapping[str, float] = self.found  # those that held it best
+        self._safe: Mapping[str, float] = self.found  # gains with the least deviation so far
         self._safe_rest = math.inf  # share of a step
         self._homed = axis.homed
         self.period_s = self.sampled_s = session.period  # s from one published sample to the next
         self._noise = 0.0  # u, peak to peak
         self._backwards = False
-        self._unruly = False  # with the gains it was found with it rings on and on
+        self._unruly = False  # it rings permanently with its former gains
 
     def __enter__(self) -> Bench:
         try:
@@ -97,7 +97,8 @@ class Bench:
         self._restore()
 
     def step(self, gains: Mapping[str, float]) -> StepResponse:
-        """The worse of a step there and one back with these gains, without feed-forward."""
+        """Makes a step and a step back with these gains, without feedforward. Returns the worse response. Raises
+        TaktError if the axis fails for reasons other than ringing."""
         self.steps += 1
         try:
             self._go_home()
@@ -122,7 +123,7 @@ class Bench:
     def reference_lost(self) -> bool:
         return self._homed and not self._axis.homed
 
-    # --- looking the axis over ---
+    # --- checking the axis ---
 
     def _check_axis(self, distance: float) -> None:
         axis, name = self._axis, self.name
@@ -146,7 +147,8 @@ class Bench:
             raise TaktError(f"{name}: steps of {distance:g} {axis.unit} are too large a part of a turn")
 
     def _with_room(self, distance: float) -> float:
-        """The distance, or the other way round where only there is room between the SW limits."""
+        """Returns the distance, or its negative if only that fits between the SW limits. Raises TaktError if neither
+        does."""
         axis, size = self._axis, abs(distance)
         lower = self._read(LIMIT_NEGATIVE) if self._read(LIMIT_NEGATIVE_ON) else -math.inf
         upper = self._read(LIMIT_POSITIVE) if self._read(LIMIT_POSITIVE_ON) else math.inf
@@ -166,7 +168,7 @@ class Bench:
         is fed forward, which no wrong sense can make run away."""
         axis, size = self._axis, abs(self.distance)
         self._set(NO_GAINS)
-        self._watch_idle()  # what was swinging comes to rest
+        self._watch_idle()  # lets oscillations decay
         drift, self._noise = self._watch_idle()
         if abs(drift) > MOST_DRIFT * size:
             raise TaktError(
@@ -193,7 +195,7 @@ class Bench:
             )
 
     def _watch_idle(self) -> tuple[float, float]:
-        """How fast the axis drifts [u/s], and how much its measured position trembles [u]."""
+        """Returns the drift of the axis [u/s] and the noise of its measured position, peak to peak [u]."""
         axis, session = self._axis, self._session
         begin = axis.actual_position
         start_s = session.now
@@ -213,14 +215,14 @@ class Bench:
         return drift, float(np.ptp(places - np.polyval(np.polyfit(time_s, places, 2), time_s)))
 
     def _feed(self, distance: float, drift: float) -> float:
-        """How far the axis moves when a step is fed forward only."""
+        """Returns the displacement [u] of the axis, less its drift, when a step is fed forward only."""
         axis, session = self._axis, self._session
         start, begin = axis.actual_position, session.now
         if not axis.error:
             session.run(axis.move_relative(distance=distance).wait(until="active").travel_time_s + self._watch_s / 5)
         return float(relative(axis, axis.actual_position - start)) - drift * (session.now - begin)
 
-    # --- working with it ---
+    # --- steps and restoring ---
 
     def _rest(self) -> None:
         come_to_rest(
@@ -228,7 +230,7 @@ class Bench:
         )
 
     def _go_home(self) -> None:
-        """To where it was found, powered, whatever happened; with gains that hold it."""
+        """Moves the powered axis to its initial position, with gains that hold it; resets faults first."""
         axis = self._axis
         if axis.error:
             rang = axis.error in (DEVIATION, ENCODER)
@@ -247,16 +249,17 @@ class Bench:
             raise TaktError(f"{self.name}: it was switched off meanwhile")
 
     def _restore(self) -> None:
-        """As far as the axis lets it: what goes wrong on the way home does not keep the rest from being put back."""
+        """Restores the axis as far as possible: errors on the way to the initial position do not keep the parameters
+        from being restored."""
         axis = self._axis
-        powered = axis.powered or axis.error in (DEVIATION, ENCODER)  # not switched off by others
+        powered = axis.powered or axis.error in (DEVIATION, ENCODER)  # not switched off by another client
         longest_s = axis.parameters["supervision"]["in_position_timeout_s"] + 1
         try:
             with suppress(TaktError):
                 if not self._backwards:
                     self._go_home()
                     self._session.wait(lambda: axis.state.value != "DiscreteMotion", longest_s)
-                if self._backwards or self._unruly or self._is_far_out():  # what any error would set off: without one
+                if self._backwards or self._unruly or self._is_far_out():  # off, before the supervision trips
                     axis.power(enable=False).wait()
         finally:
             self._set(self.found, self._ff)
