@@ -1,5 +1,5 @@
-"""Single values of a machine file changed for a run: `takt.Engine(machine, changes={"axes.x.limits.velocity": 300})`,
-`takt run --set` and `takt sweep`. The text is edited where the values stand, so that all else, places included, stays.
+"""Changes single values of a machine file for a run: `takt.Engine(machine, changes={"axes.x.limits.velocity": 300})`,
+`takt run --set` and `takt sweep`. Only the values in the text are replaced; the rest, line numbers included, is kept.
 """
 
 from __future__ import annotations
@@ -14,22 +14,22 @@ from takt import _core
 from takt.errors import ConfigError
 from takt.yaml_text import compose, to_json
 
-NAMES = ("name", "axis")  # what elements of lists go by
+NAMES = ("name", "axis")  # keys that name elements of lists
 MARK = "__takt_change_{}__"
 
 Value = bool | int | float | str
 
 
 def changed(text: bytes, file_name: str, changes: Mapping[str, Value]) -> bytes:
-    """The text of a machine file with other values. Keys are paths: "axes.x.limits.velocity", elements of lists by
-    their name, by the axis that they belong to, or by number from 0. A key that is not there is added, and judged like
-    any other."""
+    """Returns the text of a machine file with other values. Keys of `changes` are paths: "axes.x.limits.velocity", with
+    elements of lists by their name, by the axis that they belong to, or by number from 0. A missing key is added, and
+    checked like any other. Raises ConfigError if a path does not exist or a value cannot be changed."""
     if not changes:
         return text
     try:
         parts = _parts(text.decode(), file_name, tuple(changes))
     except (UnicodeDecodeError, yaml.YAMLError) as error:
-        _core.load_machine(text, file_name)  # says what is wrong with it, and where
+        _core.load_machine(text, file_name)  # raises ConfigError with the reason and the line
         raise ConfigError([f"{file_name}: values cannot be changed in this text: {error}"]) from None
     values = [to_json(value) for value in changes.values()]
     return "".join(part if isinstance(part, str) else values[part] for part in parts).encode()
@@ -37,7 +37,7 @@ def changed(text: bytes, file_name: str, changes: Mapping[str, Value]) -> bytes:
 
 @functools.lru_cache(maxsize=8)
 def _parts(text: str, file_name: str, paths: tuple[str, ...]) -> tuple[str | int, ...]:
-    """The text around the values, and the numbers of these."""
+    """Returns the parts of the text around the values, with the numbers of the values between them."""
     for number, path in enumerate(paths):
         text = _edited(text, file_name, path, MARK.format(number))
         for before in range(number):
@@ -78,8 +78,8 @@ def _edited(text: str, file_name: str, path: str, value: str) -> str:
 
 
 def _element(node: yaml.SequenceNode, file_name: str, keys: list[str], depth: int) -> tuple[yaml.Node, int]:
-    """The element of a list that the keys from `depth` on name, and the depth behind its name. Names may have dots;
-    the longest one counts."""
+    """Returns the element of a list named by the keys from `depth` on, and the depth after its name. Names may have
+    dots; the longest match counts."""
     named: dict[str, yaml.Node] = {}
     for one in node.value:
         pairs = one.value if isinstance(one, yaml.MappingNode) else ()
@@ -120,7 +120,7 @@ def _replaced(text: str, node: yaml.Node, new: str) -> str:
 
 
 def value_of(text: str) -> Value:
-    """A value as it is given on a command line: numbers, true and false, else a text."""
+    """Returns a value from its text on a command line: a number, true or false, else a text."""
     if text in ("true", "false"):
         return text == "true"
     for kind in (int, float):
@@ -134,7 +134,7 @@ def value_of(text: str) -> Value:
 
 
 def text_of(value: Any) -> str:
-    """The same the other way round: exactly this value again."""
+    """Returns the text from which `value_of` makes exactly this value."""
     if isinstance(value, bool):
         return "true" if value else "false"
     return repr(value) if isinstance(value, float) else str(value)

@@ -1,4 +1,4 @@
-"""Rows of a CSV file with a head, or a sentence."""
+"""Reads the rows of a CSV file with a header; errors are one sentence."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ Fields = dict[str, str | None]
 
 
 class Rows(NamedTuple):
-    """The names in the head, and the fields of each row by name with the number of its line. Fields that a row lacks
-    are None; empty ones that it has too many stand under ""."""
+    """The names in the header, and the fields of each row by name with its line number. Missing fields of a row are
+    None; surplus empty fields have the name ""."""
 
     head: Sequence[str]
     rows: list[tuple[int, Fields]]
@@ -28,12 +28,12 @@ DECIMAL_COMMA = re.compile(r"\s*[-+]?[0-9]*,[0-9]+([eE][-+]?[0-9]+)?\s*")
 
 
 def _delimiter(head: str) -> str:
-    """What stands between the fields of a table with this head."""
+    """Returns the separator of the fields of a table with this header."""
     return next((one for one in ",;\t" if one in head), ",")
 
 
 def _with_points(row: Fields) -> Fields:
-    """The same with decimal points."""
+    """Returns the row with decimal points instead of decimal commas."""
     return {
         name: text.replace(",", ".") if isinstance(text, str) and DECIMAL_COMMA.fullmatch(text) else text
         for name, text in row.items()
@@ -41,14 +41,14 @@ def _with_points(row: Fields) -> Fields:
 
 
 def surplus(fields: Sequence[str], expected: int) -> str:
-    """Returns the sentence for a row that has more fields than the head; "" if it has not, or if those are empty."""
+    """Returns the sentence for a row with more fields than the header; "" if it has none, or they are empty."""
     return f"expected {expected} fields as in the head, found {len(fields)}" if any(fields[expected:]) else ""
 
 
 def read_rows(file: str | os.PathLike[str], error: type[TaktError]) -> Rows:
-    """Reads the file: commas between the fields or, where the head has none, semicolons or tabulators; numbers between
-    these may have a decimal comma. Raises `error` where it is no CSV in UTF-8, the head has a column twice or a
-    row has more fields than the head, OSError where it cannot be read."""
+    """Returns the rows of a file. Fields are separated by commas or, if the header has none, by semicolons or tabs;
+    numbers may then have a decimal comma. Raises `error` if the file is not CSV in UTF-8, the header has a column twice
+    or a row has more fields than the header, OSError if the file cannot be read."""
     with Path(file).open(encoding="utf-8-sig", newline="") as source:
         try:
             text = io.StringIO(source.read(), newline="")
@@ -60,7 +60,7 @@ def read_rows(file: str | os.PathLike[str], error: type[TaktError]) -> Rows:
                 if title and count > 1:
                     raise error(f"{os.fspath(file)}:{table.line_num}: the head has the column {shortened(title)} twice")
             for row in table:
-                more: Any = row.get("")  # text where the head ends in a comma
+                more: Any = row.get("")  # text if the header ends in a comma
                 if isinstance(more, list) and (sentence := surplus([*head, *more], len(head))):
                     raise error(f"{os.fspath(file)}:{table.line_num}: {sentence}")
                 rows.append((table.line_num, row if delimiter == "," else _with_points(row)))
@@ -69,5 +69,5 @@ def read_rows(file: str | os.PathLike[str], error: type[TaktError]) -> Rows:
             raise error(
                 f"{os.fspath(file)}: expected text in UTF-8, found the byte 0x{wrong.object[wrong.start]:02x}"
             ) from None
-        except csv.Error as wrong:  # a quotation mark that nothing ends, a field of megabytes
+        except csv.Error as wrong:  # an unterminated quotation mark, a field of megabytes
             raise error(f"{os.fspath(file)}:{table.reader.line_num}: is no CSV: {wrong}") from None

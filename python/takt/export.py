@@ -40,13 +40,14 @@ LOG = {
 
 
 class ExportError(TaktError):
-    """Something cannot be written as wanted."""
+    """A recording cannot be exported as requested."""
 
 
 def write(
     recording: Recording, targets: Sequence[Path], signals: Sequence[str], start: float | None, end: float | None
 ) -> Iterator[str]:
-    """Writes the part that is asked for into files, by the ends of their names, and says what is in each."""
+    """Writes a part of a recording into files, in the formats of their suffixes (.mcap, .parquet, else CSV). Yields a
+    sentence about missing data and about each file."""
     chosen = part(recording, signals, start, end)
     yield from troubles(chosen)
     for target in targets:
@@ -60,19 +61,19 @@ def write(
 
 
 def part(recording: Recording, signals: Sequence[str], start: float | None, end: float | None) -> Recording:
-    """Only these signals, as `takt plot` names them, or all; only from `start` to `end`, s, where they are given."""
+    """Returns these signals, as in `takt plot`, or all, from `start` to `end` [s] (None: no bound)."""
     chosen = recording.pick(plot.select(recording, signals)) if signals else recording
     return chosen.between(start, end)
 
 
 def rates(recording: Recording) -> dict[str, float]:
-    """Samples a second of each component that has two or more, as they are met most often."""
+    """Returns the sample rate [Hz] of each component with at least two samples, by the median period."""
     tables = {name: recording[name]["time_s"] for name in recording}
     return {name: 1.0 / float(np.median(np.diff(time_s))) for name, time_s in tables.items() if len(time_s) > 1}
 
 
 def words_on_rates(recording: Recording) -> str:
-    """How the components stand in one table, in words."""
+    """Returns a sentence about the rows of a table of all components."""
     known = {name: round(rate, 3) for name, rate in rates(recording).items()}
     if len(set(known.values())) < 2:
         return "a row for each cycle that was recorded"
@@ -81,11 +82,15 @@ def words_on_rates(recording: Recording) -> str:
 
 
 def to_mcap(recording: Recording, path: Path, scene: bool = True) -> int:
-    """Writes MCAP and says how many messages: a channel of JSON for each component, named like it, and one for the
-    events. Log times are engine time in ns. Units stand in the descriptions of the schemas; enumerations are texts;
-    what is no number is left out, as JSON does not know it. The machine file is attached. `scene`: what can be seen of
-    it is there, too, and how it moved (/scene, /tf). Needs the package mcap. Raises ExportError, and writes nothing,
-    where a time is below 0 or too large for MCAP."""
+    """Writes a recording as MCAP and returns the number of messages: a JSON channel for each component, with its name,
+    and one for the events. Log times are engine time [ns]. Units are in the descriptions of the schemas, enumerations
+    are texts, and NaN is left out, as JSON has no NaN. The machine file is attached.
+
+    scene: also writes the geometry of the machine and its motion (/scene, /tf).
+
+    Raises ExportError, and writes nothing, if the package mcap is not installed, or a time is negative or too large for
+    MCAP.
+    """
     try:
         from mcap.writer import Writer
     except ImportError:
@@ -107,7 +112,7 @@ def to_mcap(recording: Recording, path: Path, scene: bool = True) -> int:
 
 
 def _check_times(recording: Recording) -> None:
-    """Raises ExportError where a time is none that MCAP can hold."""
+    """Raises ExportError if MCAP cannot represent a time."""
     times = [*(recording[name]["time_s"] for name in recording), [event.time_s for event in recording.events]]
     for time_s in map(np.asarray, times):
         wrong = time_s[~((time_s > -0.5e-9) & (time_s < LATEST_S))]  # in whole ns
@@ -122,7 +127,7 @@ Message = tuple[int, int, bytes]
 
 
 def sorted_by_time(streams: Sequence[tuple[Array, int, Iterator[bytes]]]) -> Iterator[Message]:
-    """Messages of all streams (times in ns, channel, data) in the order of time."""
+    """Yields the messages of all streams (times [ns], channel, data) in the order of time."""
     times = np.concatenate([times for times, _, _ in streams])
     which = np.concatenate([np.full(len(times), i) for i, (times, _, _) in enumerate(streams)])
     for row in np.argsort(times, kind="stable").tolist():
@@ -184,7 +189,7 @@ def _events(writer: Any, recording: Recording) -> tuple[Array, int, Iterator[byt
 
 
 def _scene(writer: Any, recording: Recording) -> list[tuple[Array, int, Iterator[bytes]]]:
-    """None of recordings that do not know their machine."""
+    """Returns the streams of the scene; empty for recordings without their machine."""
     from takt.report.scene import machine_of  # reports need this module
     from takt.scene.foxglove import streams_of
 
@@ -199,7 +204,7 @@ def _scene(writer: Any, recording: Recording) -> list[tuple[Array, int, Iterator
 
 
 def _about(writer: Any, recording: Recording) -> None:
-    """Where it comes from, for people."""
+    """Writes the origin of the recording as metadata, and attaches the machine file."""
     plain = {name: str(v) for name, v in recording.meta.items() if isinstance(v, (str, int, float)) and v != ""}
     writer.add_metadata("takt", plain)
     if file := recording.meta.get("machine_file"):

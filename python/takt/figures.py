@@ -1,4 +1,4 @@
-"""What an engine says of itself, in words: on the terminal, in reports and in the live page."""
+"""The engine's own counters and times as text, for the terminal, reports and the live page."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from takt import msgs
 from takt.counted import counted
 from takt.tables import fields_of
 
-# Counts that should stay 0: what they are called, and what they count.
+# Counters that should stay 0: their names for display, and their meanings.
 COUNTS = {
     "overruns": ("overruns", "Cycles that ended after the next one should have begun"),
     "cycles_skipped": ("cycles left out", "Periods that passed without a cycle because one before them came too late"),
@@ -33,7 +33,7 @@ COUNTS = {
     "replies_dropped": ("replies dropped", "Too many waited"),
     "planner_failures": ("plans failed", "The motion in progress was kept"),
 }
-# Of these what the engine had no room for: what they are called, one and many.
+# Those of them that count dropped messages: their names, singular and plural.
 DROPPED = {
     "snapshots_dropped": ("state", "states"),
     "feedback_dropped": ("feedback", "feedbacks"),
@@ -43,11 +43,11 @@ DROPPED = {
     "send_failures": ("message that was not taken", "messages that were not taken"),
 }
 TIMES = {"execution": "execution of a cycle", "latency": "wake-up latency"}
-ALWAYS = ("overruns", "commands_refused", "snapshots_dropped", "feedback_dropped")  # said, be they 0 or not
+ALWAYS = ("overruns", "commands_refused", "snapshots_dropped", "feedback_dropped")  # shown even if 0
 
 
 def figures_of(state: msgs.engine_state) -> dict[str, Any]:
-    """All that an engine says of itself, as plain values."""
+    """Returns the engine's own counters and histograms as plain values."""
     plain = fields_of(state)
     plain["state_hash"] &= 2**64 - 1  # LCM has no unsigned numbers
     for name in ("execution", "latency"):
@@ -57,7 +57,7 @@ def figures_of(state: msgs.engine_state) -> dict[str, Any]:
 
 
 def in_words(figures: Mapping[str, Any]) -> dict[str, Any]:
-    """Rows of a name and a text. Figures that are none of an engine's stay as they are."""
+    """Returns texts by name for display. Figures of other origin than an engine are returned unchanged."""
     if not figures.keys() >= {"cycle", "commands_applied", *ALWAYS}:
         return dict(figures)
     rows = {"cycles": f"{figures['cycle']:,}", "overruns": f"{figures['overruns']:,}"}
@@ -77,8 +77,8 @@ def in_words(figures: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def quantile(histogram: Mapping[str, Any], share: float) -> float:
-    """ns below which so many of the counted times lie, the longest at most; bucket i holds those in [2^i, 2^(i+1)), the
-    last one all above."""
+    """Returns the time [ns] below which this share of the counted times is, at most the longest. Bucket i counts times
+    in [2^i, 2^(i+1)), the last one all larger ones."""
     wanted = share * histogram["count"]
     longest = float(histogram["max"])
     for i, count in enumerate(histogram["buckets"][:-1]):

@@ -1,5 +1,5 @@
-"""A machine as an environment of gymnasium, for those who learn or search (PY-23): axes are to be brought to places
-that are drawn at random. It trains nothing; it is an example of how an environment is made of an engine.
+"""A machine as a gymnasium environment, for learning and search (PY-23): axes are to reach randomly drawn positions. It
+trains nothing; it is an example of an environment made from an engine.
 
 env = takt.gym.ReachEnv("machine.yaml", ["x", "y"])
 
@@ -26,24 +26,27 @@ except ImportError:
 
 Floats = npt.NDArray[np.float32]
 
-MOST = 2.0  # of a position or a speed, as shares of range and limit: what is observed stays within
+MOST = 2.0  # bound of observed positions and velocities, relative to half the range and to the limit
 
 
 class ReachEnv(gymnasium.Env[Floats, Floats]):
-    """Axes that are to reach places.
+    """An environment in which axes are to reach target positions.
 
-    An action says where each axis is to go until the next one, as a share of its range from -1 to 1. Observed are, for
-    each axis, its position and the place to be reached as such shares, and its velocity as a share of its limit. The
-    reward of a step is minus the mean distance, in shares; an episode ends when all are there at rest. A move that is
-    refused or fails raises CommandError.
+    An action is the position to which each axis moves until the next action, scaled to -1 to 1 over its range. The
+    observation has the actual positions and velocities of all axes and their targets: positions on the same scale,
+    velocities relative to their limits. The reward of a step is the negative mean distance; an episode ends when all
+    axes are at their targets at rest. A move that is refused or fails raises CommandError.
 
-    machine: as takt.Engine takes it.
+    machine: as for takt.Engine.
     axes: names.
     ranges: by axis, lowest and highest position, within its SW limits; of a rotary axis from 0 to below its modulus;
-        unset: the SW limits of the axis.
-    step_s: s of engine time from one action to the next.
-    episode_s: s of engine time after which an episode is broken off.
-    within: share of the range at which a place is reached.
+        without an entry: the SW limits of the axis.
+    step_s: engine time [s] from one action to the next.
+    episode_s: engine time [s] after which an episode is truncated.
+    within: tolerance of a reached target, relative to half the range; also the velocity that counts as rest, relative
+        to its limit.
+
+    Raises TaktError if an argument is wrong.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012 (as gymnasium declares it)
@@ -96,7 +99,7 @@ class ReachEnv(gymnasium.Env[Floats, Floats]):
 
     @property
     def engine(self) -> Engine:
-        """That of the episode."""
+        """The engine of the current episode."""
         return self._engine
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
@@ -141,8 +144,8 @@ class ReachEnv(gymnasium.Env[Floats, Floats]):
 
 
 def _refuse_unreachable(axis: Mapping[str, Any], lower: float, upper: float) -> None:
-    """Raises TaktError where a range is not within the SW limits of an axis, or, of a rotary axis, not within 0 to
-    below its modulus."""
+    """Raises TaktError if a range is not within the SW limits of an axis or, for a rotary axis, not within 0 to below
+    its modulus."""
     limits, found = axis["limits"], f"found {lower:g} to {upper:g}"
     least, most = limits.get("lower", -np.inf), limits.get("upper", np.inf)
     if axis["kind"] == "rotary" and not 0 <= lower < upper < axis["modulus"]:

@@ -1,4 +1,4 @@
-"""Whether a function judges anything: a `verify` without an assertion passes whatever the motion was."""
+"""Finds whether a function asserts anything: a `verify` without an assertion would pass for any motion."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from typing import Any
 
 
 def asserts(function: Callable[..., object], folder: Path) -> bool:
-    """Whether the function, or one of the folder's that it names, has a plain `assert` in it."""
+    """Returns whether the function, or a function of the folder that it refers to, directly or indirectly, contains a
+    plain `assert`."""
     folder = folder.resolve()
     waiting: list[Any] = [function]
     known: set[int] = set()
@@ -32,7 +33,7 @@ def asserts(function: Callable[..., object], folder: Path) -> bool:
 
 
 def _named(code: CodeType, names: Mapping[str, object]) -> Iterator[object]:
-    """What stands behind the names that it uses, those of modules included."""
+    """Yields the objects behind the names that the code uses, including those in modules."""
     for name in code.co_names:
         found = names.get(name)
         yield found
@@ -49,7 +50,7 @@ def _lies_in(function: FunctionType, folder: Path) -> bool:
 
 
 def _codes(code: CodeType) -> Iterator[CodeType]:
-    """Its own, and those of the functions inside."""
+    """Yields the code and that of the functions inside it."""
     yield code
     for constant in code.co_consts:
         if isinstance(constant, CodeType):

@@ -1,7 +1,7 @@
-"""The key that an engine, its clients and its drives share (EN-31); two while it is changed.
+"""The key that an engine, its clients and its drives share (EN-31); two keys during a change.
 
-With a key, messages that command, keep alive, drive or describe carry an authentication tag; those without a good one
-are counted and ignored. Tags are made and checked by Takt's core (`cpp/takt/lcm/authentication.h` says how).
+With a key, commands, heartbeats, messages of drives and descriptions carry an authentication tag; messages without a
+valid one are counted and ignored. Tags are made and checked by Takt's core (see `cpp/takt/lcm/authentication.h`).
 """
 
 from __future__ import annotations
@@ -27,28 +27,28 @@ KeyFile = str | os.PathLike[str]
 
 @dataclass(frozen=True)
 class Key:
-    """A key, and the name of the file it is from; where that holds two, the first tags what is sent, and both are
+    """A key and the name of its file. With two keys in the file, the first one tags sent messages, and both are
     accepted."""
 
     file: str
-    data: bytes = field(repr=False)  # one behind the other
+    data: bytes = field(repr=False)  # one or two keys, concatenated
 
     @property
     def changing(self) -> bool:
-        """The file holds two."""
+        """Whether the file holds two keys."""
         return len(self.data) > BYTES
 
 
 def read_key(file: KeyFile | None = None) -> Key | None:
-    """The key in this file, else in the one that the environment names (TAKT_KEY_FILE); None where neither is given,
-    or `file` is "". Raises KeyFileError, which says what is wrong with the file."""
+    """Returns the key in a file. `file`: None: the file named by the environment (TAKT_KEY_FILE). Returns None if none
+    is named or `file` is "". Raises KeyFileError if the file cannot be used."""
     name = os.fspath(file) if file is not None else os.environ.get(ENVIRONMENT, "")
     return Key(name, _core.read_keys(os.fsencode(name))) if name else None
 
 
 def new_key(file: KeyFile) -> None:
-    """Makes a key in a new file, which its owner alone may open. Raises KeyFileError where the file exists or cannot
-    be written."""
+    """Writes a new random key to a new file that only its owner may open. Raises KeyFileError if the file exists or
+    cannot be written."""
     name = os.fspath(file)
     try:
         number = os.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o600)
@@ -61,7 +61,7 @@ def new_key(file: KeyFile) -> None:
 
 
 def no_key(url: str) -> str:
-    """Why an engine with a key does not answer a client or drive without."""
+    """Returns why an engine with a key does not answer a client or drive without one."""
     return (
         f"the engine on {url} has a key and hears only holders of it: "
         f"name its key file (key=, --key, or {ENVIRONMENT} in the environment)"
@@ -69,7 +69,7 @@ def no_key(url: str) -> str:
 
 
 def not_the_key(url: str, key: Key, state: _core.TagState) -> str:
-    """Why a client or drive with this key does not hear an engine, by what its messages lack."""
+    """Returns why a client or drive with this key ignores the messages of an engine, by the state of their tags."""
     if state == _core.TagState.untagged:
         return (
             f"the engine on {url} has no key, but this side has one ({key.file}): "
@@ -81,7 +81,7 @@ def not_the_key(url: str, key: Key, state: _core.TagState) -> str:
 
 
 def first_key_not_taken(key: Key) -> str:
-    """Why an engine that is heard does not answer a client with two keys."""
+    """Returns why an engine that is heard does not answer a client with two keys."""
     return (
         f"it does not take the first key of {key.file}, which tags what is sent: "
         "start the engine with both keys, or put the other key first"
@@ -89,11 +89,11 @@ def first_key_not_taken(key: Key) -> str:
 
 
 class KeyedNetwork:
-    """A member of an LCM network that tags what it sends, and of tagged channels hears only messages with a good tag.
-    It has the methods of lcm.LCM that Takt uses; handlers get messages without their tags."""
+    """A member of an LCM network that tags sent messages and, on tagged channels, accepts only messages with a valid
+    tag. It has the methods of lcm.LCM that Takt uses; handlers receive messages without their tags."""
 
     def __init__(self, network: Any, key: Key, refused: Refused | None = None) -> None:
-        """refused: called with channel and reason of each message that is ignored, by the thread that handles."""
+        """refused: called with channel and reason of each ignored message, on the thread that handles messages."""
         self.refused: Counter[str] = Counter()  # messages, by reason
         self._network = network
         self._key = key
@@ -104,7 +104,7 @@ class KeyedNetwork:
         self._network.publish(channel, self._signer.sign(channel, data) if _core.is_tagged_channel(channel) else data)
 
     def subscribe(self, channels: str, handler: Handler) -> Any:
-        """As that of the network. Each subscription has a verifier of its own: it gets each message once."""
+        """As Network.subscribe. Each subscription has a verifier of its own, which sees each message once."""
         return self._network.subscribe(channels, partial(self._open, _core.Verifier(self._key.data), handler))
 
     def unsubscribe(self, subscription: Any) -> None:

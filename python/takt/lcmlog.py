@@ -1,4 +1,4 @@
-"""LCM logs: written of a network; and read, those of taktd and of any logger, as recordings and journals."""
+"""LCM logs: writes logs of a network; reads logs of taktd and of any logger as recordings and journals."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ MESSAGES: dict[str, Any] = {
     "takt/journal/drive": msgs.journal_drive,
     "takt/journal/hashes": msgs.journal_hashes,
 }
-# Of channels that end in the name of a component.
+# Prefixes of channels that end in the name of a component.
 NAMED: dict[str, Any] = {
     **{prefix: KINDS[kind].message for kind, prefix in PREFIXES.items()},
     OBJECTS: msgs.belt_objects,
@@ -50,28 +50,31 @@ NAMED: dict[str, Any] = {
     "takt/mover_routes/": msgs.mover_route,
 }
 NAMED_TYPES = tuple(NAMED.values())
-# Of channels takt/drive/AXIS/...
+# Ends of channels takt/drive/AXIS/...
 DRIVES: dict[str, Any] = {"setpoint": msgs.drive_setpoint, "feedback": msgs.drive_feedback}
 STATES = ("busy", "active", "done", "aborted", "error")
 
-PATIENCE_S = 30.0  # that writing may be behind
-SILENCE_S = 0.1  # of one component while others are heard, and three of its samples at least
-BEFORE = 8  # messages that are kept to tell when a command was refused: some may be damaged
-EARLY_S = 1.0  # of engine time: a log that begins by then holds all that was said
+PATIENCE_S = 30.0  # longest wait for writing to finish
+SILENCE_S = 0.1  # a component is silent after this, and at least three of its samples, while others are received
+BEFORE = 8  # latest messages kept to find when a command was refused: some may be damaged
+EARLY_S = 1.0  # of engine time: a log that begins before this is considered to hold all messages
 
 
 @contextlib.contextmanager
 def write_log(path: str | os.PathLike[str], url: str | None = None) -> Iterator[None]:
-    """While the block runs, all that is said on an LCM network [the usual one] goes into an LCM log.
+    """A context in which all messages of an LCM network are written to an LCM log.
 
-    However busy the host is, what has come to it is written, on a thread of its own: lcm-logger drops what it gets more
-    than 30 messages behind with. What the socket has no room for is lost here, too: it gets 4 MiB, where the system
-    allows that (net.core.rmem_max), unless the URL says otherwise (recv_buf_size).
+    path: the log file; an existing one is overwritten.
+    url: None: the network of the environment (LCM_DEFAULT_URL), else the default one.
 
-    An existing log is written anew. Raises ConnectionError when the network cannot be joined or the file not be
-    written, LogError when it has become incomplete (unless the block raised something itself)."""
+    All messages that the host has received are written, by a thread of their own, however busy the host is;
+    lcm-logger drops messages when it is more than 30 behind. Messages that do not fit into the socket's buffer are
+    lost: its size is 4 MiB, if the system allows (net.core.rmem_max), or that of the URL (recv_buf_size).
+
+    Raises ConnectionError if the network cannot be joined or the file cannot be written, LogError if the log is
+    incomplete (unless the block itself raised an exception)."""
     network = url or usual_url()
-    open_network(network)  # says what is wrong with it as it was given
+    open_network(network)  # raises errors with the URL as it was given
     log = _core.NetworkLog(roomy(network), os.fsencode(path))
     try:
         yield
@@ -83,7 +86,7 @@ def write_log(path: str | os.PathLike[str], url: str | None = None) -> Iterator[
 
 @dataclass
 class Run:
-    """All that a log holds of one run of an engine, in the order it was written."""
+    """All messages in a log from one run of an engine, in the order in which they were written."""
 
     machine: msgs.machine_description | msgs.journal_start | None = None
     states: dict[str, list[Any]] = field(default_factory=dict)  # of components, by name
@@ -101,24 +104,24 @@ class Run:
         default_factory=Counter
     )  # of the machine: text, period, version
     sequences: Sequences = field(default_factory=Sequences)
-    impossible: int = 0  # messages that were decoded, but cannot be true
-    returned: bool = False  # it was described again after another one
-    contradictions: int = 0  # states whose cycle does not fit in the order, or that another one says otherwise
+    impossible: int = 0  # decoded messages with implausible values
+    returned: bool = False  # it was described again after another run
+    contradictions: int = 0  # states with a cycle out of order, or that contradict another state of their cycle
     heard: deque[Any] = field(default_factory=lambda: deque(maxlen=BEFORE))  # the latest messages that have a cycle
-    refused: list[tuple[msgs.feedback, list[Any]]] = field(default_factory=list)  # before a cycle; what was heard then
+    refused: list[tuple[msgs.feedback, list[Any]]] = field(default_factory=list)  # before any cycle; with `heard`
 
 
 @dataclass
 class Log:
-    """A log that was read. An engine that was started anew while it was written makes another run."""
+    """A log that was read. It has several runs if the engine was restarted while it was written."""
 
     path: Path
     runs: list[Run]
     messages: Counter[str]  # by channel
     malformed: Counter[str]  # by channel
-    left_over: int = 0  # bytes of the file that are no event: it was torn off, or bytes were changed
-    wrong: int = 0  # states with numbers that their types have no room for
-    changed: int = 0  # messages whose checksums say that they are not as they were written
+    left_over: int = 0  # bytes of the file that belong to no event: it is truncated, or bytes were changed
+    wrong: int = 0  # states with values that do not fit their types
+    changed: int = 0  # messages with a wrong checksum
 
     @property
     def damaged(self) -> bool:
@@ -126,13 +129,13 @@ class Log:
 
     @property
     def trouble(self) -> str:
-        """What is not whole, in a sentence; empty: nothing."""
+        """The reasons why the log is not whole, in a sentence; empty if it is."""
         said = self.reasons
         return f"The log is not whole: {'; '.join(said)}." if said else ""
 
     @property
     def reasons(self) -> list[str]:
-        """The same, each by itself."""
+        """The reasons why the log is not whole, one by one; empty if it is."""
         said = []
         if self.damaged:
             share = f"{self.left_over:,} of {self.path.stat().st_size:,} bytes"
@@ -153,7 +156,7 @@ class Log:
         return said
 
     def starts(self, run: int) -> str:
-        """Which one of several starts of the engine a run is, in a sentence; empty: there is but one."""
+        """Returns a sentence that says which of several starts of the engine a run is; empty if there is only one."""
         if len(self.runs) == 1:
             return ""
         count, which = len(self.runs), run % len(self.runs)
@@ -161,12 +164,13 @@ class Log:
 
 
 def read_events(path: str | os.PathLike[str], progress: Progress | None = None) -> Iterator[Event]:
-    """Every event of a log that is whole: wall clock in us, channel, bytes."""
+    """Yields every whole event of a log: wall clock [us], channel, bytes. Raises LogError if the file is not a log."""
     return EventLog(path).events(progress)
 
 
 def open_log(path: str | os.PathLike[str], progress: Progress | None = None) -> Log:
-    """Reads all messages of a log that are Takt's. What is damaged costs itself alone (`Log.trouble`)."""
+    """Reads all messages of Takt in a log; only damaged ones are lost (`Log.trouble`). Raises LogError if the file is
+    not a log. `progress`: called with the progress, 0 to 1."""
     events = EventLog(path)
     log = Log(events.path, [Run()], Counter(), Counter())
     for event in events.events(progress):
@@ -179,7 +183,7 @@ def open_log(path: str | os.PathLike[str], progress: Progress | None = None) -> 
             continue
         try:
             message = kind.decode(event.data)
-        except Exception:  # generated code raises whatever comes
+        except Exception:  # generated code raises many kinds of errors
             message = None
         if message is None or not _belongs(message, event.channel):
             log.malformed[event.channel] += 1
@@ -193,8 +197,8 @@ def open_log(path: str | os.PathLike[str], progress: Progress | None = None) -> 
 
 
 def _leave_out_impossible(run: Run) -> None:
-    """Keeps the messages of components and of the engine whose cycle and time say the same, and reports on commands
-    in cycles that there were."""
+    """Keeps only messages of components and of the engine whose cycle and time agree, and feedback with a cycle that
+    was run."""
     wrong = [one for one in run.descriptions if not 0 < one[1] < 1]
     if len(wrong) == len(run.descriptions):
         run.impossible += sum(run.descriptions.values())
@@ -210,15 +214,15 @@ def _leave_out_impossible(run: Run) -> None:
         run.contradictions += _put_in_order(messages)
     run.states = {name: messages for name, messages in run.states.items() if messages}
     cycles = [one.cycle for one in run.engine_states] + [one[-1].cycle for one in run.states.values()]
-    latest = max(cycles) + 1 / period if cycles else math.inf  # what is said last may be missing
+    latest = max(cycles) + 1 / period if cycles else math.inf  # the last messages may be missing
     possible = [report for report in run.feedback if _is_possible(report, latest)]
     run.impossible += len(run.feedback) - len(possible)
     run.feedback[:] = possible
 
 
 def _is_possible(report: msgs.feedback, latest: float) -> bool:
-    """What a cycle has brought says which one it was: all but the refusal of a command that never came so far, and that
-    it is waited for."""
+    """Returns whether the cycle of a feedback is plausible. Feedback without a cycle is plausible only if it is Busy,
+    or the refusal of a command that no cycle has processed."""
     if report.cycle >= 0:
         return bool(report.cycle <= latest)
     refused = report.state == STATES.index("error") and report.ticket <= 0
@@ -226,13 +230,12 @@ def _is_possible(report: msgs.feedback, latest: float) -> bool:
 
 
 def _put_in_order(states: list[Any]) -> int:
-    """Leaves the states of one component of which each has a later cycle than the one before: as many as there can be,
-    so that one with a cycle of the future costs itself alone. How many others there were, but for those that came twice
-    or late."""
+    """Reduces the states of one component to a longest subsequence with increasing cycles, so that a single state with
+    a future cycle does not displace others. Returns the number of removed states that are neither repeated nor late."""
     if all(one.cycle < other.cycle for one, other in itertools.pairwise(states)):
         return 0
-    ends: list[int] = []  # of runs of each length, their last cycle, the least there is
-    last: list[int] = []  # and where it stands
+    ends: list[int] = []  # by length of subsequence: its least possible last cycle
+    last: list[int] = []  # and the index of that state
     before: list[int] = []
     for i, state in enumerate(states):
         length = bisect.bisect_left(ends, state.cycle)
@@ -240,7 +243,7 @@ def _put_in_order(states: list[Any]) -> int:
         if length == len(ends):
             ends.append(state.cycle)
             last.append(i)
-        elif state.cycle < ends[length]:  # of the same cycle the first one counts
+        elif state.cycle < ends[length]:  # the first state of a cycle counts
             ends[length], last[length] = state.cycle, i
     chosen, at = [], last[-1]
     while at >= 0:
@@ -261,7 +264,7 @@ def _put_in_order(states: list[Any]) -> int:
 
 @functools.lru_cache(4096)
 def _kind_of(channel: str) -> Any:
-    """The type of a channel's messages; None: it is none of Takt's, or not looked at."""
+    """Returns the type of a channel's messages; None if it is not Takt's, or is not read."""
     if channel in MESSAGES:
         return MESSAGES[channel]
     if channel.startswith("takt/drive/"):
@@ -270,7 +273,7 @@ def _kind_of(channel: str) -> Any:
 
 
 def _belongs(message: Any, channel: str) -> bool:
-    """A component's message comes on its own channel; states of commands are those that there are."""
+    """Returns whether a message of a component is on that component's channel, and a feedback has a known state."""
     if isinstance(message, msgs.feedback):
         return 0 <= message.state < len(STATES)
     return not isinstance(message, NAMED_TYPES) or channel.endswith(f"/{message.name}")
@@ -312,7 +315,7 @@ def _sort_in(runs: list[Run], message: Any) -> None:
 
 
 def _run_of(runs: list[Run], message: Any) -> Run:
-    """The run that a message is of: the last one, unless it says which one itself."""
+    """Returns the run of a message: the last one, unless the message identifies its run."""
     if isinstance(message, (msgs.machine_description, msgs.journal_start)):
         known = [run for run in runs if run.machine is None or run.machine.run_id == message.run_id]
         if not known:
@@ -325,13 +328,18 @@ def _run_of(runs: list[Run], message: Any) -> Run:
 
 
 def read_log(path: str | os.PathLike[str], *, run: int = -1, progress: Progress | None = None) -> Recording:
-    """An LCM log as a recording: every component, with the commands as events. `run` picks one of several starts of the
-    engine, the last unless told."""
+    """Returns an LCM log as a recording of all components, with the commands as events.
+
+    run: index of one of several starts of the engine in the log; -1: the last one.
+    progress: called with the progress, 0 to 1.
+
+    Raises LogError if the file is not a log, or has no such run or no description of its machine.
+    """
     return to_recording(open_log(path, progress), run)
 
 
 def run_of(log: Log, run: int) -> Run:
-    """A run by number, from the end if negative."""
+    """Returns a run by index, from the end if negative. Raises LogError if there is none."""
     try:
         return log.runs[run]
     except IndexError:
@@ -340,7 +348,7 @@ def run_of(log: Log, run: int) -> Run:
 
 
 def to_recording(log: Log, run: int = -1) -> Recording:
-    """One run of a log as a recording."""
+    """Returns one run of a log as a recording. Raises LogError as `read_log`."""
     one = run_of(log, run)
     if one.machine is None:
         raise LogError(f"{log.path}: holds no description of a machine (channel takt/machine)")
@@ -374,8 +382,8 @@ def to_recording(log: Log, run: int = -1) -> Recording:
 
 
 def _description(run: Run) -> tuple[str, float, str]:
-    """Text, period and version of a run's machine: those said most often of those that can be, as bytes of one may have
-    been changed."""
+    """Returns text, period and version of a run's machine: the most frequent valid description, as bytes of some may
+    have been changed."""
     said = [one for one, _ in run.descriptions.most_common()]
     for text, period, version in said:
         with contextlib.suppress(ConfigError):
@@ -386,7 +394,7 @@ def _description(run: Run) -> tuple[str, float, str]:
 
 
 def _dropped(run: Run, period: float) -> dict[str, int]:
-    """What the engine had no room for while the log was written: by its own count, less what it had counted before."""
+    """Returns the engine's counts of dropped messages while the log was written, without those from before."""
     if not run.engine_states:
         return {}
     first, last = run.engine_states[0], run.engine_states[-1]
@@ -398,8 +406,9 @@ def _dropped(run: Run, period: float) -> dict[str, int]:
 def _unheard(
     machine: dict[str, Any], tables: dict[str, dict[str, Array]], run: Run, period: float
 ) -> tuple[dict[str, float], dict[str, float]]:
-    """Components, and channels of what lies on belts, that were not heard any more although others were: since when, in
-    s; and those of which the beginning is missing: until when. Their numbers say that there was one."""
+    """Returns the components, and channels of objects on belts, that fell silent while others did not, with the time
+    [s] of their last message; and those whose beginning is missing (by their sequence numbers), with the time of the
+    first."""
     rates = {own["axis"]: own["rate_hz"] for own in machine["lcm"]["rates"]}
     published = [name for name in components_of(machine) if rates.get(name, machine["lcm"]["axis_rate_hz"]) > 0]
     heard = {name: tables[name]["cycle"].tolist() if name in tables else [] for name in published}
@@ -423,8 +432,8 @@ def _unheard(
 
 
 def _events(run: Run, period: float) -> Iterator[tuple[float, str, str, str]]:
-    """Starts and ends of commands. What was asked is known of commands that the log holds, from clients or from the
-    journal. A command that was refused before it came to a cycle has the time of what was heard last before."""
+    """Yields starts and ends of commands. Their texts are known for commands in the log, from clients or the journal. A
+    command refused before any cycle has the time of the last message before it."""
     asked: dict[Any, tuple[str, str]] = {}
     for command in run.commands:
         asked[(command.client, command.session, command.id)] = (command.target, _text(command))
@@ -457,12 +466,12 @@ def _events(run: Run, period: float) -> Iterator[tuple[float, str, str, str]]:
 
 
 def _made_cams(run: Run) -> dict[str, Any]:
-    """Cams made at run time, as live recordings keep them, by anyone: from the journal where there is one, else from
-    the commands of clients."""
+    """Returns the cams made at run time by any client, in the form of live recordings: from the journal if there is
+    one, else from the commands of clients."""
     from takt.view.made import MadeCams
 
     made = MadeCams(lambda table: {"table": table}, builds=max(1, len(run.feedback)))
-    for entry in run.journal:  # it has no client; the feedback has its ticket
+    for entry in run.journal:  # has no client; matched by the ticket of the feedback
         command = msgs.command()
         command.id, command.target = entry.ticket, entry.target
         command.verb, command.arguments = entry.verb, entry.arguments
@@ -480,7 +489,7 @@ def _made_cams(run: Run) -> dict[str, Any]:
 
 
 def _cycle_before(heard: list[Any], period: float) -> int:
-    """The cycle of the latest message that can be true; 0: none of them."""
+    """Returns the cycle of the latest plausible message; 0 if there is none."""
     return next((int(message.cycle) for message in reversed(heard) if is_possible(message, period)), 0)
 
 

@@ -1,4 +1,4 @@
-"""What a recording lacks, in words."""
+"""Describes missing samples and messages of recordings."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from takt.recording import Recording
 from takt.tables import PREFIXES
 from takt.verdict import Interval, seconds
 
-NAMED = 3  # components; more are only counted
-# Channels that say the same again and again, or on demand, so that a message lost costs nothing. Losses of states show
-# as samples.
+NAMED = 3  # components named in a sentence; more are only counted
+# Channels that repeat their content, or send it on demand, so that a lost message does no harm. Losses of states show
+# as missing samples.
 REPEATING = (
     *("takt/engine", "takt/machine", "takt/track_shapes/", "takt/mover_trails/", "takt/mover_routes/", "takt/cams"),
     *PREFIXES.values(),
@@ -20,7 +20,8 @@ REPEATING = (
 
 
 def missing(recording: Recording, components: Iterable[str] | None = None, window: Interval | None = None) -> str:
-    """ "3 samples of x in 2 gaps, the first after 0.099 s": of these components, or all; empty: nothing is missing."""
+    """ "3 samples of x in 2 gaps, the first after 0.099 s": the missing samples of these components, or of all, in a
+    time window or in the whole recording; empty if none are missing."""
     lacking = []
     for component in dict.fromkeys(recording if components is None else components):
         gaps = recording.gaps(component)
@@ -36,8 +37,8 @@ def missing(recording: Recording, components: Iterable[str] | None = None, windo
 
 
 def lost(recording: Recording) -> str:
-    """What is missing besides samples, in words: messages of other channels that were lost on the way, what was
-    not heard any more before the end, and what the engine had no room for. Empty: nothing is."""
+    """Returns a text about missing data besides samples: lost messages of other channels, components that fell silent
+    or were heard late, and messages that the engine dropped; empty if nothing is missing."""
     losses = recording.meta.get("losses") or {}
     counts = [(-count, channel) for channel, count in losses.items() if not channel.startswith(REPEATING)]
     worst = [(channel, -count) for count, channel in sorted(counts)]
@@ -55,20 +56,20 @@ def lost(recording: Recording) -> str:
 
 
 def all_missing(recording: Recording) -> str:
-    """Samples and all else that is missing, in words; empty: the recording is complete."""
+    """Returns a text about all missing samples and messages; empty if the recording is complete."""
     return "; ".join(said for said in (missing(recording), lost(recording)) if said)
 
 
 def holes(recording: Recording, components: Iterable[str], curve: str = "") -> list[Interval]:
-    """From when to when samples are missing of a curve that was made of these components: of the one that it is named
-    after ("x.set_position"), else of any."""
+    """Returns the time intervals without samples of a curve of these components: of the component in its name
+    ("x.set_position"), else of any of them."""
     there = [name for name in components if name in recording]
     named = [name for name in there if curve.startswith((f"{name}.", f"{name}:"))]
     return sorted((gap.time_s, gap.until_s) for name in named or there for gap in recording.gaps(name))
 
 
 def troubles(recording: Recording) -> list[str]:
-    """What whoever reads verdicts on it ought to know, in sentences."""
+    """Returns sentences about the recording that matter for verdicts on it."""
     lacks, others = missing(recording), lost(recording)
     said = [str(recording.meta.get(what) or "") for what in ("starts", "trouble")]
     said += [f"Samples are missing: {lacks}." if lacks else "", f"Messages are missing: {others}." if others else ""]

@@ -1,4 +1,4 @@
-"""Lists of names, as arguments take them, and names of files, as people see them."""
+"""Checks lists of names in arguments, and makes names of files displayable."""
 
 from __future__ import annotations
 
@@ -10,16 +10,18 @@ _LONE = re.compile("[\ud800-\udfff]")
 
 
 def shown(path: str | os.PathLike[str]) -> str:
-    """Returns the name of a file as a text that UTF-8 can hold: bytes that Python could not decode become U+FFFD. The
-    engine, YAML, JSON and pages take no others."""
+    """Returns the name of a file as text that can be encoded as UTF-8: bytes that Python could not decode become
+    U+FFFD. The engine, YAML, JSON and pages accept no other text."""
     return _LONE.sub("\ufffd", os.fspath(path))
 
 
 def names_in(given: object, argument: str, what: str, listed: str = "names") -> tuple[str, ...]:
-    """The names of a list. TypeError for a text alone, which would be read letter by letter, and for anything in the
-    list that is no name.
+    """Returns the names in a list. Raises TypeError for a single text, which would be read letter by letter, and for
+    entries that are not texts.
 
-    what: what has the names, as "mover". listed: what the list is of, in sentences.
+    argument: the name of the argument, for sentences.
+    what: the kind of named thing, as "mover".
+    listed: the plural of the entries, for sentences.
     """
     if isinstance(given, str) or not isinstance(given, Iterable):
         found = f"the text {given!r}" if isinstance(given, str) else repr(given)

@@ -1,4 +1,4 @@
-"""Joins an LCM network, or says in one line why not; everything on the network goes through Takt's core."""
+"""Joins an LCM network; all traffic passes through Takt's core. Errors are raised as one line of text."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from takt.keys import Key, KeyedNetwork, Refused
 Handler = Callable[[str, bytes], object]
 
 DEFAULT_URL = "udpm://239.255.76.67:7667?ttl=0"  # ttl 0: stays on this host
-QUEUE = 30  # messages of a subscription that wait, unless it says otherwise; as in LCM
-BUFFER = 4 << 20  # bytes of a socket that must not lose anything
+QUEUE = 30  # default queue capacity of a subscription, as in LCM
+BUFFER = 4 << 20  # bytes of receive buffer for sockets that must not lose messages
 
 
 def usual_url() -> str:
-    """The network of whoever names none: that of the environment (LCM_DEFAULT_URL), else DEFAULT_URL."""
+    """Returns the default network: that of the environment (LCM_DEFAULT_URL), else DEFAULT_URL."""
     return os.environ.get("LCM_DEFAULT_URL") or DEFAULT_URL
 
 
 def network_of(machine: Mapping[str, Any]) -> str:
-    """The network that taktd runs a machine on unless its command line says otherwise: the machine file's `lcm.url`,
-    else the usual one."""
+    """Returns the network that taktd uses for a machine without an option on its command line: the machine file's
+    `lcm.url`, else the default one."""
     return machine["lcm"].get("url") or usual_url()
 
 
 def roomy(url: str) -> str:
-    """The network with a receive buffer that takes bursts, as far as the system allows."""
+    """Returns the URL with a receive buffer for bursts, as large as the system allows."""
     if not url.startswith("udpm://") or "recv_buf_size" in url:
         return url
     try:
@@ -41,7 +41,7 @@ def roomy(url: str) -> str:
 
 
 class Subscription:
-    """Of a network: the channels, and who handles their messages."""
+    """A subscription to channels of a network, with the handler of their messages."""
 
     def __init__(self, network: Network, channels: str, handler: Handler, number: int) -> None:
         self._network = network
@@ -50,25 +50,25 @@ class Subscription:
         self.number = number
 
     def set_queue_capacity(self, capacity: int) -> None:
-        """So many messages wait to be handled before newer ones are dropped; 0: any number."""
+        """Sets the number of messages that may wait before newer ones are dropped; 0: unlimited."""
         self._network._core.set_capacity(self.number, capacity)
 
 
 class Network:
     """A member of an LCM network, with the methods of lcm.LCM: udpm://, tcpq:// or memq://.
 
-    Raises ConnectionError where it cannot be joined; OSError where it is gone later."""
+    Raises ConnectionError if it cannot be joined; OSError if it fails later."""
 
     def __init__(self, url: str) -> None:
         self._core = _core.Network(url)
         self._subscriptions: dict[int, Subscription] = {}
-        self.heard_us: int | None = None  # when the message that is handled came, by the wall clock
+        self.heard_us: int | None = None  # wall clock time of receipt of the message being handled
 
     def publish(self, channel: str, data: bytes) -> None:
         self._core.publish(channel, data)
 
     def subscribe(self, channels: str, handler: Handler) -> Subscription:
-        """Has messages handled whose channel this regular expression matches as a whole."""
+        """Subscribes a handler to all channels that the regular expression matches completely."""
         subscription = Subscription(self, channels, handler, self._core.subscribe(channels, QUEUE))
         self._subscriptions[subscription.number] = subscription
         return subscription
@@ -78,16 +78,16 @@ class Network:
         self._subscriptions.pop(subscription.number, None)
 
     def fileno(self) -> int:
-        """Readable while messages wait."""
+        """Returns a file descriptor that is readable while messages wait."""
         return self._core.fileno()
 
     def handle(self) -> None:
-        """Handles one message; waits for it."""
+        """Waits for one message and handles it."""
         while not self.handle_timeout(1000):
             pass
 
     def handle_timeout(self, timeout_ms: float) -> int:
-        """Handles one message, waiting so long for it at most: how many there were."""
+        """Handles one message, waiting up to `timeout_ms` for it. Returns the number of handled messages, 0 or 1."""
         heard = self._core.receive()
         if heard is None:
             news = select.poll()
@@ -106,13 +106,15 @@ class Network:
 
     @property
     def malformed(self) -> int:
-        """Datagrams that were none of LCM's, or from elsewhere where only this host is heard; 0 but on udpm://."""
+        """Number of datagrams that are not LCM's, or are from other hosts on a network of this host only; always 0
+        except on udpm://."""
         return self._core.malformed
 
 
 def open_network(
     url: str, *, room: bool = False, key: Key | None = None, refused: Refused | None = None
 ) -> Network | KeyedNetwork:
-    """A member of the network; room: with a buffer for bursts (`roomy`); with a key, one that uses it."""
+    """Joins a network and returns its member. `room`: with a receive buffer for bursts (`roomy`). `key`: authenticates
+    messages with it; `refused` is called for refused ones. Raises ConnectionError."""
     network = Network(roomy(url) if room else url)
     return network if key is None else KeyedNetwork(network, key, refused)

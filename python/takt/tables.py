@@ -1,4 +1,4 @@
-"""From what components publish to recordings: columns, units and names as the engine describes them."""
+"""Converts published values of components to recordings, with columns, units and names as described by the engine."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ State = Any  # a message with the state of a component: axis_state, flex_cam_sta
 
 @dataclass(frozen=True)
 class Kind:
-    """What components of one kind publish, by field."""
+    """The published fields of components of one kind."""
 
     name: str
     section: str  # of the machine file
@@ -27,7 +27,7 @@ class Kind:
     names: Mapping[str, Mapping[int, str]]  # of enumerations
     dtypes: Mapping[str, Any]
     message: Any  # the LCM type
-    getters: Mapping[str, Callable[[Any], Any]]  # of each field, from a message
+    getters: Mapping[str, Callable[[Any], Any]]  # read a field from a message
 
     @staticmethod
     def of(name: str, section: str) -> Kind:
@@ -46,39 +46,39 @@ class Kind:
 
 
 def place_of(field: str, message: Any) -> str:
-    """Where a message has a field: pcs1_x is the x of its pcs1."""
+    """Returns the attribute path of a field in a message: pcs1_x is pcs1.x."""
     return field if field in message.__slots__ else ".".join(field.rsplit("_", 1))
 
 
-NUMBERS = ("error", "warning")  # enumerations that people know by number
+NUMBERS = ("error", "warning")  # enumerations shown by number
 KINDS = {name: Kind.of(name, section) for name, section in _core.component_kinds()}
-# Where they publish: this and their name.
+# Prefixes of channels: followed by the name of the component.
 PREFIXES = {name: f"takt/{name}/" for name in KINDS}
 
 
 def fields_of_kind(kind: str) -> tuple[str, ...]:
-    """What components of this kind publish."""
+    """Returns the published fields of components of this kind."""
     return tuple(KINDS[kind].units)
 
 
 def components_of(machine: Mapping[str, Any]) -> dict[str, tuple[Kind, Mapping[str, Any]]]:
-    """Kind and parameters of every component of a machine, by name."""
+    """Returns kind and parameters of every component of a machine, by name."""
     return {c["name"]: (kind, c) for kind in KINDS.values() for c in machine[kind.section]}
 
 
 def kind_of_channel(channel: str) -> Kind | None:
-    """Whose state is published there."""
+    """Returns the kind of component whose state is published on a channel; None for other channels."""
     return next((KINDS[kind] for kind, prefix in PREFIXES.items() if channel.startswith(prefix)), None)
 
 
 def short_name(channel: str) -> str:
-    """A channel for people: of a component's states its name, of others what stands behind "takt/"."""
+    """Returns a readable name of a channel: of a component's states its name, of others the part after "takt/"."""
     kind = kind_of_channel(channel)
     return channel.removeprefix(PREFIXES[kind.name] if kind else "takt/")
 
 
 def unit_of(kind: str, field: str, own: Mapping[str, str]) -> str:
-    """The unit of a published field of a component whose own units are called so: u/s2 -> mm/s²."""
+    """Returns the unit of a published field, with the component's `own` units: u/s2 -> mm/s²."""
     text = KINDS[kind].units[field]
     first, slash, rest = text.partition("/")
     text = own.get(first, first) + slash + rest
@@ -86,25 +86,25 @@ def unit_of(kind: str, field: str, own: Mapping[str, str]) -> str:
 
 
 def named(kind: str, field: str, value: Any) -> Any:
-    """A published value as people see it: enumerations by the name of their member, but errors by number."""
+    """Returns a published value for display: enumerations by name, except errors, which stay numbers."""
     names = KINDS[kind].names.get(field)
     return names[value] if names else value
 
 
 def fields_of(message: Any) -> dict[str, Any]:
-    """The fields of an LCM message, but for those that only mattered on the way."""
+    """Returns the fields of an LCM message, except those for transmission only."""
     return {f: getattr(message, f) for f in message.__slots__ if f not in ("utime", "sequence")}
 
 
 def is_possible(message: State | msgs.engine_state, period: float) -> bool:
-    """Cycle and time say the same, as they do unless bytes were changed or made up. The engine's period is one of whole
-    nanoseconds."""
+    """Returns whether cycle and time of a message agree; they do not if bytes were changed or forged. The engine's
+    period is a whole number of nanoseconds."""
     return bool(message.cycle >= 0 and abs(message.time_ns - message.cycle * period * 1e9) <= message.cycle)
 
 
 def table_of(kind: str, messages: Sequence[State], period: float) -> tuple[dict[str, Array], int]:
-    """The columns of messages of one component, and how many were left out since a field's type has no room for a
-    number of theirs. A repeated or late message counts once. Raises RecordingError if all are left out."""
+    """Returns the columns of messages of one component, and the number of messages left out because a value does not
+    fit the type of its field. Repeated and late messages are ignored. Raises RecordingError if all are left out."""
     rows = []
     last = -1
     for message in messages:
@@ -131,7 +131,7 @@ def _column(kind: str, messages: Sequence[State], field: str) -> Array:
 
 
 def _wrong_field(kind: str, message: State) -> str:
-    """The first field that holds what its type has no room for; empty: none."""
+    """Returns the first field whose value does not fit its type; empty if there is none."""
     for field in fields_of_kind(kind):
         try:
             _column(kind, [message], field)
@@ -148,8 +148,12 @@ def make_recording(
     text: str,
     folder: str = "",
 ) -> Recording:
-    """A recording of components of `machine`, whose file has this `text` and stands in `folder`, where that is known;
-    each table has time_s, cycle and published fields."""
+    """Returns a recording of components of `machine`.
+
+    tables: by component; each has time_s, cycle and published fields.
+    text: of the machine file.
+    folder: of the machine file; "": unknown.
+    """
     found = {name: of for name, of in components_of(machine).items() if name in tables}
     units = {name: units_of(machine, kind, parameters) for name, (kind, parameters) in found.items()}
     return Recording(
@@ -163,10 +167,10 @@ def make_recording(
 
 
 def units_of(machine: Mapping[str, Any], kind: Kind, parameters: Mapping[str, Any]) -> dict[str, str]:
-    """What the units in the descriptions stand for: "u" is the component's own, "u_m" its master's. A cam module has
-    those of slave, master and its first cam; a virtual master has that of the cam's x."""
+    """Returns the units behind the symbols in the descriptions: "u" is the component's own, "u_m" its master's. A cam
+    module has those of slave, master and its first cam; a virtual master has the unit of the cam's x."""
     if kind.name == "axis":
-        return {"u": str(parameters["unit"]), "u_m": "u of the master"}  # which changes while it runs
+        return {"u": str(parameters["unit"]), "u_m": "u of the master"}  # the master changes at run time
     if kind.name == "belt":
         return {"u": "deg" if parameters["kind"] == "turning" else "mm"}
     if kind.name != "flex_cam":

@@ -164,8 +164,8 @@ class Bench:
         )
 
     def _look(self) -> None:
-        """What the axis does with an open loop: how it drifts, how its encoder trembles, and which way it moves when it
-        is fed forward, which no wrong sense can make run away."""
+        """Checks the axis with an open loop: its drift, the noise of its encoder, and the direction in which
+        feedforward moves it, which cannot run away even with a wrong sign."""
         axis, size = self._axis, abs(self.distance)
         self._set(NO_GAINS)
         self._watch_idle()  # lets oscillations decay
