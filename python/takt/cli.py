@@ -56,7 +56,7 @@ BAD_INPUT = 2
 FAILED = 1
 
 PACKAGE = Path(__file__).parent
-DIFFERENCES = 10  # between two runs, said on the terminal at most
+DIFFERENCES = 10  # between two runs, printed at most
 
 out = Output()
 err = Output(stderr=True)
@@ -83,12 +83,12 @@ START = click.option(
 @click.version_option(_core.__version__)
 @click.option("--traceback", is_flag=True, expose_value=False, help="Show where an error comes from.")
 def cli() -> None:
-    """Motion engine: check machines, run scenarios, look at what was recorded."""
+    """Motion engine: check machines, run scenarios, inspect recordings."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs the command line. 0: all is well; 1: something checked has failed; 2: bad input, said in one line. None of
-    this depends on whether the output can be shown."""
+    """Runs the command line and returns the exit status. 0: success; 1: a check has failed; 2: bad input, reported in
+    one line; 130: interrupted. The status does not depend on whether the output can be printed."""
     with any_output():
         return _main(arguments)
 
@@ -123,8 +123,8 @@ def _complain(sentence: str) -> int:
 
 
 def _sentence(error: Exception) -> str:
-    """One line: what this package raises on purpose speaks for itself; of the rest, kind and place are worth
-    knowing."""
+    """Returns an error as one line: the text of this package's own exceptions; for others also their type and source
+    line."""
     if isinstance(error, (TaktError, RecordingError)):
         return str(error)
     if isinstance(error, OSError) and error.filename is not None:
@@ -132,7 +132,7 @@ def _sentence(error: Exception) -> str:
     if isinstance(error, SyntaxError):
         return f"{error.filename}:{error.lineno}: {error.msg}"
     frames = [(Path(frame.filename), frame.lineno) for frame in traceback.extract_tb(error.__traceback__)]
-    # A line of a scenario says more than one of this package, which says more than one of another.
+    # Prefer a line of the scenario to one of this package, and that to one of another package.
     places = [frame for frame in frames if is_of_scenario(frame[0])]
     places = places or [frame for frame in frames if frame[0].is_relative_to(PACKAGE)]
     place = f" ({os.path.relpath(places[-1][0])}:{places[-1][1]})" if places else ""
@@ -145,7 +145,7 @@ def _sentence(error: Exception) -> str:
 @cli.command()
 @click.argument("machines", nargs=-1, required=True, type=FILE)
 def check(machines: tuple[Path, ...]) -> int:
-    """Say everything that is wrong with machine files, and what is worth knowing."""
+    """Report all errors of machine files, and warnings."""
     bad = False
     for machine in machines:
         try:
@@ -194,8 +194,8 @@ def run(
     settings: tuple[str, ...],
     key: Path | None,
 ) -> int:
-    """Run a scenario FILE, or that of a ready machine by its name, and verify what was recorded; the same on a running
-    engine and in virtual time."""
+    """Run a scenario FILE, or that of a ready machine by its name, and verify the recording; in virtual time or on a
+    running engine."""
     from takt.ready import scenario_of
 
     if machine is not None and url is not None:
@@ -248,9 +248,8 @@ def run_sweep(
     timeout: float,
     fresh: bool,
 ) -> int:
-    """Run a scenario FILE by the thousand, with other values of its parameters and of the machine file each time. A
-    table with a row a run, and a page. The same command goes on with a sweep that was interrupted. Exit code 1: a run
-    failed."""
+    """Run a scenario FILE many times with different values of its parameters and of the machine file. Writes a table
+    with a row per run, and a page. The same command continues an interrupted sweep. Exit code 1: a run failed."""
     from takt.sweep import sweep
 
     with _bar(f"sweep {file.name}") as progress:
@@ -290,8 +289,8 @@ def demo(
     browser: bool,
     stay: bool | None,
 ) -> int:
-    """Run a ready machine by its NAME, or a scenario FILE, on a taktd of its own, in real time over LCM; verify what
-    the network's log holds; report. Without NAME: list the ready machines."""
+    """Run a ready machine by its NAME, or a scenario FILE, on a taktd of its own, in real time over LCM; verify the log
+    of the network; write a report. Without NAME: list the ready machines."""
     from takt.ready import EXAMPLES, listing
 
     if what is None:
@@ -303,7 +302,7 @@ def demo(
         from takt.drives import demonstration
 
         if click.get_current_context().get_parameter_source("pace") is not ParameterSource.COMMANDLINE:
-            pace = "paced"  # in real time three processes in Python want priority over all else
+            pace = "paced"  # real time would need top priority for three Python processes
         with demonstration.machine_file(EXAMPLES / demonstration.OF, _say) as file:
             return _demo(demonstration.OF, machine or file, report, pace, view, port, browser, stay, drives=True)
     return _demo(what, machine, report, pace, view, port, browser, stay)
@@ -321,7 +320,7 @@ def _demo(
     *,
     drives: bool = False,
 ) -> int:
-    """drives: emulated ones, and the process between them and the engine, run beside."""
+    """drives: also runs emulated drives, and the process between them and the engine."""
     from takt.demo import nothing, run_demo
     from takt.ready import scenario_of
     from takt.report.command import write_outcome
@@ -366,11 +365,11 @@ def _demo(
 def show_report(
     runs: tuple[Path, ...], output: Path | None, judge: Path | None, align: str, start_number: int | None
 ) -> int:
-    """Write the report of a RUN, one HTML page with everything inside: of a recording (.npz), an LCM log, or the
-    directory that `takt run --report` or `takt demo` wrote. Exit code 1: what --scenario verifies has failed.
+    """Write the report of a RUN as one self-contained HTML page: of a recording (.npz), an LCM log, or the directory
+    that `takt run --report` or `takt demo` wrote. Exit code 1: the verification by --scenario has failed.
 
-    With an OTHER run: what differs between the two, in figures, verdicts and curves. --align start lays their
-    beginnings over one another, the text of a mark or event the first ones of this text.
+    With an OTHER run: the differences of the two in figures, verdicts and curves. --align start aligns their beginnings
+    in time; the text of a mark or event aligns the first ones with this text.
     """
     from takt.report.command import judged, names_of, target_of, target_of_two, write_page
 
@@ -407,8 +406,8 @@ def show_report(
 @click.option("--pace", type=click.Choice(["real", "paced"]), default="real", show_default=True, help="Of taktd.")
 @KEY
 def view(what: str | None, port: int, browser: bool, pace: str, key: Path | None) -> int:
-    """Show what an engine does in a page on this host: of a MACHINE file, which then runs on a taktd of its own, or the
-    one of an LCM network [the usual one]."""
+    """Show an engine live in a page on this host: that of a MACHINE file, run on a taktd of its own, or the one on an
+    LCM network [the default one]."""
     from takt.view import command
 
     return command.run(what, port, browser, pace, _say, key)
@@ -420,8 +419,8 @@ def view(what: str | None, port: int, browser: bool, pace: str, key: Path | None
 @click.option("--pace", type=click.Choice(["real", "paced"]), default="real", show_default=True, help="Of taktd.")
 @KEY
 def foxglove(what: str | None, port: int, pace: str, key: Path | None) -> int:
-    """Serve an engine's scene and signals live for Foxglove on this host: of a MACHINE file, which then runs on a taktd
-    of its own, or of an LCM network [the usual one]."""
+    """Serve an engine's scene and signals live for Foxglove on this host: of a MACHINE file, run on a taktd of its own,
+    or of the engine on an LCM network [the default one]."""
     from takt.view import foxglove as link
 
     return link.run(what, port, pace, _say, key)
@@ -437,7 +436,7 @@ def foxglove(what: str | None, port: int, pace: str, key: Path | None) -> int:
 @click.option("--twin", is_flag=True, help="Axes of the machine's twin are in MuJoCo.")
 @KEY
 def plant(machine: Path, url: str | None, axes: tuple[str, ...], watchdog: int, twin: bool, key: Path | None) -> int:
-    """Simulate the external drives of a MACHINE in this process, for an engine in another one."""
+    """Simulate the external drives of a MACHINE in this process, for an engine in another process."""
     return simulate(machine, url, axes, watchdog, key, twin=twin)
 
 
@@ -456,9 +455,9 @@ cli.add_command(opcua_user)
 def run_twin(
     what: Path, scenario: Path | None, picture: Path | None, report: Path | None, compare: bool, speed: bool
 ) -> int:
-    """Run a scenario in the twin of its machine: MuJoCo has the mechanics (section `twin` of the machine file). Judges
-    where the tool is, what the motors give and what touches what, and says how that differs from the simulated servos.
-    Exit code 1: a verdict of the scenario or of the twin has failed."""
+    """Run a scenario in the twin of its machine, with the mechanics in MuJoCo (section `twin` of the machine file).
+    Checks tool positions, motor torques and contacts, and reports the differences from the simulated servos. Exit code
+    1: a verdict of the scenario or of the twin has failed."""
     from takt.twin import command
 
     drawing = picture and _writable(picture, (".png",))
@@ -481,20 +480,20 @@ def run_twin(
     if drawing:
         try:
             print(f"picture: {ran.twin.picture(drawing)}")
-        except PlantError as error:  # what the picture would show has been judged
+        except PlantError as error:  # only the picture is missing; the verdicts are complete
             print(error)
     return 0 if ran.outcome.passed else FAILED
 
 
 @cli.group(context_settings={"help_option_names": ["-h", "--help"]})
 def key() -> None:
-    """Keys, which engines, clients and drives share, so that nobody else may command (docs/keys.md)."""
+    """Keys that engines, clients and drives share, so that no other program can give commands (docs/keys.md)."""
 
 
 @key.command()
 @click.argument("file", type=FILE)
 def new(file: Path) -> None:
-    """Make a key in a new FILE that its owner alone may open: for taktd --key, takt --key, takt.connect(key=...), or
+    """Write a key to a new FILE that only its owner may open: for taktd --key, takt --key, takt.connect(key=...), or
     TAKT_KEY_FILE in the environment."""
     from takt.keys import new_key
 
@@ -508,9 +507,9 @@ def new(file: Path) -> None:
 def calibrate(kind: str, file: Path) -> int:
     """Find the frame of a table, a camera or a belt from points measured with the tool.
 
-    FILE is a table (CSV) with a head. frame: columns x, y, z, as measured: origin, a point on X, a point towards Y;
-    with seen_x, seen_y, seen_z three points or more, wherever they are. belt: columns position (of the belt's axis),
-    x, y, z of one mark; and without a position a point on the belt, towards its Y.
+    FILE is a table (CSV) with a header. frame: columns x, y, z of the measured origin, a point on X, a point towards Y;
+    or, with columns seen_x, seen_y, seen_z, three or more points in any position. belt: columns position (of the belt's
+    axis), x, y, z of one mark; and a row without a position for a point on the belt, towards its Y.
     """
     from takt import calibration_files
 
@@ -538,7 +537,7 @@ def tune(
     target: Path | None,
     key: Path | None,
 ) -> int:
-    """Find the gains of the position loop of AXIS with small steps beside where it stands."""
+    """Find the gains of the position loop of AXIS with small steps near its current position."""
     from takt import tuning
 
     if (machine is None) == (url is None):
@@ -564,8 +563,8 @@ def tune(
 @click.argument("file", type=FILE)
 @click.option("--url", help="Of this LCM network [the usual one].")
 def record(file: Path, url: str | None) -> None:
-    """Write all that is said on an LCM network into FILE, an LCM log, until Ctrl-C. Unlike lcm-logger it drops nothing
-    that has come to this host."""
+    """Write all messages of an LCM network to FILE, an LCM log, until Ctrl-C. Unlike lcm-logger it drops no message
+    that this host has received."""
     end_in_order()
     url = url or usual_url()
     with write_log(file, url), contextlib.suppress(KeyboardInterrupt):
@@ -578,7 +577,7 @@ def record(file: Path, url: str | None) -> None:
 @click.argument("log", type=FILE)
 @START
 def replay(log: Path, start_number: int | None) -> int:
-    """Run the journal of a LOG of taktd again and compare every cycle, bit for bit."""
+    """Replay the journal of a LOG of taktd and compare every cycle, bit for bit."""
     with _bar(f"replay {log.name}") as progress:
         result = replay_log(log, run=-1 if start_number is None else start_number, progress=progress)
     print(f"{log}: {result.sentence}")
@@ -669,7 +668,7 @@ def export(
 @click.option("--yaml", "yaml_file", type=FILE, help="Write the cam into this file, as it stands in a machine file.")
 def show_cam(file: Path, name: str | None, **options: Any) -> int:
     """Check the cam of a FILE: points or an export of another system (any name), one cam (.yaml) or the cams of a
-    machine file. Says how smooth it is and what its slave meets; draws and converts it. Exit code 1: a limit of the
+    machine file. Reports its continuity and the peaks of its slave; draws and converts it. Exit code 1: a limit of the
     axis is exceeded."""
     from takt import cam_command
 
@@ -713,8 +712,8 @@ def show_cam(file: Path, name: str | None, **options: Any) -> int:
     help="G-code only: a folder with files of subs.",
 )
 def show_path(file: Path, **options: Any) -> int:
-    """Check the path of a FILE: G-code (.gcode, .nc, .ngc, .tap), a drawing (.svg) or elements (.csv). Says how long it
-    is, what it consists of and how far it extends; draws and converts it."""
+    """Check the path of a FILE: G-code (.gcode, .nc, .ngc, .tap), a drawing (.svg) or elements (.csv). Reports its
+    length, elements and extents; draws and converts it."""
     from takt import toolpath_command
 
     return toolpath_command.run(file, toolpath_command.Options(**options), out)
@@ -726,9 +725,8 @@ def show_path(file: Path, **options: Any) -> int:
 @click.option("--corner", type=float, help="Drawings only: mm of the lines that a corner takes [40].")
 @click.option("--yaml", "yaml_file", type=FILE, help="Drawings only: write them into this file.")
 def show_track(file: Path, **options: Any) -> int:
-    """Check the tracks of a FILE: a machine file, one with only the section `tracks`, or a drawing (.svg, .dxf). Says
-    how long they are, how tightly they bend, where they lead and how near to switches movers come too near to each
-    other; draws and converts them."""
+    """Check the tracks of a FILE: a machine file, one with only the section `tracks`, or a drawing (.svg, .dxf).
+    Reports lengths, least radii, links and collision ranges at switches; draws and converts them."""
     from takt import track_command
 
     return track_command.run(file, track_command.Options(**options), out)
@@ -739,7 +737,7 @@ def show_track(file: Path, **options: Any) -> int:
 @click.option("--save", type=FILE, help="Keep one run as a recording (.npz) or a table (.csv).")
 @START
 def show_log(log: Path, save: Path | None, start_number: int | None) -> int:
-    """Say what an LCM LOG holds. Exit code 1: it is not whole, and what is missing is said."""
+    """Summarise the content of an LCM LOG. Exit code 1: it is not whole; the missing parts are reported."""
     if save is not None:
         _writable(save, (".npz", ".csv"))
     with _bar(f"read {log.name}") as progress:
@@ -773,7 +771,7 @@ def show_log(log: Path, save: Path | None, start_number: int | None) -> int:
 @click.option("--axes", default=6, type=click.IntRange(1, 10_000), help="How many axes the made up machine has.")
 @click.option("--cycles", default=1_000_000, type=click.IntRange(1000), help="How many cycles to time.")
 def bench(machine: Path | None, axes: int, cycles: int) -> None:
-    """Time stepping in virtual time, idle and moving, beside the bare C++ loop."""
+    """Measure the speed of virtual time, idle and moving, against the bare C++ loop."""
     from takt.benchmark import measure
 
     with _bar("bench") as progress:
@@ -784,22 +782,22 @@ def bench(machine: Path | None, axes: int, cycles: int) -> None:
     out.print(table)
 
 
-# --- what they share ---
+# --- shared helpers ---
 
 
 def _say(sentence: str) -> None:
-    """At once, whoever reads it."""
+    """Prints a sentence and flushes the output."""
     click.echo(sentence)
 
 
 def _read(file: Path, start_number: int | None) -> Recording:
-    """A recording, an LCM log as one, or what there is in a directory."""
+    """Returns the recording in a file or directory; an LCM log is converted to one."""
     with _bar(f"read {file.name}") as progress:
         return read_run(file, progress, start_number)
 
 
 def _writable(target: Path, suffixes: Sequence[str]) -> Path:
-    """Refuses what could not be written, before the work for it is done."""
+    """Returns the target. Raises click.UsageError for a wrong suffix or a missing directory, before work is done."""
     if target.suffix not in suffixes:
         raise click.UsageError(f"{target}: expected a name that ends in {' or '.join(suffixes)}")
     if not target.parent.is_dir():
@@ -870,7 +868,7 @@ class _EngineTime(ProgressColumn):
 
 @contextlib.contextmanager
 def _watching(session: Session, title: str) -> Iterator[None]:
-    """Shows how far engine time has come, on a terminal."""
+    """Shows the progress of engine time on a terminal."""
     columns: Any = (SpinnerColumn(), TextColumn("{task.description}"), _EngineTime(session), TimeElapsedColumn())
     with Progress(*columns, console=err, transient=True, disable=not err.is_interactive) as progress:
         progress.add_task(title, total=None)
@@ -879,7 +877,7 @@ def _watching(session: Session, title: str) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _bar(title: str) -> Iterator[Share]:
-    """A progress bar, on a terminal; what it yields takes the share that is done."""
+    """Shows a progress bar on a terminal. Yields a function to call with the progress, 0 to 1."""
     share = TextColumn("{task.percentage:3.0f} %")
     columns: Any = (TextColumn("{task.description}"), BarColumn(), share, TimeElapsedColumn())
     with Progress(*columns, console=err, transient=True, disable=not err.is_interactive) as progress:

@@ -1,11 +1,11 @@
-"""Paths of tools, from G-code or SVG: what a group's `move_path` goes along.
+"""Tool paths, from G-code or SVG, for a group's `move_path`.
 
     path = toolpath.read("drawing.gcode")
     path.length, path.extents                   # mm
     path.to_csv("drawing.csv")                  # the `file` of a path in a machine file
 
-Lines and arcs only, in mm and mm/s; whatever else a file holds (helices, ellipses, Béziers) becomes lines that keep
-within a tolerance.
+Paths consist of lines and arcs, in [mm] and [mm/s]; other curves of a file (helices, ellipses, Béziers) are
+approximated by lines within a tolerance.
 """
 
 from __future__ import annotations
@@ -32,26 +32,26 @@ if TYPE_CHECKING:
 Array = npt.NDArray[np.float64]
 Point = tuple[float, float, float]
 
-SAME = 1e-6  # mm: nearer than this, points are the same, as for the engine
-SLACK = 2.0  # mm: how far beside, before or behind a path points may lie that are said to follow it
-TOLERANCE = 0.005  # mm between a curve and the lines that stand for it
-REACH = 1e8  # mm: coordinates of what is read are no larger, so that their errors stay below SAME
-MOST_ELEMENTS = 1_000_000  # of a path that is read
+SAME = 1e-6  # mm: points closer than this are the same, as in the engine
+SLACK = 2.0  # mm: distance beside, before or behind a path within which points follow it
+TOLERANCE = 0.005  # mm between a curve and its approximation by lines
+REACH = 1e8  # mm: largest coordinates accepted, so that their rounding errors stay below SAME
+MOST_ELEMENTS = 1_000_000  # of a path read from a file
 COLUMNS = ("shape", "x", "y", "z", "via_x", "via_y", "via_z", "velocity")
 GCODE = (".gcode", ".nc", ".ngc", ".tap")
-_BLOCK = 64  # points looked at together in `follow`
+_BLOCK = 64  # points processed together in `follow`
 _HOPELESS = (
     10 * SLACK
-)  # mm by which one way to lay points onto a path may be worse than another and still turn out best
+)  # mm by which the cost of an assignment of points to a path may exceed the least and still become the least
 
 
 class ToolpathError(TaktError, ValueError):
-    """A file is no path for a tool; the text says where and why."""
+    """A file does not describe a tool path; the text says where and why."""
 
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """A line to `end`, or an arc through `via` to it, from where the element before it ends."""
+    """A line to `end`, or an arc through `via` to `end`, from the end of the previous element."""
 
     end: Point  # mm
     via: Point | None = None
@@ -59,37 +59,37 @@ class Element:
 
 
 class Followed(NamedTuple):
-    """How points lie beside a path."""
+    """Points projected onto a path."""
 
     distance: Array  # mm, from the path
-    position: Array  # mm along the path, of the nearest place on it
+    position: Array  # arc length [mm] of the projection on the path
 
 
 class _Geometry(NamedTuple):
-    """A row an element. Of a line the centre is its beginning and u where it goes."""
+    """One row per element. For a line, the centre is its beginning and u its direction."""
 
     begin: Array
     is_arc: npt.NDArray[np.bool_]
     centre: Array
     u: Array  # unit vectors: from the centre to the beginning ...
-    w: Array  # ... and where the arc goes from there
+    w: Array  # ... and the direction of the arc at its beginning
     radius: Array
     length: Array
-    at: Array  # mm along the path where it begins; one more at the end
+    at: Array  # arc length [mm] at which it begins; one more row for the end of the path
 
 
 @dataclass(frozen=True)
 class Toolpath:
-    """Lines and arcs from `start` on."""
+    """A path of lines and arcs from `start`."""
 
     start: Point
     elements: tuple[Element, ...]
-    left_out: tuple[str, ...] = ()  # what the file said besides, a sentence each
-    read_as: str = ""  # the dialect of G-code, and by what it was recognised
+    left_out: tuple[str, ...] = ()  # ignored contents of the file, a sentence each
+    read_as: str = ""  # the dialect of G-code, and how it was recognised
 
     @classmethod
     def from_csv(cls, path: str | PathLike[str], start: Point = (0.0, 0.0, 0.0)) -> Toolpath:
-        """Lines and arcs of a file as machine files name it. Raises ToolpathError."""
+        """Returns the path in a CSV file, the `file` of a path in a machine file. Raises ToolpathError."""
         head, rows = read_rows(path, ToolpathError)
         if not {"x", "y", "z"} <= set(head) <= set(COLUMNS):
             raise ToolpathError(f"{path}:1: expected the columns x, y, z and perhaps {', '.join(COLUMNS)}")
@@ -103,22 +103,22 @@ class Toolpath:
 
     @property
     def length(self) -> float:
-        """mm."""
+        """Length of the path [mm]."""
         return float(self._geometry.at[-1])
 
     @property
     def end(self) -> Point:
-        """Where it ends."""
+        """The end point [mm]."""
         return self.elements[-1].end if self.elements else self.start
 
     @property
     def extents(self) -> Array:
-        """(2, 3): the least and the greatest X, Y, Z on it, in mm."""
+        """The least and the greatest X, Y, Z [mm] on the path, shape (2, 3)."""
         g = self._geometry
         points = [np.array([self.start]), *([_ends(self.elements)] if self.elements else [])]
         u, w, radius = g.u[g.is_arc], g.w[g.is_arc], g.radius[g.is_arc, np.newaxis]
         sweep = g.length[g.is_arc, np.newaxis] / radius
-        for turn in (0.0, math.pi):  # where an arc goes neither up nor down an axis
+        for turn in (0.0, math.pi):  # where an arc is perpendicular to a coordinate axis
             angle = np.mod(np.arctan2(w, u) + turn, 2 * math.pi)
             there = g.centre[g.is_arc] + radius * (u * np.cos(angle) + w * np.sin(angle))
             points.append(np.where(angle <= sweep, there, g.begin[g.is_arc]))
@@ -127,17 +127,17 @@ class Toolpath:
 
     @property
     def is_arc(self) -> npt.NDArray[np.bool_]:
-        """(n,): which elements are arcs."""
+        """Whether each element is an arc, shape (n,)."""
         return self._geometry.is_arc
 
     @property
     def at(self) -> Array:
-        """(n + 1,): mm along the path where each element begins, and where the last one ends."""
+        """Arc lengths [mm] at which each element begins, and at which the last one ends, shape (n + 1,)."""
         return self._geometry.at
 
     def points(self, step: float) -> tuple[Array, Array]:
-        """Points (m, 3) on it, each element's ends among them and no more than `step` mm apart, and how far along the
-        path (m,) they lie."""
+        """Returns points on the path [mm], shape (m, 3), and their arc lengths [mm], shape (m,). The points include the
+        ends of all elements and are at most `step` [mm] apart. Raises ValueError unless `step` is above 0."""
         if not step > 0:
             raise ValueError(f"step is a number of mm above 0, not {step}")
         g = self._geometry
@@ -149,13 +149,19 @@ class Toolpath:
         return places, np.concatenate([[0.0], g.at[which] + ways])
 
     def follow(self, points: npt.ArrayLike, slack: float = SLACK, time_s: npt.ArrayLike | None = None) -> Followed:
-        """How points (m, 3) that were gone through one after the other, from the start on, lie beside the path.
+        """Projects a sequence of points, traversed in order from the start, onto the path.
 
-        Each lies by a place on the path that is hardly further on from the place before than the points are apart: so a
-        path may cross itself or go back over itself, and who leaves a loop out is not mistaken for who goes round it.
-        `slack`: mm that the points may be beside, before or behind. `time_s` (m,), rising: when they were gone through;
-        where some are missing, more of the path may lie between two points than their distance, as much as was gone
-        elsewhere at the greatest speed (of 99 in 100 steps)."""
+        The arc length from one projection to the next hardly exceeds the distance of the two points. So a path may
+        cross itself or return over itself, and points that skip a loop are not mistaken for points that follow it.
+
+        points: [mm], shape (m, 3).
+        slack: distance [mm] that points may be beside the path, or before or behind on it.
+        time_s: times of the points [s], increasing, shape (m,). Where samples are missing, the path between two points
+            may be longer than their distance, up to the greatest speed elsewhere (99 % quantile). None: none are
+            missing.
+
+        Raises ValueError for arrays of other shapes, ToolpathError if the path has no elements.
+        """
         rows = np.asarray(points, float)
         if rows.ndim != 2 or rows.shape[1] != 3:
             raise ValueError(f"expected rows of 3 numbers, found an array of shape {rows.shape}")
@@ -166,7 +172,7 @@ class Toolpath:
         found = self._follow_quickly(rows, most, slack)
         if not len(rows) or not np.all(np.isfinite(rows)):
             return found
-        # That it is right shows: it leads along the path, to its end where the points are there.
+        # A right result can be recognised: it leads along the path, to its end if the points end there.
         lost = np.max(found.distance) > slack
         behind = self.length - found.position[-1] > 2 * np.linalg.norm(rows[-1] - self.end) + 1e-6
         gone = np.diff(found.position)
@@ -177,8 +183,8 @@ class Toolpath:
         return found
 
     def _follow_quickly(self, rows: Array, most: Array, slack: float) -> Followed:
-        """Many points at once: the nearest places within reach of them all. Where a path goes back over itself, or
-        crosses itself in a hole, they may be on the wrong part of it."""
+        """Projects blocks of points to the nearest positions within reach of a whole block. Where a path returns over
+        itself, or crosses itself in a gap of the points, these may be on the wrong part of it."""
         distance, position = np.empty(len(rows)), np.empty(len(rows))
         here = 0.0
         for first in range(0, len(rows), _BLOCK):
@@ -193,11 +199,11 @@ class Toolpath:
         return Followed(distance, position)
 
     def _follow_surely(self, rows: Array, way: Array, most: Array, slack: float) -> Followed:
-        """The cheapest of all ways to lay the points onto the path in order (Viterbi's algorithm over the nearest place
-        on each element within reach). It costs, in mm, what points are beside the path, and what the path goes more or
-        less than they did."""
+        """Returns the assignment of least cost of the points to the path in order (Viterbi's algorithm over the nearest
+        position on each element within reach). The cost [mm] is the distance of the points from the path plus the
+        difference between the arc length and the distance of the points."""
         places, costs, steps = np.zeros(1), np.zeros(1), []
-        first, known = 0, slice(0, 0)  # the point, and the elements, from which on distances are known
+        first, known = 0, slice(0, 0)  # first point and elements of the block of known distances
         for i, point in enumerate(rows):
             low, high = float(np.min(places)) - slack, float(np.max(places)) + float(most[i]) + slack
             part = self._between(low, high)
@@ -209,7 +215,7 @@ class Toolpath:
             these = slice(part.start - known.start, part.stop - known.start)
             away, where = aways[i - first, these], wheres[i - first, these]
             near = np.flatnonzero(away <= np.min(away) + slack)
-            stay = places[np.argmin(costs)]  # always possible, however far off the point is
+            stay = places[np.argmin(costs)]  # always possible, for any distance of the point
             there = np.append(where[near], stay)
             beside = np.append(away[near], np.linalg.norm(point - self._place(stay)))
             gone = there - places[:, np.newaxis]
@@ -221,7 +227,7 @@ class Toolpath:
             good = np.flatnonzero(cost <= np.min(cost) + _HOPELESS)
             places, costs = there[good], cost[good]
             steps.append((places, beside[good], before[good]))
-        best = int(np.argmin(costs + 1e-3 * np.abs(self.length - places)))  # of equals the one that got there
+        best = int(np.argmin(costs + 1e-3 * np.abs(self.length - places)))  # of equals, the one nearest to the end
         distance, position = np.empty(len(rows)), np.empty(len(rows))
         for i in range(len(rows) - 1, -1, -1):
             places, beside, before = steps[i]
@@ -229,18 +235,18 @@ class Toolpath:
         return Followed(distance, position)
 
     def _between(self, low: float, high: float) -> slice:
-        """The elements that lie, in part at least, between so many mm along the path."""
+        """Returns the elements that overlap this range of arc lengths [mm]."""
         begin = max(int(np.searchsorted(self.at, low, "right")) - 1, 0)
         begin = min(begin, len(self.elements) - 1)
         return slice(begin, max(min(int(np.searchsorted(self.at, high)), len(self.elements)), begin + 1))
 
     def _place(self, way: float) -> Array:
-        """The point so many mm along the path."""
+        """Returns the point at arc length `way` [mm]."""
         part = self._between(way, way)
         return np.asarray(self._places(np.array([part.start]), np.array([way - self.at[part.start]]))[0])
 
     def shifted(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Toolpath:
-        """The same, elsewhere."""
+        """Returns the path translated by x, y, z [mm]."""
 
         def move(point: Point) -> Point:
             return (point[0] + x, point[1] + y, point[2] + z)
@@ -251,7 +257,8 @@ class Toolpath:
         return Toolpath(move(self.start), elements, self.left_out, self.read_as)
 
     def to_csv(self, path: str | PathLike[str]) -> Path:
-        """Writes the elements as the `file` of a path in a machine file. It does not say where the path starts."""
+        """Writes the elements as the `file` of a path in a machine file. Returns the path of the file, which does not
+        contain the start of the tool path."""
         target = Path(path)
         with written(target) as beside, beside.open("w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")
@@ -264,7 +271,7 @@ class Toolpath:
         return target
 
     def to_elements(self) -> list[dict[str, Any]]:
-        """The same as the `elements` of a path in a machine file."""
+        """Returns the elements in the form of the `elements` of a path in a machine file."""
         elements = []
         for one in self.elements:
             element: dict[str, Any] = {"shape": "arc" if one.via else "line"}
@@ -295,7 +302,7 @@ class Toolpath:
         return _Geometry(begin, is_arc, centre, u, w, radius, length, np.concatenate([[0.0], np.cumsum(length)]))
 
     def _places(self, which: npt.NDArray[np.int64], ways: Array) -> Array:
-        """Points `ways` mm from the beginnings of elements."""
+        """Returns the points at arc lengths `ways` [mm] from the beginnings of the elements `which`."""
         g = self._geometry
         arc = g.is_arc[which, np.newaxis]
         angle = np.divide(ways, g.radius[which], out=np.zeros_like(ways), where=g.is_arc[which])[:, np.newaxis]
@@ -304,7 +311,8 @@ class Toolpath:
         return np.asarray(g.centre[which] + along * g.u[which] + radius * np.sin(angle) * g.w[which])
 
     def _distances(self, points: Array, part: slice) -> tuple[Array, Array]:
-        """Of each point (m) from each element of a part (k) of the path, and how far along it the nearest place is."""
+        """Returns the distance of each of m points from each of the k elements of a part of the path, and the arc
+        length of the closest point from the beginning of the element, shape (m, k) each."""
         g = self._geometry
         out = points[:, np.newaxis, :] - g.centre[part]
         along = np.einsum("mkc,kc->mk", out, g.u[part])
@@ -320,7 +328,7 @@ class Toolpath:
         return np.linalg.norm(points[:, np.newaxis, :] - there, axis=2), ways
 
     def _checked(self, source: str) -> Toolpath:
-        """Itself; raises where an arc is none, or an element has no length."""
+        """Returns itself. Raises ToolpathError if an arc is degenerate or an element has no length."""
         g = self._geometry
         for wrong, why in ((~np.isfinite(g.length), "the three points of an arc lie on a line"),
                            (~(g.length >= SAME), "has no length")):  # fmt: skip
@@ -335,10 +343,13 @@ def read(
     tolerance: float = TOLERANCE,
     gcode: Options | None = None,
 ) -> Toolpath:
-    """Reads G-code (.gcode, .nc, .ngc, .tap), a drawing (.svg) or elements (.csv).
+    """Reads G-code (.gcode, .nc, .ngc, .tap), a drawing (.svg) or elements (.csv). Returns the path.
 
-    `start`: where the tool is when it begins, in mm. `tolerance`: how far lines that stand for curves may be from
-    them, in mm. `gcode`: how to read G-code (takt.gcode.Options); None: as it tells itself. Raises ToolpathError."""
+    start: initial position of the tool [mm].
+    tolerance: largest distance [mm] between curves and their approximation by lines.
+    gcode: how to read G-code (takt.gcode.Options); None: recognised from its content.
+
+    Raises ToolpathError."""
     suffix = Path(path).suffix.lower()
     if suffix in GCODE:
         from takt.gcode import read_gcode
@@ -356,7 +367,8 @@ def read(
 
 
 def _most(way: Array, time_s: Array) -> Array:
-    """How far it may have gone at most from each point to the next, by their distances (the first is 0) and times."""
+    """Returns the largest arc length that may lie between each point and the one before, from their distances (the
+    first is 0) and times."""
     if time_s.shape != way.shape or not np.all(np.isfinite(time_s)) or not np.all(np.diff(time_s) > 0):
         raise ValueError(f"time_s: expected {len(way)} rising numbers, one for each point")
     if len(way) < 2:
@@ -368,28 +380,29 @@ def _most(way: Array, time_s: Array) -> Array:
 
 
 def split_turn(sweep: float) -> int:
-    """Into how many equal arcs an arc of so many rad is cut: none is more than half a turn, so that three points
-    say which one it is."""
+    """Returns the number of equal arcs into which an arc of `sweep` [rad] is split, so that none is more than half a
+    turn and three points define each of them."""
     return max(math.ceil(abs(sweep) / math.pi - 1e-9), 1)
 
 
 def chords(sweep: float, radius: float, tolerance: float) -> int:
-    """How many chords keep within a tolerance of an arc of so many rad."""
+    """Returns the number of chords that approximate an arc of `sweep` [rad] within a tolerance."""
     if radius <= tolerance:
         return max(math.ceil(abs(sweep) / 1.0), 1)
     return max(math.ceil(abs(sweep) / (2 * math.acos(1 - tolerance / radius))), 1)
 
 
 def chords_of_bezier(control: Sequence[complex], tolerance: float) -> int:
-    """How many chords of equal shares keep within a tolerance of a Bézier curve. A chord over a share h is off by at
-    most h² / 8 times the curve's second derivative, which the second differences of its control points bound."""
+    """Returns the number of chords, equal in parameter, that approximate a Bézier curve within a tolerance. The error
+    of a chord over a parameter interval h is at most h² / 8 times the second derivative, which is bounded by the second
+    differences of the control points."""
     n = len(control) - 1
     second = max(abs(control[i + 2] - 2 * control[i + 1] + control[i]) for i in range(n - 1)) * n * (n - 1)
     return max(math.ceil(math.sqrt(second / (8 * tolerance))), 1)
 
 
 def _arcs(begin: Array, via: Array, end: Array) -> tuple[Array, Array, Array, Array, Array]:
-    """Centre, u, w, radius and length of arcs through three points each; NaN where they lie on a line."""
+    """Returns centre, u, w, radius and length of arcs through three points each; NaN if they lie on a line."""
     a, b = via - begin, end - begin
     normal = np.cross(a, b)
     square = np.einsum("nc,nc->n", normal, normal)

@@ -19,7 +19,7 @@ from takt.written import refuse_input
 
 @dataclass(frozen=True)
 class Options:
-    """Those of the command line, by their names there."""
+    """The options of the command line, by their names there."""
 
     start: toolpath.Point = (0.0, 0.0, 0.0)
     tolerance: float = toolpath.TOLERANCE
@@ -33,7 +33,7 @@ class Options:
     subroutines: tuple[Path, ...] = ()
 
     def of_gcode(self) -> gcode.Options | None:
-        """How to read G-code; None: as without any of these options. Raises click.UsageError."""
+        """Returns how to read G-code; None if no option of G-code is given. Raises click.UsageError."""
         given = gcode.Options(
             self.dialect,
             self.leave_out,
@@ -46,7 +46,7 @@ class Options:
 
 
 def run(file: Path, options: Options, out: Console) -> int:
-    """Reads, says, draws, writes."""
+    """Reads, reports, draws and writes a path. Returns 0."""
     _refuse_nonsense(file, options)
     path = toolpath.read(file, options.start, options.tolerance, options.of_gcode())
     _say(file, path, out)

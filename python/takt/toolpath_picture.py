@@ -1,4 +1,4 @@
-"""Pictures of paths of tools, and of how a group followed one."""
+"""Pictures of tool paths, and of how a group followed one."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ COMMANDED, ACTUAL = style.PALETTE[0], style.PALETTE[1]
 
 
 def picture(path: Toolpath, target: str | os.PathLike[str], title: str = "") -> Path:
-    """Writes what `draw` draws into a file."""
+    """Draws a path as `draw` does and writes it to a file. Returns the path of the file."""
     return plot.save(draw(path, title), target)
 
 
 def draw(path: Toolpath, title: str = "") -> plot.Picture:
-    """Draws a path as seen from above; thin where the tool goes at the velocity of the command."""
+    """Returns a picture of a path in top view; thin where the tool moves at the velocity of the command."""
     low, high = path.extents
     width, depth = (max(float(one), 1e-3) for one in (high - low)[:2])
     tall = min(max(plot.WIDTH_IN * depth / width, 4.0), plot.WIDTH_IN)
@@ -41,7 +41,7 @@ def draw(path: Toolpath, title: str = "") -> plot.Picture:
 
 
 def plan(ax: Axes, path: Toolpath) -> None:
-    """The path in X and Y, on equal scales."""
+    """Draws the path in X and Y, on equal scales."""
     plot.dress(ax)
     ax.set_aspect("equal")
     ax.set_xlabel("X [mm]", color=plot.INK, size=10.5)
@@ -57,7 +57,7 @@ def plan(ax: Axes, path: Toolpath) -> None:
 
 
 def _stretches(path: Toolpath) -> Sequence[tuple[bool, tuple[int, int]]]:
-    """Runs of elements with or without velocities of their own."""
+    """Returns runs of elements without (True) or with (False) velocities of their own, as ranges."""
     found, at = [], 0
     for quick, run in groupby(one.velocity is None for one in path.elements):
         count = len(list(run))
@@ -68,21 +68,21 @@ def _stretches(path: Toolpath) -> Sequence[tuple[bool, tuple[int, int]]]:
 
 @dataclass(frozen=True)
 class Followed:
-    """How a group went along a path: what was commanded and what was measured, beside the path, over the way."""
+    """How a group followed a path: set points and actual values, and their deviation from the path."""
 
     path: Toolpath
     time_s: Array
     commanded: Array  # (n, 3), mm
     actual: Array  # (n, 3), mm
-    position: Array  # mm along the path
-    deviation: Array  # mm of what was commanded from the path
-    actual_deviation: Array  # mm of what was measured from the path
-    speed: Array  # mm/s as commanded
+    position: Array  # arc length [mm] of the set points
+    deviation: Array  # mm, of the set points from the path
+    actual_deviation: Array  # mm, of the actual positions from the path
+    speed: Array  # mm/s, commanded
     actual_speed: Array  # mm/s
 
     @classmethod
     def of(cls, path: Toolpath, recording: Recording, group: str, begin_s: float, end_s: float) -> Followed:
-        """Of a recording, between two times. The path is in the machine's coordinates."""
+        """From a recording, between two times [s]. The path is in the machine coordinate system."""
         table = recording.slice(begin_s, end_s)[group]
 
         def places(prefix: str) -> Array:
@@ -100,13 +100,17 @@ class Followed:
 def followed_picture(
     followed: Followed, title: str, *, bound: float, detail: tuple[float, float, float] | None = None
 ) -> plot.Picture:
-    """The path with what was commanded and measured from above; below, over the way, the deviation from the path with
-    what was allowed (`bound`, mm) and the speed. `detail`: X, Y and width in mm of a place to magnify."""
+    """Returns a picture of the path with set points and actual positions in top view; below, over the arc length, the
+    deviation from the path and the speed.
+
+    bound: allowed deviation [mm].
+    detail: X, Y and width [mm] of a magnified area; None: none.
+    """
     figure = plot.Picture(11.0, layout="constrained")
     grid = figure.add_gridspec(3, 2, height_ratios=[2.7, 1, 1], width_ratios=[1.55, 1])
     places = [grid[0, 0], grid[0, 1]] if detail else [grid[0, :]]
     views = [figure.add_subplot(place) for place in places]
-    # The way between two lines is no part of the drawing.
+    # Motions between two lines are not part of the drawing.
     quick = np.array([one.velocity is None for one in followed.path.elements])
     which = np.searchsorted(followed.path.at, followed.position, "right") - 1
     lifted = quick[np.clip(which, 0, len(quick) - 1), np.newaxis]

@@ -20,7 +20,7 @@ from takt.written import refuse_input, write_text
 
 @dataclass(frozen=True)
 class Options:
-    """Those of the command line, by their names there."""
+    """The options of the command line, by their names there."""
 
     target: Path | None = None
     corner: float | None = None
@@ -28,7 +28,7 @@ class Options:
 
 
 def run(file: Path, options: Options, out: Console) -> int:
-    """Reads, checks, says, draws, writes."""
+    """Reads, checks, reports, draws and writes tracks. Returns 0."""
     _refuse_nonsense(file, options)
     drawing = read_drawing(file, options.corner or CORNER) if file.suffix.lower() in DRAWINGS else None
     try:

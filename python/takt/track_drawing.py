@@ -1,8 +1,8 @@
-"""Tracks from drawings (SVG, DXF): a track for each line that is drawn in one go.
+"""Tracks from drawings (SVG, DXF): one track for each connected line.
 
-Lines and arcs are taken as they are, ellipses and splines become lines. Ends nearer to each other than JOIN are joined.
-Where two elements meet with a corner, or where a line becomes an arc, both are shortened, so that a transition can lead
-from one to the other. What is left out of a drawing is said in comments before the tracks.
+Lines and arcs are kept, ellipses and splines are approximated by lines. Ends closer to each other than JOIN are joined.
+Where two elements meet with a corner, or where a line meets an arc, both are shortened to make room for a transition
+between them. Ignored contents of a drawing are listed in comments before the tracks.
 """
 
 from __future__ import annotations
@@ -22,25 +22,25 @@ from takt.names import shown
 if TYPE_CHECKING:
     from takt.track_dxf import Run
 
-CORNER = 40.0  # mm that a corner takes of the lines that meet there
-TOLERANCE = 0.5  # mm from curves to lines for them
+CORNER = 40.0  # mm by which a corner shortens the lines that meet there
+TOLERANCE = 0.5  # mm between curves and their approximation by lines
 SAME = 1e-6  # mm
-JOIN = 0.01  # mm: ends that are apart by less are one
+JOIN = 0.01  # mm: ends closer than this are joined
 SMOOTH = 1e-6  # rad
-SHARE = 0.45  # a corner takes no more of a line
+SHARE = 0.45  # largest share of a line that a corner takes
 DRAWINGS = (".svg", ".dxf")
 _FINDING = re.compile(r"tracks\[(\d+)\](?:\.elements\[(\d+)\][^:]*)?[.:] ?(.*)", re.DOTALL)
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A line, or an arc about its centre; places are complex numbers, mm."""
+    """A line, or an arc about its centre; points are complex numbers [mm]."""
 
     begin: complex
     end: complex
     centre: complex | None = None
-    sweep: float = 0.0  # rad, of an arc; above 0 counterclockwise
-    source: str = ""  # what it was drawn as: an entity with its handle, a shape
+    sweep: float = 0.0  # rad, of an arc; positive: counterclockwise
+    source: str = ""  # its origin in the drawing: an entity with its handle, a shape
 
     @property
     def length(self) -> float:
@@ -64,14 +64,14 @@ class Piece:
         return out * (1j if self.sweep > 0 else -1j)
 
     def between(self, first: float, last: float) -> Piece:
-        """A part of it, by shares of its length."""
+        """Returns a part of the piece, by shares of its length."""
         return replace(self, begin=self.place(first), end=self.place(last), sweep=self.sweep * (last - first))
 
     def reversed(self) -> Piece:
         return replace(self, begin=self.end, end=self.begin, sweep=-self.sweep)
 
     def joined(self, begin: complex | None = None, end: complex | None = None) -> Piece:
-        """With an end moved by less than JOIN; an arc keeps its sweep."""
+        """Returns the piece with an end moved by less than JOIN; an arc keeps its sweep."""
         first, last = self.begin if begin is None else begin, self.end if end is None else end
         if self.centre is None or abs(self.sweep) > 2 * math.pi - SMOOTH or abs(last - first) < SAME:
             return replace(self, begin=first, end=last)
@@ -79,18 +79,18 @@ class Piece:
         return replace(self, begin=first, end=last, centre=first + half * (1 + 1j / math.tan(self.sweep / 2)))
 
     def goes_on_to(self, other: Piece) -> bool:
-        """Without a step of direction or curvature."""
+        """Returns whether `other` continues this piece without a step of direction or curvature."""
         turn = abs(cmath.phase(other.direction(0) / self.direction(1)))
         return turn < SMOOTH and math.isclose(self.curvature, other.curvature, rel_tol=1e-6, abs_tol=1e-12)
 
 
 class Drawing(NamedTuple):
     tracks: str  # the section of a machine file
-    left_out: tuple[str, ...]  # what the drawing has besides, a sentence each
-    elements: tuple[tuple[str, ...], ...]  # of each track: what they were drawn as
+    left_out: tuple[str, ...]  # ignored contents of the drawing, a sentence each
+    elements: tuple[tuple[str, ...], ...]  # by track: the origins of its elements in the drawing
 
     def placed(self, file: Path, problem: str) -> str:
-        """What is wrong with a track, with the element of the drawing instead of a line of `tracks`."""
+        """Returns a problem of a track with the element of the drawing instead of a line of `tracks`."""
         sentence = re.sub(r"^:\d+:\d+: ", "", problem.removeprefix(shown(file)))
         match = _FINDING.fullmatch(sentence)
         if not match:
@@ -103,12 +103,13 @@ class Drawing(NamedTuple):
 
 
 def read(file: Path, corner: float = CORNER) -> str:
-    """The section `tracks` of a machine file that says what is drawn. Raises TaktError."""
+    """Returns a drawing as the section `tracks` of a machine file. `corner`: [mm] by which a corner shortens the lines
+    that meet there. Raises TaktError."""
     return read_drawing(file, corner).tracks
 
 
 def read_drawing(file: Path, corner: float = CORNER) -> Drawing:
-    """The same, and what was left out. Raises TaktError."""
+    """Returns the tracks of a drawing, with its ignored contents. Raises TaktError."""
     left_out: Counter[str] = Counter()
     if file.suffix.lower() == ".svg":
         strokes = list(_of_svg(file, left_out))
@@ -132,7 +133,7 @@ def read_drawing(file: Path, corner: float = CORNER) -> Drawing:
 
 
 def _merged(pieces: list[Piece]) -> list[Piece]:
-    """What goes on smoothly is one."""
+    """Returns the pieces with smooth continuations merged into one piece."""
     merged = pieces[:1]
     for piece in pieces[1:]:
         last = merged[-1]
@@ -145,7 +146,7 @@ def _merged(pieces: list[Piece]) -> list[Piece]:
 
 
 def _rounded(pieces: Sequence[Piece], closed: bool, corner: float) -> list[Piece]:
-    """With gaps where they do not go on smoothly."""
+    """Returns the pieces with gaps where they do not continue smoothly."""
     count = len(pieces)
     last = count if closed and count > 1 else count - 1
     cuts = [not pieces[i].goes_on_to(pieces[(i + 1) % count]) for i in range(last)]
@@ -203,7 +204,7 @@ def _of_svg(file: Path, left_out: Counter[str]) -> Iterator[list[Piece]]:
 
 
 def _arc_through(begin: complex, via: complex, end: complex) -> Piece:
-    """No more than half a turn."""
+    """Returns the arc through three points; requires at most half a turn."""
     a, b = via - begin, end - begin
     cross = (a.conjugate() * b).imag
     centre = begin + 1j * (abs(a) ** 2 * b - abs(b) ** 2 * a) / (-2 * cross)
@@ -212,8 +213,8 @@ def _arc_through(begin: complex, via: complex, end: complex) -> Piece:
 
 
 def _connected(runs: Sequence[Run]) -> Iterator[list[Piece]]:
-    """Strokes: what was drawn in one go, and loose runs with all that goes on at their ends, in whatever order and
-    sense they were drawn."""
+    """Yields strokes: complete runs, and loose runs joined with those that continue at their ends, in any order and
+    direction of drawing."""
     loose = [run.pieces for run in runs if run.loose and not _is_closed(run.pieces)]
     yield from (run.pieces for run in runs if not run.loose or _is_closed(run.pieces))
     ends = _Ends(loose)
@@ -231,7 +232,7 @@ def _connected(runs: Sequence[Run]) -> Iterator[list[Piece]]:
 
 
 def _from(pieces: list[Piece], begin: complex) -> list[Piece]:
-    """In the sense in which they begin there."""
+    """Returns the pieces in the direction in which they begin at `begin`."""
     return pieces if abs(pieces[0].begin - begin) < JOIN else _turned(pieces)
 
 
@@ -244,7 +245,7 @@ def _is_closed(pieces: Sequence[Piece]) -> bool:
 
 
 class _Ends:
-    """Where runs of pieces end, in squares of JOIN, so that each is compared with its neighbours only."""
+    """The ends of runs of pieces in a grid of cell size JOIN, so that each is compared only with its neighbours."""
 
     def __init__(self, runs: Sequence[list[Piece]]) -> None:
         self._ends = [(pieces[0].begin, pieces[-1].end) for pieces in runs]
@@ -255,14 +256,14 @@ class _Ends:
                 self._squares.setdefault(self._square(end), []).append(i)
 
     def take(self, i: int) -> bool:
-        """False: it is taken already."""
+        """Takes a run. Returns False if it has been taken already."""
         if i not in self._left:
             return False
         self._left.remove(i)
         return True
 
     def at(self, place: complex) -> int | None:
-        """The first run left that has an end there."""
+        """Returns the first remaining run with an end at a point; None if there is none."""
         x, y = self._square(place)
         near = [
             i
@@ -279,7 +280,7 @@ class _Ends:
 
 
 def _chained(pieces: list[Piece]) -> list[Piece]:
-    """With each piece beginning exactly where the one before it ends, also round a closed one."""
+    """Returns the pieces with each beginning exactly at the end of the previous one, also around a closed loop."""
     chained = pieces[:1]
     for piece in pieces[1:]:
         chained.append(piece.joined(begin=chained[-1].end))

@@ -1,8 +1,8 @@
-"""Lines and arcs of a DXF drawing, in mm (needs ezdxf: pip install ezdxf).
+"""Reads lines and arcs of a DXF drawing, in [mm] (needs ezdxf: pip install ezdxf).
 
-Of the model space: lines, arcs, circles, polylines, ellipses, splines, helices as seen from above, also within blocks.
-Coordinate systems of entities (extrusion) and blocks are ezdxf's matter. Texts, dimensions, hatchings and the like are
-left out; surfaces and bodies, and curves that do not lie in a plane parallel to X and Y, are errors.
+From the model space: lines, arcs, circles, polylines, ellipses, splines, helices in top view, also within blocks.
+Coordinate systems of entities (extrusion) and blocks are handled by ezdxf. Texts, dimensions, hatchings and the like
+are ignored; surfaces and bodies, and curves that are not in a plane parallel to X and Y, are errors.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from takt.errors import TaktError, shortened
 from takt.toolpath import REACH
 from takt.track_drawing import SAME, TOLERANCE, Piece
 
-MOST = 100_000  # entities, with those of blocks, and lines of curves
-DEPTH = 50  # of blocks in one another
-FLAT = 1e-6  # mm by which an entity may leave its plane; also of the direction of its extrusion
+MOST = 100_000  # entities, including those of blocks and the lines of curves
+DEPTH = 50  # of nested blocks
+FLAT = 1e-6  # mm by which an entity may leave its plane; also the tolerance of its extrusion direction
 _SURVEY_FOOT = 1200e3 / 3937  # mm
-# mm of the units ($INSUNITS) that ezdxf does not know, or not exactly: those of inches.
+# mm per unit ($INSUNITS), for units that ezdxf does not know, or not exactly: those based on inches.
 _UNITS = {
     **{0: 1.0, 1: 25.4, 2: 304.8, 3: 1609344.0, 8: 25.4e-6, 9: 0.0254, 10: 914.4},
     **{21: _SURVEY_FOOT, 22: _SURVEY_FOOT / 12, 23: 3 * _SURVEY_FOOT, 24: 5280 * _SURVEY_FOOT},
@@ -42,14 +42,14 @@ _ANNOTATIONS = {
 
 
 class Run(NamedTuple):
-    """What an entity draws. `loose`: it may go on in others that it meets; polylines are complete."""
+    """The pieces of an entity. `loose`: it may continue in adjacent entities; polylines are complete."""
 
     pieces: list[Piece]
     loose: bool
 
 
 def read_dxf(file: str | PathLike[str], left_out: Counter[str]) -> list[Run]:
-    """What the entities draw, in their order. Counts what is left out. Raises TaktError."""
+    """Returns the runs of the entities, in their order, and counts ignored ones in `left_out`. Raises TaktError."""
     try:
         from ezdxf.enums import InsertUnits
         from ezdxf.filemanagement import readfile
@@ -59,7 +59,7 @@ def read_dxf(file: str | PathLike[str], left_out: Counter[str]) -> list[Run]:
     try:
         drawing = readfile(str(file))
         space = drawing.modelspace()
-    except Exception as error:  # ezdxf raises whatever the data make it raise
+    except Exception as error:  # ezdxf raises many kinds of errors on bad data
         raise TaktError(f"{file}: is no DXF: {shortened(str(error))}") from None
     try:
         scale = _UNITS.get(drawing.units) or conversion_factor(InsertUnits(drawing.units), InsertUnits.Millimeters)
@@ -67,7 +67,7 @@ def read_dxf(file: str | PathLike[str], left_out: Counter[str]) -> list[Run]:
         raise TaktError(f"{file}: its unit ($INSUNITS) is {drawing.units}, which is not known") from None
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RuntimeWarning)  # of numbers that become too large, and are refused here
+            warnings.simplefilter("ignore", RuntimeWarning)  # of overflowing numbers, which are refused here
             return list(_Reader(drawing, scale, left_out).runs(space, 0))
     except _EntityError as error:
         raise TaktError(f"{file}: {shortened(str(error), 400)}") from None
@@ -76,7 +76,7 @@ def read_dxf(file: str | PathLike[str], left_out: Counter[str]) -> list[Run]:
 
 
 class _EntityError(Exception):
-    """What is wrong with an entity."""
+    """An entity cannot be read; the text says why."""
 
 
 class _Reader:
@@ -85,7 +85,7 @@ class _Reader:
         self._hidden = {layer.dxf.name.lower() for layer in drawing.layers if layer.is_off() or layer.is_frozen()}
 
     def runs(self, entities: Iterable[Any], depth: int, matrix: Any = None) -> Iterator[Run]:
-        """`matrix`: from the coordinates of a block to those of the drawing; None: they are these."""
+        """Yields the runs of entities. `matrix`: from block coordinates to those of the drawing; None: identity."""
         for entity in entities:
             self._room(1)
             if self._is_hidden(entity):
@@ -172,7 +172,8 @@ class _Reader:
         return [piece for part in kept or found for piece in part]
 
     def _arc(self, entity: Any) -> Piece:
-        """ezdxf takes its points to the coordinates of the drawing; seen from below it turns the other way."""
+        """Returns an arc or circle. ezdxf transforms its points to the coordinates of the drawing; with an extrusion
+        towards -Z its direction is reversed."""
         extrusion = entity.dxf.get("extrusion", (0, 0, 1))
         x, y, z = (float(value) for value in extrusion)
         if math.hypot(x, y) > FLAT * abs(z):
@@ -204,7 +205,7 @@ class _Reader:
         return [Piece(points[i - 1], points[i]) for i in range(1, len(points)) if abs(points[i] - points[i - 1]) > SAME]
 
     def _point(self, point: Any, entity: Any, level: Any = None) -> complex:
-        """mm; `level`: a point of the same Z."""
+        """Returns a point [mm]. `level`: a point that must have the same Z."""
         x, y, z = (self._scale * float(value) for value in (point.x, point.y, point.z))
         self._check(entity, x, y, z)
         if level is not None and abs(z - self._scale * float(level.z)) > FLAT:
@@ -223,10 +224,10 @@ class _Reader:
 
 
 def _moved(entity: Any, matrix: Any) -> Any:
-    """A copy in other coordinates; a circle that the matrix does not leave one becomes an ellipse.
+    """Returns a transformed copy; a circle that is distorted becomes an ellipse.
 
-    ezdxf tells that by the lengths of two axes alone, which suffices for the matrix of one block. Of blocks in one
-    another the product is applied: an insertion cannot stand for all that two of them make."""
+    ezdxf detects this by the lengths of two axes only, which suffices for the matrix of one block. For nested blocks
+    the product is applied: a single insertion cannot represent every product of two."""
     from ezdxf.entities.ellipse import Ellipse
 
     copy = entity.copy()

@@ -1,4 +1,4 @@
-"""The tracks of a machine file, as they are made when it is loaded: lengths, curvature, links, collision ranges."""
+"""The tracks of a machine file as the engine makes them at loading: lengths, curvature, links, collision ranges."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from takt.names import shown
 
 Array = npt.NDArray[np.float64]
 STEP = 2.0  # mm between points of a curve, at most
-# What a file with tracks alone lacks; at its end, so that lines keep their numbers.
+# Sections missing in a file with tracks only; appended at its end, so that line numbers do not change.
 LACKING = {"name": "name: tracks", "axes": "axes: []"}
 
 
 @dataclass(frozen=True)
 class Points:
-    """Places along a track, in order."""
+    """Points along a track, in order."""
 
     s: Array  # mm
     x: Array
     y: Array
     direction: Array  # deg
-    curvature: Array  # 1/mm, above 0 to the left
-    given: npt.NDArray[np.bool_]  # false: of a transition
+    curvature: Array  # 1/mm, positive to the left
+    given: npt.NDArray[np.bool_]  # False: on a transition
 
 
 @dataclass(frozen=True)
@@ -38,13 +38,13 @@ class LaidTrack:
     name: str
     length: float  # mm
     closed: bool
-    smallest_radius: float  # mm; infinite where it is straight
+    smallest_radius: float  # mm; infinite if it is straight
     previous: tuple[str, ...]  # tracks that end where it starts
     subsequent: tuple[str, ...]  # tracks that start where it ends
     range_at_start: float  # mm, collision ranges
     range_at_end: float
-    traffic_ranges: tuple[float, float]  # mm, at start and end: what movers keep to
-    leads: tuple[float, float]  # mm, there: the largest lead against movers on tracks that meet it
+    traffic_ranges: tuple[float, float]  # mm, at start and end: the ranges that movers keep
+    leads: tuple[float, float]  # mm, at start and end: the largest lead against movers on adjacent tracks
     points: Points
 
 
@@ -72,7 +72,7 @@ class TrackLayout:
 
     @cached_property
     def tracks(self) -> tuple[LaidTrack, ...]:
-        """In the order of the file."""
+        """The tracks in the order of the file."""
         return tuple(self._track(i) for i in range(len(self._core.names)))
 
     def _track(self, i: int) -> LaidTrack:

@@ -1,4 +1,4 @@
-"""Pictures of tracks: from above, with the sense of travel and switches; below, how they bend along their way."""
+"""Pictures of tracks: a top view with directions of travel and switches; below, the curvature over the arc length."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MARK: dict[str, Any] = {"ms": 7, "mfc": "white", "mew": 1.6, "zorder": 5}
 
 
 def picture(layout: TrackLayout, target: str | os.PathLike[str], title: str = "") -> Path:
-    """Draws all tracks; transitions are thinner than what was given."""
+    """Draws all tracks, transitions thinner than given elements, and writes the picture. Returns its path."""
     tracks = [track for track in layout.tracks if track.length > 0]
     figure = Figure(figsize=(plot.WIDTH_IN, 12.0), dpi=plot.DPI, facecolor="white", layout="constrained")
     FigureCanvasAgg(figure)
@@ -70,7 +70,7 @@ def _draw(ax: Axes, track: LaidTrack, colour: str, every: float) -> None:
 
 
 def _mark_ends(ax: Axes, tracks: list[LaidTrack]) -> None:
-    """Open ends as rings, switches, where more than two tracks meet, as squares."""
+    """Marks open ends by rings, and switches, where more than two tracks meet, by squares."""
     for track in tracks:
         if track.closed:
             continue
