@@ -1,4 +1,4 @@
-"""What notebooks show as the last value of a cell: tables as HTML, in the notebook's own colours."""
+"""HTML tables that notebooks show as the last value of a cell, in the notebook's own colours."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from takt.twin.judging import Judged
     from takt.verdict import Verdict
 
-FIELDS = 6  # of a component, named in a table
-ROWS = 30  # of differences, of what failed in a sweep
+FIELDS = 6  # of a component named in a table
+ROWS = 30  # of differences, or of failures of a sweep
 
 
 def table(title: str, head: Sequence[str], rows: Iterable[Sequence[str]], note: str = "") -> str:
-    """A table with a title above and a note below; all texts are escaped."""
+    """Returns a table with a title above and a note below; all texts are escaped."""
     cells = "".join(f'<th style="text-align:left">{html.escape(text)}</th>' for text in head)
     lines = ("".join(f'<td style="text-align:left">{html.escape(str(text))}</td>' for text in row) for row in rows)
     body = "".join(f"<tr>{line}</tr>" for line in lines)
@@ -37,7 +37,7 @@ def table(title: str, head: Sequence[str], rows: Iterable[Sequence[str]], note: 
 
 
 def recording_table(recording: Recording) -> str:
-    """What was recorded, by component."""
+    """Returns a table of the recorded components."""
     from takt.export import rates
 
     title = f"Recording of {recording.meta.get('machine', 'a machine')}, {recording.duration_s:.3f} s"
@@ -55,24 +55,25 @@ def recording_table(recording: Recording) -> str:
 
 
 def session_table(session: Session) -> str:
-    """What the components of a machine do at this time."""
+    """Returns a table of the current states of the components of a machine."""
     title = f"{session.name} at {session.now:.3f} s, cycle {1e3 * session.period:g} ms"
     rows = [(name, one.KIND, _state(one)) for name, one in session.components.items()]
     return table(title, ("component", "kind", "state"), rows, "closed" if session._closed else "")
 
 
 def _state(component: Component) -> str:
-    """What its text in brackets says of it besides its name."""
+    """Returns the state in the component's repr, without its name."""
     try:
         said = repr(component).removeprefix("<").removesuffix(">")
-    except TaktError as error:  # over LCM, where nothing was heard of it yet
+    except TaktError as error:  # over LCM, before its first message
         return str(error)
     _, colon, state = said.partition(": ")
     return state if colon else "—"
 
 
 def component_table(component: Component) -> str:
-    """What a component publishes at this time, without what is 0 or off, but for its first fields."""
+    """Returns a table of the current published values of a component, without values that are 0 or off beyond its first
+    fields."""
     from takt.tables import KINDS, unit_of, units_of
 
     session, kind = component.session, KINDS[component.KIND]
@@ -86,7 +87,7 @@ def component_table(component: Component) -> str:
                 continue
             unit = unit_of(kind.name, field, own).removeprefix("1") if isinstance(value, float) else ""
             rows.append((field, _text(value), unit))
-    except TaktError as error:  # over LCM, where nothing was heard of it yet
+    except TaktError as error:  # over LCM, before its first message
         return table(title, (), (), str(error))
     rest = len(kind.units) - len(rows)
     return table(title, ("", "value", "unit"), rows, f"{counted(rest, 'other')}: 0, off or unknown" if rest else "")
@@ -101,7 +102,7 @@ def _text(value: Any) -> str:
 
 
 def outcome_table(outcome: Outcome) -> str:
-    """The verdicts of a scenario, with pictures of those that failed."""
+    """Returns a table of the verdicts of a scenario, with pictures of those that failed."""
     verdicts = (*([outcome.assertion] if outcome.assertion is not None else []), *outcome.verdicts)
     failed = [verdict for verdict in verdicts if not verdict.passed]
     rows = [("passed", verdict.title, verdict.sentence) for verdict in verdicts if verdict.passed]
@@ -112,7 +113,7 @@ def outcome_table(outcome: Outcome) -> str:
 
 
 def sweep_table(result: Result) -> str:
-    """What failed in a sweep, with the commands that make these runs again, and its numbers."""
+    """Returns tables of the failures of a sweep, with the commands that repeat these runs, and of its numbers."""
     summary = result.summary
     rest = summary.size - summary.runs
     title = f"{summary.passed:,} passed, {summary.failed:,} failed" + (f", {rest:,} not made yet" if rest else "")
@@ -129,7 +130,7 @@ def sweep_table(result: Result) -> str:
 
 
 def twin_table(judged: Judged) -> str:
-    """What a twin says of a run: figures beside those of the servo model, and verdicts."""
+    """Returns a table of the results of a twin: figures beside those of the servo model, and verdicts."""
     from takt.twin.judging import HEAD
 
     title = f"{'passed' if judged.passed else 'failed'}: {counted(judged.cycles, 'cycle')} in the twin"
@@ -146,7 +147,7 @@ def _line(verdict: Verdict) -> str:
 
 
 def verdict_picture(verdict: Verdict) -> str:
-    """What it says, and its picture."""
+    """Returns the sentence of a verdict and its picture."""
     from takt import plot
 
     text = _line(verdict)
@@ -157,7 +158,7 @@ def verdict_picture(verdict: Verdict) -> str:
 
 
 def comparison_table(comparison: Comparison) -> str:
-    """What differs between two runs."""
+    """Returns a table of the differences between two runs."""
     from takt.verdict import number, seconds
 
     def told(value: float | None, words: Any) -> str:

@@ -3,8 +3,8 @@
     figure = plot.draw(rec, "x.*_position", "x.following_error", title="first move")
     plot.save(figure, "first_move.png")
 
-Drawn without any window system and without matplotlib's global state. In a notebook a figure shows itself as the last
-value of a cell.
+Needs no window system and does not use matplotlib's global state. In a notebook a figure is shown as the last value of
+a cell.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ PICTURES = (".png", ".svg", ".pdf")
 INK = "#23282f"
 FAINT = "#8b939e"
 GRID = "#e6e9ee"
-MANY = 100  # events: beyond it starts and ends of commands are left out, and all others are drawn the fainter
+MANY = 100  # events; if more, starts and ends of commands are left out, and the others are drawn fainter
 _PLAIN_LANE = 0.775  # width of a lane, as a share of the picture
 EVENT_COLOURS = {"error": style.BAD, "end": "#9aa3ae", "start": "#4b5563", "mark": "#4b5563"}
 
@@ -48,10 +48,10 @@ Signal = tuple[str, str]
 
 
 class Picture(Figure):
-    """A figure that shows itself where notebooks show the last value of a cell."""
+    """A figure that notebooks show as the last value of a cell."""
 
     def __init__(self, height: float, **options: Any) -> None:
-        """`height` in inches."""
+        """height: [inch]; the width is WIDTH_IN."""
         super().__init__(figsize=(WIDTH_IN, height), dpi=DPI, facecolor="white", **options)
         FigureCanvasAgg(self)
 
@@ -60,16 +60,16 @@ class Picture(Figure):
 
 
 def png(figure: Figure) -> bytes:
-    """A figure as the bytes of a PNG file."""
+    """Returns a figure as the bytes of a PNG file."""
     data = io.BytesIO()
     figure.savefig(data, format="png", dpi=DPI)
     return data.getvalue()
 
 
 def select(recording: Recording, patterns: Sequence[str] = ()) -> list[Signal]:
-    """The signals that match any of the patterns ("x.set_position", "*.following_error", "x.*", or a
-    component's name alone); the usual ones of each component when there are no patterns. A pattern that
-    matches nothing is an error."""
+    """Returns the signals that match any of the patterns ("x.set_position", "*.following_error", "x.*"). The name of a
+    component alone selects its usual signals; without patterns, those of all components are returned. Raises
+    RecordingError for a pattern without a match."""
     everything = [(c, f) for c in recording.components for f in recording.fields(c)[2:]]
     chosen: dict[Signal, None] = {}
     for pattern in names_in(patterns, "signals", "signal", "patterns") or recording.components:
@@ -90,8 +90,16 @@ def draw(
     window: Interval | None = None,
     events: bool = True,
 ) -> Picture:
-    """Stacked lanes over time: one for each quantity and unit, one band for states and switches; command
-    marks above."""
+    """Draws signals over time and returns the picture: stacked lanes, one for each quantity and unit, with bands for
+    states and switches, and events above.
+
+    signals: patterns as in `select`; none: the usual signals of all components.
+    title: above the picture.
+    window: start and end [s]; None: the whole recording.
+    events: draws commands, errors and marks.
+
+    Raises RecordingError if there is nothing to draw.
+    """
     if window is not None:
         recording = recording.slice(*window)
     chosen = select(recording, signals)
@@ -129,8 +137,8 @@ def draw(
 
 
 def draw_verdict(verdict: Verdict, recording: Recording | None = None) -> Picture:
-    """The data that a verdict is about with its bounds; beside it, where it failed, the place magnified. The recording
-    that was judged says where samples are missing."""
+    """Draws the data of a verdict with its bounds and returns the picture; for a failure, with the time of the failure
+    magnified beside it. `recording`: the judged recording, to show where samples are missing."""
     lanes = list(verdict.lanes)
     torn = {
         trace.label: holes(recording, verdict.components, trace.label) if recording is not None else []
@@ -183,7 +191,8 @@ def draw_verdict(verdict: Verdict, recording: Recording | None = None) -> Pictur
 
 
 def save(figure: Figure, path: str | PathLike[str]) -> Path:
-    """Writes a picture of the kind its name ends in (PICTURES); a PNG is 1400 pixels wide."""
+    """Writes a picture in the format of its suffix (PICTURES); a PNG is 1400 pixels wide. Returns the path. Raises
+    ValueError for other suffixes."""
     target = Path(path)
     if target.suffix not in PICTURES:
         raise ValueError(f"{target}: expected a name that ends in {', '.join(PICTURES)}")
@@ -282,7 +291,7 @@ def _band(
     span: Interval,
     torn: Sequence[Interval],
 ) -> None:
-    """One row of coloured stretches; a switch (only 1 has a name) shows where it is on."""
+    """Draws one row of coloured intervals; of a switch (only 1 has a name), those in which it is on."""
     length = max(span[1] - span[0], 1e-9)
     for first, last, value in stretches(time_s, values, torn):
         if value == 0 and 0 not in names:
@@ -303,7 +312,7 @@ def _lane_width(ax: Axes) -> float:
 
 
 def stretches(time_s: FloatArray, values: Any, torn: Sequence[Interval] = ()) -> list[tuple[float, float, int]]:
-    """(from, to, value) of each stretch in which a column does not change, and no samples are missing."""
+    """Returns (from, to, value) of each interval in which a column is constant and no samples are missing."""
     if not len(values):
         return []
     whole = np.nan_to_num(np.asarray(values, dtype=np.float64), nan=-1).astype(np.int64)
@@ -316,7 +325,7 @@ def stretches(time_s: FloatArray, values: Any, torn: Sequence[Interval] = ()) ->
 def unjoined(
     time_s: FloatArray, values: Any, modulus: float | None, torn: Sequence[Interval] = ()
 ) -> tuple[FloatArray, FloatArray]:
-    """The curve with a break wherever a rotary position wraps, and where samples are missing."""
+    """Returns the curve, interrupted where a rotary position wraps around and where samples are missing."""
     numbers = np.asarray(values, dtype=np.float64)
     if not modulus and not torn:
         return time_s, numbers
@@ -327,14 +336,14 @@ def unjoined(
 
 
 def _behind(time_s: FloatArray, torn: Sequence[Interval]) -> Array:
-    """The first row behind each of these that lies between rows."""
+    """Returns the first row after each of these gaps that is between rows."""
     rows = np.unique(np.searchsorted(time_s, [until for _, until in torn]))
     return rows[(rows > 0) & (rows < len(time_s))]
 
 
 def _event_rows(events: Sequence[Event], span: Interval) -> list[tuple[Event, int, bool]]:
-    """Puts labels into rows so that none covers another, what people marked and what failed first; with each, whether
-    it stands to the left of its line. What does not fit into four rows keeps its line, but not its label."""
+    """Arranges the labels of events in rows without overlap, marks and errors first. Returns event, row, and whether
+    the label is to the left of its line. Labels that do not fit into four rows are left out; their lines stay."""
     length = max(span[1] - span[0], 1e-9)
     taken: list[list[tuple[float, float]]] = [[] for _ in range(4)]
     placed = []
@@ -383,7 +392,7 @@ def _event_lane(ax: Axes, rows: Sequence[tuple[Event, int, bool]], depth: int) -
 
 
 def _short(event: Event) -> str:
-    """The text, with the component before it where it does not begin with it anyway."""
+    """Returns the text of an event, shortened, preceded by the component unless it begins with it."""
     named = not event.component or re.match(rf"{re.escape(event.component)}\b", event.text)
     text = event.text if named else f"{event.component}: {event.text}"
     return text if len(text) <= 38 else text[:37] + "…"
@@ -442,8 +451,8 @@ def _verdict_lane(
 
 
 def _value_range(lane: Lane, view: Interval, passed: bool) -> Interval:
-    """Of the curves in view, of those bounds that are near enough not to flatten them, and of what was broken the
-    nearest."""
+    """Returns the range of the curves in view, of bounds near enough not to flatten them, and of the nearest violated
+    bound."""
     seen = [t.values[(t.time_s >= view[0]) & (t.time_s <= view[1])].astype(np.float64) for t in lane.traces]
     values = np.concatenate([*seen, np.zeros(0)])
     values = values[np.isfinite(values)]
@@ -481,7 +490,7 @@ def _span(lanes: Sequence[Lane]) -> Interval:
 
 
 def _around(verdict: Verdict, lanes: Sequence[Lane], whole: Interval) -> Interval | None:
-    """What to magnify: the place with room at its sides; None where that is most of the picture anyway."""
+    """Returns the interval to magnify, with margins; None for a passed verdict, or if it is most of the picture."""
     if verdict.passed or verdict.place is None or not lanes:
         return None
     view = around(verdict.place, lanes)
@@ -489,18 +498,18 @@ def _around(verdict: Verdict, lanes: Sequence[Lane], whole: Interval) -> Interva
 
 
 def around(place: Interval, lanes: Sequence[Lane]) -> Interval:
-    """A place with room at its sides, as far as the curves go."""
+    """Returns an interval with margins, limited to the curves."""
     whole = _span(lanes)
     steps = [np.median(np.diff(t.time_s)) for lane in lanes for t in lane.traces if len(t.time_s) > 1]
     room = max(0.6 * (place[1] - place[0]), 0.008 * (whole[1] - whole[0]), 12.0 * float(max(steps, default=0.0)))
     return max(place[0] - room, whole[0]), min(place[1] + room, whole[1])
 
 
-# --- the look ---
+# --- appearance ---
 
 
 def dress(ax: Axes) -> None:
-    """The look of a lane."""
+    """Sets the appearance of a lane."""
     ax.set_facecolor("white")
     ax.grid(visible=True, color=GRID, lw=0.8, zorder=0)
     ax.set_axisbelow(True)

@@ -6,9 +6,9 @@
         rec = recording.stop()
         expect.reaches(rec, "x", 100.0, tolerance=0.01, by=2.0)
 
-Recordings that a test asserts upon, that the fixture `recording` makes or that it hands to `takt_keep` are
-kept when it fails: data (.npz) and picture (.png) in a directory of the test's own under --takt-reports. The
-failure report says where.
+If a test fails, recordings that it asserts upon, that the fixture `recording` makes or that it passes to
+`takt_keep` are kept: data (.npz) and picture (.png) in a directory of the test's own under --takt-reports. The
+failure report names the files.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ Keep = Callable[..., Recording]
 
 
 class _Kept:
-    """What one test used, in the order it was met."""
+    """The recordings that one test used, in order of use."""
 
     def __init__(self, directory: Path) -> None:
         self.directory = directory
@@ -49,12 +49,12 @@ class _Kept:
         self.add(recording)
 
     def write(self) -> list[str]:
-        """Saves everything; a line for each file, or for why there is none."""
+        """Saves all recordings. Returns a line for each file, or with the reason why there is none."""
         lines = []
         for recorder in self.running:
             try:
                 self.add(recorder.stop())
-            except Exception as error:  # an engine that failed must not hide why the test failed
+            except Exception as error:  # a failed engine must not hide the failure of the test
                 lines.append(f"a recording could not be ended: {error}")
         stems: set[str] = set()
         for name, recording in self.recordings:
@@ -100,7 +100,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> Generator[None, object, object]:
-    """Pictures of a test go into its own directory, and what it asserts upon is remembered."""
+    """Directs pictures of a test to its own directory, and remembers the recordings that it asserts upon."""
     kept = _Kept(Path(item.config.getoption("--takt-reports")) / directory_name(item.nodeid))
     item.stash[_KEPT] = kept
     before, expect.pictures = expect.pictures, kept.directory
@@ -128,13 +128,13 @@ def pytest_runtest_makereport(
 
 @pytest.fixture
 def takt_keep(request: pytest.FixtureRequest) -> Keep:
-    """takt_keep(recording, name=None) -> recording: keeps its trace when the test fails."""
+    """takt_keep(recording, name=None) -> recording: keeps its trace if the test fails."""
     return request.node.stash[_KEPT].add  # type: ignore[no-any-return]
 
 
 @pytest.fixture
 def machine(request: pytest.FixtureRequest) -> str | Path:
-    """The machine file (or its text) of the test: what the marker takt_machine names. Override it to use
+    """The machine file (or its text) of the test, as named by the marker takt_machine. Override it to use
     another."""
     marker = request.node.get_closest_marker("takt_machine")
     if marker is not None and (len(marker.args) != 1 or marker.kwargs):
@@ -186,8 +186,8 @@ def recording(request: pytest.FixtureRequest, engine: Any) -> Iterator[Recorder]
 
 
 def directory_name(nodeid: str) -> str:
-    """A directory's name for a test: readable, and its own even where the name has characters that files
-    cannot."""
+    """Returns a readable and unique directory name for a test, also if its name has characters that file names cannot
+    have."""
     readable = re.sub(r"[^\w.-]+", "-", nodeid.replace(".py::", ".").replace("::", ".").replace("/", ".")).strip("-.")
     if len(readable) > 120 or readable != nodeid.replace(".py::", ".").replace("::", ".").replace("/", "."):
         readable = f"{readable[:120]}-{hashlib.sha256(nodeid.encode()).hexdigest()[:6]}"

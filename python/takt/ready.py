@@ -1,4 +1,4 @@
-"""The ready machines: what lies in `examples` of the package, each in a folder with a machine file and a scenario."""
+"""The ready machines in `examples` of the package, each in a folder with a machine file and a scenario."""
 
 from __future__ import annotations
 
@@ -17,21 +17,22 @@ EXAMPLES = Path(__file__).parent / "examples"
 
 @dataclass(frozen=True)
 class Ready:
-    """A ready machine, as its scenario file introduces it."""
+    """A ready machine, as described by its scenario file."""
 
     name: str
     sentence: str  # the first line of the scenario's doc string
-    takes_s: float  # about how much engine time the scenario takes
+    takes_s: float  # approximate engine time of the scenario
     scenario: Path
 
 
 def ready_machines() -> list[Ready]:
-    """All of them by name. Reads their files, but runs none."""
+    """Returns all ready machines in order of their names. Reads their files, but does not run them."""
     return [_introduce(file) for file in sorted(EXAMPLES.glob("*/scenario.py"))]
 
 
 def scenario_of(what: str) -> Path:
-    """The scenario file of a ready machine, or the file itself. Raises ScenarioError for a name that is neither."""
+    """Returns the scenario file of a ready machine, or the file itself. Raises ScenarioError for a name that is
+    neither."""
     given = Path(what)
     if given.suffix or given.name != what:
         return given
@@ -44,7 +45,7 @@ def scenario_of(what: str) -> Path:
 
 
 def listing() -> Table:
-    """What `takt demo` says of them."""
+    """Returns the table of ready machines for `takt demo`."""
     table = Table("name", "", Column("takes", justify="right"), box=None)
     for one in ready_machines():
         table.add_row(one.name, one.sentence, f"{one.takes_s:.0f} s")

@@ -1,4 +1,4 @@
-"""The reference page: everything that is described in C++, as Markdown."""
+"""The reference page: all descriptions in C++, as Markdown."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ UNITS = "u stands for an axis' own unit. Unset means that the key may be left ou
 
 
 def reference_page() -> str:
-    """Machine file, commands, published values, states with their diagram, and error numbers."""
+    """Returns the page: machine file, commands, published values, states with their diagram, and error numbers."""
     head = f"# Takt {_core.__version__}: reference\n\n{UNITS}\n"
     return "\n".join([head, *sections().values()]) + "\n"
 
 
 def sections() -> dict[str, str]:
-    """The parts of the page, each under a heading of the second level."""
+    """Returns the parts of the page by name, each with a heading of the second level."""
     reference: dict[str, Any] = json.loads(_core.reference())
     return {name: "\n".join(write(reference)) for name, write in SECTIONS.items()}
 
@@ -58,19 +58,20 @@ def _states(reference: dict[str, Any]) -> Iterator[str]:
 
 
 def commands(names: Sequence[str]) -> str:
-    """What the reference page says of these commands; those of other components than axes are called "flex_cam.jog"."""
+    """Returns the entries of the reference page for these commands; those of components other than axes are named as
+    "flex_cam.jog"."""
     verbs = {_called(verb): verb for verb in json.loads(_core.reference())["verbs"]}
     return "\n".join(line for name in names for line in _verb(verbs[name]))
 
 
 def errors(numbers: Sequence[int]) -> str:
-    """The table of these error numbers."""
+    """Returns the table of these error numbers."""
     known = {error["id"]: error for error in json.loads(_core.reference())["errors"]}
     return "\n".join(_errors([known[number] for number in numbers]))
 
 
 def verbs() -> list[str]:
-    """All commands, of the machine, of axes and of other components, as `commands` calls them."""
+    """Returns the names of all commands, of the machine, of axes and of other components, as in `commands`."""
     return [_called(verb) for verb in json.loads(_core.reference())["verbs"]]
 
 
@@ -98,7 +99,7 @@ def _errors(errors: Sequence[dict[str, Any]]) -> Iterator[str]:
 
 
 def _homing(reference: dict[str, Any]) -> Iterator[str]:
-    """The stages of a homing step, drawn from the table that the engine runs."""
+    """Yields the stages of a homing step, from the state table that the engine uses."""
     yield "## Homing\n"
     homing = reference["homing"]
     for title in ("stages", "events", "actions", "steps"):
@@ -115,7 +116,7 @@ def _homing(reference: dict[str, Any]) -> Iterator[str]:
 
 
 def _structs(kind: Type, found: dict[str, Type]) -> dict[str, Type]:
-    """All structs below a type, by name, each before those inside it."""
+    """Returns all structs below a type, by name, each before those inside it."""
     if kind["kind"] == "struct":
         found.setdefault(kind["name"], kind)
         for field in kind["fields"]:
@@ -126,7 +127,7 @@ def _structs(kind: Type, found: dict[str, Type]) -> dict[str, Type]:
 
 
 def _fields(kind: Type, linked: bool = False) -> Iterator[str]:
-    """The table of a struct. `linked`: the structs that it holds have headings in the same text."""
+    """Yields the table of a struct. `linked`: the structs inside it have headings in the same text."""
     if not kind["fields"]:
         return
     yield "| name | type | unit | range | default | meaning |\n|---|---|---|---|---|---|"

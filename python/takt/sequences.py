@@ -1,4 +1,4 @@
-"""What is missing among numbered messages, channel by channel."""
+"""Finds lost messages by their sequence numbers, channel by channel."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from collections import Counter, deque
 from dataclasses import dataclass, field
 from typing import Any
 
-OBJECTS = "takt/belt_objects/"  # channels of what lies on belts; nothing else shows where a look is missing
-REORDERED = 1_000  # lost messages of a channel that may still come late
+OBJECTS = "takt/belt_objects/"  # channels of objects on belts; only their losses show missing samples of these
+REORDERED = 1_000  # lost messages of a channel that may still arrive late
 
 
 @dataclass
@@ -15,23 +15,22 @@ class _Channel:
     sequence: int
     cycle: int
     lost: int = 0
-    missing: deque[int] = field(default_factory=lambda: deque(maxlen=REORDERED))  # the last ones that are lost
+    missing: deque[int] = field(default_factory=lambda: deque(maxlen=REORDERED))  # the last lost ones
     steps: Counter[int] = field(default_factory=Counter)  # in cycles, from one message to the next
 
 
 class Sequences:
-    """Hears the numbers of messages, which count up from one to the next on each channel.
+    """Tracks the sequence numbers of messages, which increase by one per message on each channel.
 
-    A number that jumps by more than there were cycles since the last message is not believed: no channel of a component
-    has more than one message a cycle. A message that comes behind later ones is
-    not lost, and one that comes twice counts once.
+    A number that jumps by more than the cycles since the last message is ignored: no channel of a component has more
+    than one message per cycle. A late message is not lost, and a repeated one counts once.
     """
 
     def __init__(self) -> None:
         self._channels: dict[str, _Channel] = {}
 
     def hear(self, channel: str, message: Any) -> None:
-        """Takes a message as it came."""
+        """Takes a received message."""
         sequence, cycle = getattr(message, "sequence", None), getattr(message, "cycle", 0)
         if sequence is None:
             return
@@ -40,7 +39,7 @@ class Sequences:
             self._channels[channel] = _Channel(sequence, cycle)
             return
         step, cycles = int(sequence - known.sequence), int(cycle - known.cycle)
-        if -REORDERED <= step <= 0:  # it comes late, or twice
+        if -REORDERED <= step <= 0:  # late or repeated
             if sequence in known.missing:
                 known.missing.remove(sequence)
                 known.lost -= 1
@@ -54,8 +53,8 @@ class Sequences:
         known.sequence, known.cycle = sequence, cycle
 
     def lost(self) -> dict[str, int]:
-        """How many messages are missing, by channel: those lost on the way, and of what lies on belts those, too, that
-        the engine had no room for, which leave a gap of cycles."""
+        """Returns the numbers of missing messages by channel: those lost in transmission and, for objects on belts,
+        also those that the engine dropped, which leave a gap of cycles."""
         found = {
             name: of.lost + (_skipped(of.steps) if name.startswith(OBJECTS) else 0)
             for name, of in self._channels.items()
@@ -64,7 +63,7 @@ class Sequences:
 
 
 def _skipped(steps: Counter[int]) -> int:
-    """Messages that are missing between two that follow one another by their numbers."""
+    """Returns the number of messages missing between messages with consecutive numbers, by their cycles."""
     if not steps:
         return 0
     usual = steps.most_common(1)[0][0]

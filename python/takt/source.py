@@ -1,5 +1,4 @@
-"""Runs as they lie on a disk: recordings, LCM logs, and the directories that `takt run --report` and `takt demo`
-write."""
+"""Runs as files: recordings, LCM logs, and the directories that `takt run --report` and `takt demo` write."""
 
 from __future__ import annotations
 
@@ -14,14 +13,15 @@ ENDINGS = (".npz", ".log", ".lcm")
 
 
 def stem_of(run: Path) -> str:
-    """The name of a run without an ending of ENDINGS, for files that are made of it. Other dots are of the name, as in
-    lcmlog-2024-05-01.00."""
-    name = run.resolve().name if run.name in ("", "..") else run.name  # of a link: its own name
+    """Returns the name of a run without an ending of ENDINGS, for files made from it. Other dots belong to the name, as
+    in lcmlog-2024-05-01.00."""
+    name = run.resolve().name if run.name in ("", "..") else run.name  # links keep their own name
     return name[:-4] if name.lower().endswith(ENDINGS) and len(name) > 4 else name
 
 
 def recording_of(run: Path) -> Path:
-    """The file with a run: itself, or the recording of its directory."""
+    """Returns the file of a run: the file itself, or the recording in a directory. Raises RecordingError if a directory
+    has none."""
     if not run.is_dir():
         return run
     if not (run / IN_DIRECTORY).is_file():
@@ -32,8 +32,13 @@ def recording_of(run: Path) -> Path:
 
 
 def read_run(run: Path, progress: Progress | None = None, start: int | None = None) -> Recording:
-    """A run as a recording, whatever kind of file it is. `start`: which one of the engine, of several in a log; the
-    last unless told."""
+    """Returns a run of any kind of file as a recording.
+
+    progress: called with the progress, 0 to 1.
+    start: index of one of several starts of the engine in a log; None: the last one.
+
+    Raises RecordingError or LogError if the file holds no such run.
+    """
     file = recording_of(run)
     with file.open("rb") as probe:
         magic = probe.read(4)

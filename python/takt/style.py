@@ -1,11 +1,11 @@
-"""Colours and names that pictures and reports share."""
+"""Colours and names shared by pictures and reports."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Container, Sequence
 
-# One per component, told apart by hue and by lightness; readable on white and on dark grey.
+# One per component, distinct in hue and lightness; readable on white and on dark grey.
 PALETTE = (
     "#2f6fde",
     "#d9682b",
@@ -44,7 +44,7 @@ STATES = {
     "GroupHoming": "#d0a03a",
     "GroupStopping": "#e08a3c",
     "GroupErrorStop": "#d6453d",
-    # How its tool goes along with what moves; grey for whatever has nothing to tell.
+    # How its tool follows a moving target; grey for values without information.
     "none": "#c5cad2",
     "waiting": "#d0a03a",
     "synchronizing": "#37a3b5",
@@ -62,7 +62,7 @@ STATES = {
     "path_interrupt": "#8c6a55",
     "stop": "#e08a3c",
     "error": "#d6453d",
-    # Of what is in the plane; Disabled and Error are above.
+    # Of components in the plane; Disabled and Error are above.
     "Enabling": "#d0a03a",
     "Enabled": "#7fb08a",
     "Disabling": "#e08a3c",
@@ -73,7 +73,7 @@ STATES = {
 GOOD = "#2f9e6b"
 BAD = "#d6453d"
 
-# From top to bottom; what is not named here follows in the order it comes.
+# From top to bottom; other quantities follow in order of appearance.
 QUANTITY_ORDER = (
     *("position", "x position", "y position"),
     *("velocity", "x velocity", "y velocity"),
@@ -81,7 +81,7 @@ QUANTITY_ORDER = (
     *("jerk", "following error", "torque", "voltage"),
 )
 
-# What is shown of a component unless other signals are asked for.
+# Fields of a component that are shown by default.
 USUAL_FIELDS = (
     "set_position",
     "actual_position",
@@ -114,10 +114,11 @@ def state_colour(name: str, value: int) -> str:
 
 
 def is_set_point(field: str, fields: Container[str] = ()) -> bool:
-    """By its name, or because what was measured of it is among `fields`: "x" beside "actual_x"."""
+    """Returns whether a field is a set point: by its name, or because its actual value is among `fields` ("x" with
+    "actual_x")."""
     return field.startswith(("set_", "commanded_", "target_")) or f"actual_{field}" in fields
 
 
 def source(field: str) -> str:
-    """What set points and measured values of the same thing have in common."""
+    """Returns the common part of the names of set points and actual values of the same quantity."""
     return re.sub("^(set|actual|commanded)_", "", field)

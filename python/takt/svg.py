@@ -1,11 +1,11 @@
-"""Reads drawings (SVG) into a path for a tool, a pen say.
+"""Reads drawings (SVG) as tool paths, as for a pen.
 
-X goes to the right and Y up from the drawing's lower left corner, in mm; the pen draws at Z 0 and is lifted between
-lines. Circular arcs stay arcs; ellipses and Béziers become lines that keep within a tolerance. Outlines of what a
-browser shows are drawn, whether stroked or filled; texts and pictures are left out, and said to be. Needs svgelements
-(pip install svgelements).
+X points to the right and Y up from the drawing's lower left corner, in [mm]; the pen draws at Z 0 and is lifted between
+lines. Circular arcs stay arcs; ellipses and Béziers are approximated by lines within a tolerance. The outlines of all
+shapes that a browser shows are drawn, whether stroked or filled; texts and pictures are left out, and reported. Needs
+svgelements (pip install svgelements).
 
-`svg_tree` finds the shapes that are rendered, each with its matrix; svgelements makes segments of their outlines.
+`svg_tree` finds the rendered shapes, each with its matrix; svgelements splits their outlines into segments.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from takt.toolpath import (
 LIFT = 5.0  # mm
 MOST_BYTES = 200_000_000
 _MM = 1 / PX  # of a pixel
-_CUT = 0.01  # mm by which a shape may lie beyond its clip and count as within
+_CUT = 0.01  # mm by which a shape may exceed its clip and still counts as inside
 
 
 def read_svg(
@@ -52,9 +52,16 @@ def read_svg(
     velocity: float | None = None,
     sources: list[str] | None = None,
 ) -> Toolpath:
-    """Reads a file. `start`: where the tool is when it begins, in mm. `lift`: how high the pen goes between lines.
-    `velocity`: of drawing, in mm/s; unset: that of the command. `sources`: receives the name of the shape that each
-    element was drawn from, or that the pen is lifted for. Raises ToolpathError."""
+    """Returns the path of a drawing.
+
+    start: initial position of the tool [mm].
+    tolerance: largest distance [mm] between curves and their approximation by lines.
+    lift: height [mm] of the pen between lines.
+    velocity: of drawing [mm/s]; None: that of the command.
+    sources: receives, for each element, the name of the shape that it draws or moves to.
+
+    Raises ToolpathError.
+    """
     try:
         import svgelements  # type: ignore[import-untyped]
     except ImportError:
@@ -116,11 +123,11 @@ class _Outline:
                 kind = svgelements.Polygon if shape.tag == "polygon" else svgelements.Polyline
                 made = kind(*((point.real, point.imag) for point in shape.points))
             self.segments = list(made.segments(transformed=False))
-        except Exception as error:  # svgelements raises whatever the data make it raise
+        except Exception as error:  # svgelements raises many kinds of errors on bad data
             raise TreeError(f"{shape.label} cannot be read: {error}") from None
 
     def box(self, svgelements: Any, matrix: Matrix) -> tuple[float, float, float, float] | None:
-        """The least and greatest X and Y of where a matrix takes it; None: it is empty."""
+        """Returns the bounding box of the transformed outline (least X, Y, greatest X, Y); None if it is empty."""
         box = abs(svgelements.Path(*self.segments) * svgelements.Matrix(*matrix)).bbox()
         if box is None:
             return None
@@ -129,8 +136,8 @@ class _Outline:
 
 
 def _hold_against(svgelements: Any, clip: Clip, outline: _Outline) -> None:
-    """Raises TreeError where a clip would cut something off a shape, or hide it; only rectangles are known not to.
-    They are compared in the coordinates of the rectangle."""
+    """Raises TreeError if a clip may cut off part of a shape or hide it; only rectangular clips can be checked, in the
+    coordinates of the rectangle."""
     matrix = clip.shapes[0].matrix if len(clip.shapes) == 1 else clip.matrix
     into = inverse(matrix)
     box = None if into is None else outline.box(svgelements, product(into, outline.shape.matrix))
@@ -151,7 +158,7 @@ def _hold_against(svgelements: Any, clip: Clip, outline: _Outline) -> None:
 
 
 def _is_rectangle(outline: _Outline) -> bool:
-    """Whether it is a rectangle whose sides go along X and Y."""
+    """Returns whether the outline is a rectangle with sides along X and Y."""
     ends = []
     for segment in outline.segments:
         if type(segment).__name__ not in ("Move", "Line", "Close"):
@@ -176,7 +183,7 @@ def _moved(matrix: tuple[float, ...], point: Any) -> complex:
 
 
 def _stretch(matrix: tuple[float, ...]) -> tuple[float, bool]:
-    """By how much a matrix makes lengths greater at most, and whether it does so in all directions (a similarity)."""
+    """Returns the largest scale factor of a matrix, and whether it is the same in all directions (a similarity)."""
     a, b, c, d = matrix[:4]
     mean, apart = (a * a + b * b + c * c + d * d) / 2, math.hypot((a * a + b * b - c * c - d * d) / 2, a * c + b * d)
     return math.sqrt(mean + apart), apart <= 1e-9 * mean
@@ -185,7 +192,7 @@ def _stretch(matrix: tuple[float, ...]) -> tuple[float, bool]:
 class _Pen:
     def __init__(self, start: Point, height: float, tolerance: float, lift: float, velocity: float | None) -> None:
         self.elements: list[Element] = []
-        self.source, self.sources = "", list[str]()  # the shape now, that of each element
+        self.source, self.sources = "", list[str]()  # the current shape, and that of each element
         self._here = start
         self._height, self._tolerance, self._lift, self._velocity = height, tolerance, lift, velocity
         self._matrix: tuple[float, ...] = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
@@ -195,7 +202,7 @@ class _Pen:
             self._to((self._here[0], self._here[1], self._lift), None)
 
     def draw(self, segment: Any, kind: str, matrix: tuple[float, ...]) -> None:
-        """A segment of an outline in coordinates that a matrix takes to those of the drawing (px)."""
+        """Draws a segment of an outline. `matrix`: from its coordinates to those of the drawing (px)."""
         if kind == "Move" or segment.start is None or segment.end is None:
             return
         self._matrix = matrix
@@ -234,7 +241,7 @@ class _Pen:
         if similar and abs(rx - ry) <= 1e-9 * max(rx, ry) and not flat:
             for i in range(count):
                 yield Element(self._at(segment, (i + 1) / count), self._at(segment, (i + 0.5) / count), self._velocity)
-        else:  # a circle pressed flat: its chords come nearer, too
+        else:  # for a flattened circle, the errors of chords are smaller, too
             yield from self._chords(segment, chords(sweep, radius, self._tolerance))
 
     def _bezier(self, control: list[complex]) -> Iterator[Element]:

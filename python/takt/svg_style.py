@@ -1,7 +1,7 @@
 """Resolves the properties of an SVG element: presentation attributes, style sheets, the style attribute, inheritance.
 
 Selectors of type, class, id, *, compounds of them, and descendant and child combinators are supported. Other selectors,
-at-rules and nested rules are errors where they set a property that decides what is seen, or where.
+at-rules and nested rules are errors if they set a property that affects visibility or position.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ OWN = (
     "display", "opacity", "transform", "transform-origin", "transform-box", "clip-path", "mask", "filter", "overflow",
     "d", "x", "y", "width", "height", "cx", "cy", "r", "rx", "ry",
 )  # fmt: skip
-# No attributes.
+# Not available as attributes.
 _STYLE_ONLY = ("rotate", "translate", "scale", "offset-path", "marker")
 _READ = frozenset((*INHERITED, *OWN, *_STYLE_ONLY))
-# Unsupported rules for these are errors at once where they hide; where they show, at an element that would be left out.
+# Unsupported rules for these are errors at once if they hide; if they show, at an element that would be left out.
 _SHOWN = ("fill", "stroke", "fill-opacity", "stroke-opacity", "stroke-width")
 _HARMLESS = ("filter", "overflow", "color", "font-size", "marker", "marker-start", "marker-mid", "marker-end")
 _WITHOUT_EFFECT = ("@font-face", "@charset", "@namespace", "@page", "@counter-style")
 Key = tuple[str, str, tuple[str, ...]]  # tag, id, classes
 _COMPOUND = re.compile(r"(\*|[\w-]+)?((?:[.#][\w-]+)*)")
 _BRACE = re.compile("[{};]")
-# Of states of a page; none of them holds in a drawing.
+# Pseudo-classes of interaction; none of them applies to a drawing.
 _INTERACTIVE = re.compile(r":(hover|active|focus|focus-within|focus-visible|target|visited)\b")
 _MOST_RULES = 10_000  # in all sheets; beyond: TreeError
 _MOST_NESTED = 20  # rules within rules
@@ -68,13 +68,13 @@ def is_zero(text: str) -> bool:
 
 
 class Styles:
-    """Raises TreeError where rules are not read and matter."""
+    """The style sheets of a drawing. Raises TreeError if unsupported rules matter."""
 
     def __init__(self, sheets: Sequence[str]) -> None:
         self._rules: dict[str, list[_Rule]] = {}
         self._count = self._looks = 0
         self.imported = 0
-        self.are_nested = False  # whether rules ask what elements are within
+        self.are_nested = False  # whether rules depend on ancestors of elements
         self.unread = ""  # the first unsupported rule that would show an element, as sentences name it
         for sheet in sheets:
             text = _without_comments(sheet).replace("<!--", " ").replace("-->", " ")
@@ -137,7 +137,7 @@ class Styles:
             self._rules.setdefault(key, []).append(rule)
 
     def _check_unread(self, selector: str, names: list[tuple[str, str, bool]]) -> None:
-        """Raises TreeError where an unsupported rule hides or moves elements; notes one that shows them."""
+        """Raises TreeError if an unsupported rule hides or moves elements; notes the first one that shows them."""
         for name, value, _ in names:
             shows = name in _SHOWN and not is_zero(value) and is_paint(value, "1")
             if name in _READ and name not in _HARMLESS and not shows:
@@ -150,8 +150,10 @@ class Styles:
     ) -> dict[str, str]:
         """Returns the specified values of the properties of an element.
 
-        around: keys of its ancestors, the outermost first. inherited: what it inherits of its parent. Raises TreeError
-        for var(), for `inherit` of a property that is not inherited, and beyond _MOST_LOOKS."""
+        around: keys of its ancestors, the outermost first.
+        inherited: values inherited from its parent.
+
+        Raises TreeError for var(), for `inherit` of a property that is not inherited, and beyond _MOST_LOOKS."""
         found = {name: one.attrib[name] for name in (*INHERITED, *OWN) if name in one.attrib}
         tag, identity, classes = key
         keys = ["*", tag, *(f".{name}" for name in classes), *([f"#{identity}"] if identity else [])]
@@ -191,7 +193,7 @@ def key_of(one: ElementTree.Element, name: str) -> Key:
 def _matches(rule: _Rule, key: Key, around: Sequence[Key]) -> bool:
     if not _fits(rule.parts[0], key):
         return False
-    reached = {len(around)}  # ancestors that the part matched last can be
+    reached = {len(around)}  # indices of elements that the previous part can match
     for part, before in pairwise(rule.parts):
         near = {i - 1 for i in reached} if part[0] == ">" else range(max(reached))
         reached = {i for i in near if i >= 0 and _fits(before, around[i])}
@@ -206,7 +208,7 @@ def _fits(part: _Part, key: Key) -> bool:
 
 
 def _blocks(text: str) -> Iterator[tuple[str, str]]:
-    """Yields what is before braces, and what is in them; a statement without braces by itself."""
+    """Yields the text before braces and the text in them; a statement without braces with an empty second text."""
     at = 0
     while at < len(text):
         found = _BRACE.search(text, at)
@@ -237,7 +239,7 @@ def _declarations(text: str) -> list[tuple[str, str, bool]]:
 
 
 def _parts(text: str, separator: str = ";") -> Iterator[str]:
-    """Yields what is between separators that are neither quoted nor in brackets."""
+    """Yields the parts between separators that are neither quoted nor in brackets."""
     begin = depth = 0
     quote = ""
     for i, letter in enumerate(text):

@@ -1,8 +1,8 @@
-"""The shapes of an SVG drawing that are rendered, each with the matrix to the drawing's own coordinates (px, Y down).
+"""The rendered shapes of an SVG drawing, each with its matrix to the drawing's own coordinates (px, Y down).
 
-SVG's structure (SVG 1.1, chapter 5; SVG 2 where it says more): `use` stands for a copy of what it refers to, `svg` and
+Structure by SVG 1.1, chapter 5, and SVG 2 where it says more: `use` is a copy of the referenced element, `svg` and
 `symbol` within a drawing have viewports of their own, and `defs`, `mask`, `marker`, `clipPath`, `pattern` and the like
-are never drawn themselves. Copies are counted before they are made: a drawing of a few lines can ask for millions.
+are never drawn themselves. Copies are counted before they are made: a drawing of a few lines can request millions.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from takt import svg_values
 from takt.svg_style import INHERITED, Key, Styles, is_paint, is_zero, key_of
 from takt.svg_values import FONT, IDENTITY, Matrix, TreeError, length, moved, product
 
-MOST = 100_000  # elements, with those that use copies
+MOST = 100_000  # elements, including copies by <use>
 DEPTH = 100
 SVG = "{http://www.w3.org/2000/svg}"
 _HREF = ("href", "{http://www.w3.org/1999/xlink}href")
@@ -49,7 +49,7 @@ class Shape(NamedTuple):
 
 
 class Clip(NamedTuple):
-    """Beyond its shapes nothing is seen."""
+    """A clip: everything outside its shapes is invisible."""
 
     what: str
     shapes: list[Shape]
@@ -58,16 +58,16 @@ class Clip(NamedTuple):
 
 @dataclass(frozen=True)
 class _Around:
-    """What holds where an element stands."""
+    """The context of an element."""
 
     inherited: dict[str, str]
-    within: tuple[Key, ...]  # what style sheets see above it
-    written_within: tuple[Key, ...]  # as in the file, also of what is copied
+    within: tuple[Key, ...]  # ancestors for style sheets
+    written_within: tuple[Key, ...]  # ancestors in the file, also of copied elements
     matrix: Matrix
     viewport: tuple[float, float]
     font: float = FONT
     clips: tuple[Clip, ...] = ()
-    uses: tuple[str, ...] = ()  # that lead here
+    uses: tuple[str, ...] = ()  # references of the enclosing <use> elements
     depth: int = 0
     is_clear: bool = False  # opacity 0
 
@@ -85,7 +85,7 @@ class _Element:
         return default if value.lower() in ("", "auto") else value
 
     def length(self, name: str, default: str = "0") -> float:
-        """px, of a property; percentages are those of the viewport."""
+        """Returns a property as a length [px]; percentages refer to the viewport."""
         text = self.get(name, default)
         width, height = self.around.viewport
         whole = math.hypot(width, height) / math.sqrt(2)
@@ -100,7 +100,8 @@ class _Element:
 
 
 class Rendered:
-    """`shapes`; `height` of the drawing, px. `left_out`: what is seen, but is no outline. Raises TreeError."""
+    """The rendered `shapes`, the `height` of the drawing [px], and `left_out`: visible contents that are not outlines.
+    Raises TreeError."""
 
     def __init__(self, root: ElementTree.Element) -> None:
         self.shapes: list[Shape] = []
@@ -131,7 +132,7 @@ class Rendered:
                 raise TreeError(f"'{name}' of the outermost <svg> is not read: viewers do not agree on it")
         box = svg_values.view_box(root.attrib.get("viewBox", ""))
         sizes = []
-        for name in ("width", "height"):  # 100 %: of a window that is not known
+        for name in ("width", "height"):  # 100 % refers to an unknown window
             text = svg.get(name, "100%")
             if text.strip().endswith("%") and text.strip() != "100%":
                 raise TreeError(f"<svg>: {name}: {text} of a window; expected a length")
@@ -179,7 +180,7 @@ class Rendered:
         return _Element(one, name, label, properties, around)
 
     def _inside(self, element: _Element) -> _Around:
-        """Where the children of an element stand."""
+        """Returns the context of the children of an element."""
         around = element.around
         if around.depth > DEPTH:
             raise TreeError(f"elements nest deeper than {DEPTH}")
@@ -236,7 +237,7 @@ class Rendered:
     def _children(self, element: _Element) -> None:
         inside = self._inside(element)
         children = list(element.one)
-        if element.name == "switch":  # the first that holds; of languages there is none
+        if element.name == "switch":  # the first child whose conditions hold; no language is assumed
             known = [child for child in children if _name(child) in (*SHAPES, *_CONTAINERS, *_TEXTS, "use")]
             children = next(([child] for child in known if _holds(child)), [])
             others = len([child for child in known if "systemLanguage" in child.attrib])
@@ -294,7 +295,7 @@ class Rendered:
         self._viewport(copy, use, {name: use.get(name) for name in ("width", "height") if use.get(name)})
 
     def _viewport(self, svg: _Element, sized: _Element, sizes: dict[str, str]) -> None:
-        """Draws what is within an svg or symbol. `sizes`: what a use says of them."""
+        """Draws the children of an svg or symbol. `sizes`: width and height given by a <use>."""
         attributes = svg.one.attrib
         if svg.name == "symbol" and attributes.keys() & {"x", "y", "refX", "refY"}:
             raise TreeError(f"{svg.label}: viewers do not agree on x, y, refX and refY of symbols")
@@ -366,7 +367,7 @@ class Rendered:
         return match is not None and match[1] in self._by_id
 
     def _read(self, element: _Element) -> Shape | None:
-        """None: it has no outline."""
+        """Returns the shape of an element; None if it has no outline."""
         tag, data, found, wrong = element.name, "", list[complex](), False
         numbers: dict[str, float] = {}
         if tag == "path":
@@ -399,7 +400,7 @@ class Rendered:
             raise TreeError(f"{element.label}: the clip-path '{clip[:40]}' is not read; expected url(#...)")
         path = self._by_id.get(match[1])
         if path is None or _name(path) != "clipPath":
-            return []  # what is not there clips nothing
+            return []  # a missing clip-path clips nothing
         if path.attrib.get("clipPathUnits") == "objectBoundingBox" or "clip-path" in path.attrib:
             raise TreeError(f"{element.label}: its clip-path '{match[1]}' is not of plain coordinates")
         around = replace(element.around, clips=(), inherited={})
@@ -425,7 +426,7 @@ _NEEDED = {"rect": ("width", "height"), "circle": ("r",), "ellipse": ("rx", "ry"
 
 
 def _sizes(element: _Element) -> dict[str, float]:
-    """Of a rectangle, circle or ellipse; what is not given, or auto, as SVG 2 has it (chapter 10)."""
+    """Returns the dimensions of a rectangle, circle or ellipse; missing and auto values by SVG 2, chapter 10."""
     if element.name == "circle":
         return {name: element.length(name) for name in ("cx", "cy", "r")}
     names = ("x", "y", "width", "height") if element.name == "rect" else ("cx", "cy")
@@ -440,7 +441,7 @@ def _sizes(element: _Element) -> dict[str, float]:
 
 
 def _origin(element: _Element) -> tuple[float, float]:
-    """transform-origin, in the coordinates of the element."""
+    """Returns transform-origin in the coordinates of the element."""
     words = element.get("transform-origin", "0 0").lower().replace(",", " ").split()
     share = {"left": "0%", "right": "100%", "top": "0%", "bottom": "100%", "center": "50%"}
     if len(words) == 1:
@@ -460,11 +461,11 @@ def _is_visible(element: _Element) -> bool:
 
 
 def _holds(one: ElementTree.Element) -> bool:
-    """Whether it is drawn for a reader of no known language, without extensions."""
+    """Returns whether an element is drawn without a known language or extensions."""
     return "systemLanguage" not in one.attrib and "requiredExtensions" not in one.attrib
 
 
 def _name(one: ElementTree.Element) -> str:
-    """Of an element of SVG; "" of another one."""
+    """Returns the name of an SVG element; "" for other elements."""
     tag = one.tag if isinstance(one.tag, str) else ""
     return tag.removeprefix(SVG) if tag.startswith(SVG) or not tag.startswith("{") else ""

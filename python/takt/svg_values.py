@@ -1,4 +1,4 @@
-"""What attributes of SVG say: lengths, transforms, points, path data. Matrices are (a, b, c, d, e, f) as in SVG."""
+"""Parses attributes of SVG: lengths, transforms, points, path data. Matrices are (a, b, c, d, e, f) as in SVG."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import re
 
 Matrix = tuple[float, float, float, float, float, float]
 IDENTITY: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
-PX = 96 / 25.4  # of a mm
-FONT = 16.0  # px, where nothing says how large letters are
+PX = 96 / 25.4  # px per mm
+FONT = 16.0  # px, default font size
 NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _UNITS = {"": 1.0, "px": 1.0, "mm": PX, "cm": 10 * PX, "q": PX / 4, "in": 96.0, "pt": 96 / 72, "pc": 16.0}
 _ANGLES = {"": 1.0, "deg": 1.0, "grad": 0.9, "rad": 180 / math.pi, "turn": 360.0}
-_FUNCTIONS = {  # how many numbers each has
+_FUNCTIONS = {  # possible numbers of arguments
     "matrix": (6,), "translate": (1, 2), "translatex": (1,), "translatey": (1,), "scale": (1, 2), "scalex": (1,),
     "scaley": (1,), "rotate": (1, 3), "skewx": (1,), "skewy": (1,),
 }  # fmt: skip
@@ -25,11 +25,11 @@ _PATH = {"m": 2, "l": 2, "h": 1, "v": 1, "c": 6, "s": 4, "q": 4, "t": 2, "a": 7}
 
 
 class TreeError(Exception):
-    """What is wrong with a drawing."""
+    """A drawing cannot be read; the text says why."""
 
 
 def length(text: str, whole: float = math.nan, font: float = FONT) -> float:
-    """px. `whole`: what 100 % are; nan: a percentage is an error. Raises TreeError."""
+    """Returns a length [px]. `whole`: 100 % [px]; NaN: a percentage is an error. Raises TreeError."""
     match = _WORD.fullmatch(text)
     value = float(match[1]) if match else math.nan
     if match is None or not math.isfinite(value):
@@ -47,7 +47,7 @@ def length(text: str, whole: float = math.nan, font: float = FONT) -> float:
 
 
 def product(outer: Matrix, inner: Matrix) -> Matrix:
-    """Of what the inner one gives, the outer one."""
+    """Returns the product of two matrices: the inner one is applied first."""
     a, b, c, d, e, f = outer
     g, h, i, j, k, m = inner
     return (a * g + c * h, b * g + d * h, a * i + c * j, b * i + d * j, a * k + c * m + e, b * k + d * m + f)
@@ -66,7 +66,7 @@ def moved(x: float, y: float) -> Matrix:
 
 
 def transform(text: str, font: float = FONT) -> Matrix:
-    """Of an attribute or a property. Raises TreeError."""
+    """Returns the matrix of a transform attribute or property. Raises TreeError."""
     matrix, at = IDENTITY, 0
     if text.strip().lower() in ("", "none"):
         return matrix
@@ -120,7 +120,7 @@ def _function(name: str, arguments: str, text: str, font: float) -> Matrix:
 
 
 def view_box(text: str) -> tuple[float, float, float, float] | None:
-    """None: there is none."""
+    """Returns x, y, width and height of a viewBox attribute; None if it is empty. Raises TreeError."""
     words = re.split(r"\s*,\s*|\s+", text.strip()) if text.strip() else []
     if not words:
         return None
@@ -133,7 +133,8 @@ def view_box(text: str) -> tuple[float, float, float, float] | None:
 
 
 def fitted(box: tuple[float, float, float, float], width: float, height: float, aspect: str) -> Matrix:
-    """From a view box of a size above 0 to a viewport at (0, 0), by preserveAspectRatio (SVG 2, 8.2)."""
+    """Returns the matrix from a view box of a size above 0 to a viewport at (0, 0), by preserveAspectRatio (SVG 2,
+    8.2)."""
     words = aspect.split()
     words = words[1:] if words[:1] == ["defer"] else words
     align = words[0] if words else "xMidYMid"
@@ -150,7 +151,7 @@ def fitted(box: tuple[float, float, float, float], width: float, height: float, 
 
 
 def points(text: str) -> tuple[list[complex], bool]:
-    """Those before the first error, and whether there is one."""
+    """Returns the points before the first error, and whether there is one."""
     found: list[float] = []
     at = 0
     while match := _PATH_WORD.match(text, at):
@@ -161,7 +162,7 @@ def points(text: str) -> tuple[list[complex], bool]:
 
 
 def path_data(text: str) -> tuple[str, bool]:
-    """What stands before the first error (SVG 1.1, F.2), and whether there is one."""
+    """Returns the path data before the first error (SVG 1.1, F.2), and whether there is one."""
     at = good = 0
     while at < len(text):
         letter = text[at].lower()
@@ -182,7 +183,7 @@ def path_data(text: str) -> tuple[str, bool]:
 
 
 def _arguments(text: str, at: int, letter: str) -> int | None:
-    """Where one set of numbers of a command ends."""
+    """Returns the end of one set of arguments of a command; None if it is incomplete or wrong."""
     for i in range(_PATH[letter]):
         match = (_PATH_FLAG if letter == "a" and i in (3, 4) else _PATH_WORD).match(text, at)
         if match is None or (letter == "a" and i < 2 and float(match[1]) < 0):

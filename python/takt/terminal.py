@@ -1,5 +1,5 @@
-"""What the command line prints: tables and colours on a terminal; into pipes and files plain lines, neither wrapped nor
-padded, with two blanks between the cells of tables that are not empty."""
+"""Output of the command line: tables and colours on a terminal; plain lines in pipes and files, neither wrapped nor
+padded, with two blanks between the non-empty cells of tables."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rich.text import Text
 
 
 class Output(Console):
-    """A console that knows what it prints to."""
+    """A console that prints plain lines unless it is a terminal."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(highlight=False, **options)
@@ -32,7 +32,7 @@ class Output(Console):
 
 
 class _Pipe(io.FileIO):
-    """A pipe to write to. What is written after its reader has ended is dropped."""
+    """A pipe to write to. Data written after its reader has ended is dropped."""
 
     def write(self, data: Any) -> int:
         try:
@@ -43,8 +43,8 @@ class _Pipe(io.FileIO):
 
 @contextlib.contextmanager
 def any_output() -> Iterator[None]:
-    """While it is entered, printing fails neither where the encoding of an output lacks a character, which becomes a
-    question mark, nor where the reader of a pipe has ended."""
+    """A context in which printing does not fail if the encoding of an output lacks a character, which becomes a
+    question mark, or if the reader of a pipe has ended."""
     before = sys.stdout, sys.stderr
     within = sys.stdout, sys.stderr = _tolerant(sys.stdout), _tolerant(sys.stderr)
     try:

@@ -1,4 +1,4 @@
-"""Where the URDF files of a machine file are, which the engine's description of the machine holds as text."""
+"""Finds the folders of the URDF files of a machine file; the engine's own description holds them as text."""
 
 from __future__ import annotations
 
@@ -10,8 +10,12 @@ from takt.yaml_text import load
 
 
 def urdf_folders(text: str, folder: Path) -> dict[str, Path]:
-    """The folder of the URDF of each group whose kinematics are in one. `folder`: of the machine file, whose text this
-    is."""
+    """Returns the folder of the URDF file of each group with serial kinematics, by name of the group; empty if the text
+    cannot be read.
+
+    text: of the machine file.
+    folder: of the machine file.
+    """
     if "urdf" not in text:
         return {}
     try:

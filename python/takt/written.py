@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all, and errors that name them."""
+"""Writes files completely or not at all, with errors that name them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from takt.errors import TaktError
 
 
 def refuse_input(target: Path, *inputs: Path | None) -> None:
-    """Raises TaktError where a file to be written is one of those that are read."""
+    """Raises TaktError if the file to be written is one of those that are read."""
     for file in inputs:
         if file is not None and file.exists() and target.exists() and target.samefile(file):
             raise TaktError(f"{target}: is a file that is read, so it is not written: give another one")
@@ -23,7 +23,7 @@ def refuse_input(target: Path, *inputs: Path | None) -> None:
 
 @contextlib.contextmanager
 def naming(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Gives the name of this file to an OSError that has none, as of a full disk."""
+    """A context that adds the name of this file to an OSError without one, as for a full disk."""
     try:
         yield
     except OSError as error:
@@ -34,10 +34,10 @@ def naming(path: str | os.PathLike[str]) -> Iterator[None]:
 
 @contextlib.contextmanager
 def written(target: str | os.PathLike[str]) -> Iterator[Path]:
-    """Yields the path of a file beside the target, which replaces the target in the end; it is removed where writing
-    fails, and the target stays as it was. Yields the target itself where it cannot be replaced by an equal file: where
-    it is no regular file, as a pipe or /dev/stdout, is write-protected, has hard links or belongs to another user, or
-    where its directory takes no other file. An OSError names the target."""
+    """Yields the path of a temporary file beside the target, which replaces the target at the end. If writing fails, it
+    is removed, and the target is unchanged. Yields the target itself if it cannot be replaced by an equal file: it is
+    not a regular file, as a pipe or /dev/stdout, is write-protected, has hard links or belongs to another user, or its
+    directory is not writable. An OSError names the target."""
     given = Path(target)
     real = Path(os.path.realpath(given))
     beside = real.with_name(f".takt-{secrets.token_hex(6)}{real.suffix}")
@@ -68,7 +68,7 @@ def _is_replaceable(file: Path) -> bool:
 
 
 def _replace(target: Path, beside: Path) -> None:
-    """Replaces the target by `beside`, with the mode and group of the target; copies the content where that is not
+    """Replaces the target by `beside`, with the mode and group of the target; copies the content if that is not
     permitted, or the target is a mount point."""
     try:
         if target.exists():

@@ -8,7 +8,7 @@ from typing import Any
 
 import yaml
 
-# Space to the engine, or part of a comment or a text; to PyYAML an error or the end of the line.
+# For the engine, a space or part of a comment or a text; for PyYAML, an error or the end of the line.
 _LEGIBLE = str.maketrans(dict.fromkeys("\t\u2028\u2029\ufffe\uffff", " "))
 _INDENT = re.compile(r"^ +", re.MULTILINE)
 DEEPEST = 100  # levels of a text
@@ -22,7 +22,7 @@ class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[mi
 
 
 class _Joining:
-    """Makes one character of each escaped pair of surrogates, which libyaml refuses and PyYAML leaves apart."""
+    """Joins each escaped pair of surrogates to one character; libyaml refuses such pairs, PyYAML leaves them apart."""
 
     def scan_flow_scalar(self, style: str) -> Any:
         token = super().scan_flow_scalar(style)  # type: ignore[misc]
@@ -31,11 +31,11 @@ class _Joining:
 
 
 class _JoiningLoader(_Joining, yaml.SafeLoader):
-    """As _Loader, with pairs of surrogates, in more time."""
+    """As _Loader, with pairs of surrogates, but slower."""
 
 
 class _TextLoader(_Joining, yaml.BaseLoader):
-    """All values as texts."""
+    """Loads all values as texts."""
 
 
 for _one in (_Loader, _JoiningLoader):
@@ -47,7 +47,8 @@ def _loader_of(text: str) -> type[Any]:
 
 
 def _may_nest_deeper(text: str) -> bool:
-    """Whether values might nest deeper than DEEPEST: by all brackets, dashes and the largest indentation."""
+    """Returns whether values nest deeper than DEEPEST; parses the text only if its brackets, dashes or indentation
+    allow that."""
     opened = text.count("[") + text.count("{") + text.count("- ") + text.count("? ")
     if opened <= DEEPEST and max((len(indent) for indent in _INDENT.findall(text)), default=0) <= DEEPEST:
         return False
@@ -57,18 +58,19 @@ def _may_nest_deeper(text: str) -> bool:
             level += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
             if level > DEEPEST:
                 return True
-    except yaml.YAMLError:  # said by the one that calls
+    except yaml.YAMLError:  # raised again for the caller when it loads the text
         pass
     return False
 
 
 def legible(text: str) -> str:
-    """The text as PyYAML must be given it for the structure that the engine reads; each character keeps its index."""
+    """Returns the text in the form from which PyYAML reads the same structure as the engine; each character keeps its
+    index."""
     return text.translate(_LEGIBLE)
 
 
 def load(text: str) -> Any:
-    """The value of a text that the engine accepts. Raises yaml.YAMLError or ValueError."""
+    """Returns the value of a text that the engine accepts. Raises yaml.YAMLError or ValueError."""
     if _may_nest_deeper(text):  # libyaml's composer recurses without a limit
         raise ValueError(f"expected YAML that nests {DEEPEST} levels at most")
     try:
@@ -80,12 +82,13 @@ def load(text: str) -> Any:
 
 
 def compose(text: str) -> yaml.Node | None:
-    """The nodes of a text that the engine accepts, with their places in it. Raises yaml.YAMLError."""
+    """Returns the nodes of a text that the engine accepts, with their positions in it. Raises yaml.YAMLError."""
     return yaml.compose(legible(text), Loader=_JoiningLoader)
 
 
 def texts_of(arguments: str) -> dict[str, str]:
-    """The arguments of a command that are single values, as texts, for sentences. Empty if they cannot be read."""
+    """Returns the arguments of a command that are single values, as texts, for sentences; empty if they cannot be
+    read."""
     try:
         read = yaml.load(legible(arguments), Loader=_TextLoader)
     except (yaml.YAMLError, ValueError, RecursionError):
@@ -95,6 +98,6 @@ def texts_of(arguments: str) -> dict[str, str]:
 
 
 def to_json(value: Any, **options: Any) -> str:
-    """JSON that the engine reads: json.dumps without surrogate pairs."""
+    """Returns JSON that the engine reads: json.dumps without surrogate pairs."""
     text = json.dumps(value, ensure_ascii=False, **options)
     return _ESCAPED.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
