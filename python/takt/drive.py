@@ -207,7 +207,7 @@ class Plant:
     drives: by the names of their axes.
     url: LCM network of the engine.
     buses: further drives, which share a bus each.
-    watchdog: number of periods [1] or more; in real time, drives without a set point for this time are switched off:
+    watchdog: number of periods, at least 1; in real time, drives without a set point for this time are switched off:
         0 V, power stage off, brake applied. They stay off until the engine has switched them off and on again. There is
         no watchdog in simulated time, which does not advance until the drives have answered.
     say: called with a sentence when an engine starts, when it is no longer heard, when it is heard again, and the first

@@ -7,7 +7,7 @@ from takt.component import Component
 
 
 class FreePose(Component, PoseCommands, PoseOutputs):
-    """An externally supplied pose; groups can follow it."""
+    """A pose from elsewhere; groups can go along with it."""
 
     KIND = "pose"
 

@@ -357,8 +357,8 @@ class Session(SessionWithCams):
         timeout: engine time [s] for the whole call.
         dynamics: velocity, acceleration, deceleration, jerk of all moves.
 
-        Raises RoutingError if "auto" finds no plan (nothing has moved then) or the last plan fails, TimeoutError if a
-        mover has not arrived in time, CommandError if a move of "shortest" fails.
+        Raises RoutingError if "auto" finds no plan (of the first plan: before anything moves) or the last plan fails,
+        TimeoutError if a mover has not arrived in time, CommandError if a move of "shortest" fails.
         """
         from takt.routing.journey import move_on_tracks
 
