@@ -154,7 +154,7 @@ def test_a_drive_that_never_gets_ready() -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "fault 1 0",
+        "fault 1 -1",
         "fault 1 0x10000",
         "fault 1 0x3210 lastng",
         "fault 1 0x3210 lasting 2",

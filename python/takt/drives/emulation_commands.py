@@ -102,7 +102,7 @@ class Commanded(ABC):
         for node in self._which(rest[0]):
             if verb == "fault":
                 code = int(rest[1], 0)
-                if not 0 < code <= 0xFFFF or rest[2:] not in ([], ["lasting"]):
+                if not 0 <= code <= 0xFFFF or rest[2:] not in ([], ["lasting"]):
                     raise ValueError(rest)
                 node.drive.fault(code, lasting=len(rest) == 3)
             elif verb == "clear":
