@@ -32,7 +32,7 @@ def test_everything_described_is_on_the_page() -> None:
         to = "[*]" if row["to"] == "none" else row["to"]
         assert f"  {row['from']} --> {to}: {row['event']} / {row['action']}" in page
     assert "  returning --> waiting: stopped / pause (switches)\n" in page
-    assert "| position | real | u |  | required | Where to stop." in page
+    assert "| position | real | u |  | required | Target position." in page
     assert "| period_s | real | s | from 0.00025 to 0.02 | 0.001 |" in page
     assert "  Standstill --> DiscreteMotion: " in page
 
