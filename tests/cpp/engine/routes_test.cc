@@ -301,14 +301,15 @@ TEST(Routes, SayWhatWasExpected) {
   EXPECT_EQ(rig.ErrorOf("a", "set_route", "{first: 1e16, visits: [{x: 60, y: 60}]}"), ErrorId::kParameter);
   EXPECT_THAT(refused(Visits(0, {{{0, 0}}, {{1, 1}}})), HasSubstr("beside the one before"));
   EXPECT_THAT(refused(Visits(0, {{{0, 0}}, {{0, 0}}})), HasSubstr("beside the one before"));
-  EXPECT_THAT(refused("{first: 1, continues: true, visits: [{x: 60, y: 60}]}"), HasSubstr("behind its last visit"));
+  EXPECT_THAT(refused("{first: 1, continues: true, visits: [{x: 60, y: 60}]}"),
+              HasSubstr("the number after the last visit"));
   EXPECT_THAT(rig.Refusal("machine", "start_routes"), HasSubstr("no mover was told a route"));
   const struct {
     std::string route;
     const char* sentence;
   } rows[] = {
       {Visits(0, {{{1, 0}}, {{2, 0}}}), "is not in the place of the first visit"},
-      {Visits(0, {{{0, 0}}, {{1, 0}, 3, 0}}), "there is no mover"},
+      {Visits(0, {{{0, 0}}, {{1, 0}, 3, 0}}), "no mover has the number `after`"},
       {Visits(0, {{{0, 0}}, {{1, 0}, 2, 1}}), "has no visit"},
   };
   for (const auto& row : rows) {
