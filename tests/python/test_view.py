@@ -27,6 +27,7 @@ from takt import msgs
 from takt.cam import Table
 from takt.network import open_network
 from takt.tables import KINDS
+from takt.view.commander import Commander
 from takt.view.feed import Tap
 from takt.view.layout import Layout
 from takt.view.ledger import Ledger
@@ -611,6 +612,59 @@ def test_a_module_from_a_page(tmp_path: Path) -> None:
         )
         client.give("cutter", "control", regulator_on=False)
         client.until(lambda: client.state("saw") == "Disabled")
+
+
+class Wire:
+    """A network on which no message arrives: they are kept."""
+
+    def __init__(self) -> None:
+        self.sent: list[Any] = []
+
+    def publish(self, channel: str, data: bytes) -> None:
+        kind = {"takt/command": msgs.command, "takt/heartbeat": msgs.heartbeat}[channel]
+        self.sent.append(kind.decode(data))
+
+    def take(self) -> list[Any]:
+        sent, self.sent = self.sent, []
+        return sent
+
+
+@pytest.mark.parametrize("released", [False, True])
+def test_a_jog_without_an_answer_is_not_kept_up_by_the_next_one(released: bool) -> None:
+    """EN-23: the engine may have accepted it. It is repeated, without heartbeats, and released when it is answered."""
+    wire, said = Wire(), []
+    commander = Commander(wire, Machine(described(ALLOWING)), said.append)
+    start = now = time.monotonic()
+    commander.give("x", "jog", {"forward": True, "velocity": 5.0}, now)
+    jog = wire.take()[-1]
+    if released:
+        commander.release()
+    while now < start + 3.0:
+        now += 0.05
+        commander.hold(now)
+        commander.tick(now)
+    assert [one["sentence"] for one in said] == ["the engine does not answer"]
+    assert all(isinstance(one, msgs.heartbeat) or one.id == jog.id for one in wire.take())
+    for _ in range(100):  # nothing is held: no heartbeats, and the command is repeated with its first time
+        now += 0.05
+        commander.hold(now)
+        commander.tick(now)
+    repeated = wire.take()
+    assert {type(one) for one in repeated} == {msgs.command}
+    assert {(one.id, one.utime) for one in repeated} == {(jog.id, jog.utime)}
+    assert len(repeated) <= 3
+    commander.give("r", "jog", {"forward": True, "velocity": 5.0}, now)
+    wire.take()
+    answer = msgs.feedback()
+    answer.client, answer.session, answer.id, answer.ticket, answer.state = jog.client, jog.session, jog.id, 77, 1
+    commander.take(answer)
+    (release,) = wire.take()
+    assert (release.target, release.verb, release.arguments) == ("machine", "release", "{ticket: 77}")
+    assert len(said) == 1
+    for _ in range(100):  # the release is repeated, too, until it is answered
+        now += 0.05
+        commander.tick(now)
+    assert any(isinstance(one, msgs.command) and one.id == release.id for one in wire.take()[-20:])
 
 
 @pytest.mark.parametrize("how", ["let go", "silent", "closed", "server killed"])

@@ -34,6 +34,7 @@ class Given:
     held: bool = False  # continues until it is released
     let_go: bool = False  # to be released as soon as it has a ticket
     released: bool = False  # its release has been sent
+    given_up: bool = False  # the engine has not answered in time, and may have accepted it
     active: bool = False  # it was in control at some time
 
     def outlasts(self, feedback: msgs.feedback) -> bool:
@@ -85,10 +86,14 @@ class Client(ABC):
         elif holding and now - self._beat_at >= self._dead_man_s / 4:
             self._beat(now)
         for number, given in list(self._given.items()):
-            if not given.answered and now - given.began > GIVEN_UP_S:
-                del self._given[number]
+            if not given.answered and not given.given_up and now - given.began > GIVEN_UP_S:
+                given.given_up = True
+                if given.held or given.let_go:  # is repeated until it is answered, and then released
+                    given.held, given.let_go = False, True
+                elif given.message.verb != "release":
+                    del self._given[number]
                 self._unanswered(given.message)
-            elif now - given.sent > (REFRESH_S if given.answered else RESEND_S):
+            elif now - given.sent > (REFRESH_S if given.answered or given.given_up else RESEND_S):
                 given.sent = now
                 self._network.publish("takt/command", given.message.encode())
 
@@ -107,7 +112,8 @@ class Client(ABC):
             if given.outlasts(message) and not given.released:
                 self._holds.append(given)
         self._let_go(given, time.monotonic())
-        self._became(given.message, message)
+        if not given.given_up:
+            self._became(given.message, message)
 
     def _let_go(self, given: Given, now: float) -> None:
         if given.let_go and given.ticket:
