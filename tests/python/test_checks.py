@@ -136,6 +136,15 @@ def test_limits_nobody_knows() -> None:
         checks.within_limits(rec, "x", velocity=math.nan)
 
 
+def test_a_single_sample_shows_no_jerk() -> None:
+    """PY-05: a jerk limit alone cannot be checked with it; other limits can."""
+    rec = Recording({"x": one_axis()["x"][:1]})
+    verdict = checks.within_limits(rec, "x", jerk=10.0)
+    assert not verdict.passed
+    assert verdict.sentence == "the recording has a single sample of x, which shows no jerk"
+    assert checks.within_limits(rec, "x", jerk=10.0, velocity=1.0).passed
+
+
 def test_an_infinite_limit_leaves_the_others_checked() -> None:
     """PY-05: also in `continuous`; without a finite limit there is nothing to check."""
     verdict = checks.within_limits(one_axis(), "x", velocity=math.inf, acceleration=10)

@@ -78,6 +78,12 @@ def within_limits(
             found.append(
                 jerk_against("jerk", s, np.where(own, np.diff(s.values), 0), limits.jerk, jerk_tolerance, label)
             )
+    if not found and limits.jerk is not None:
+        return check.verdict(
+            False,
+            f"the recording has a single sample of {component}, which shows no jerk",
+            when_s=float(s.time_s[0]),
+        )
     if not found:
         raise ValueError(f"within_limits: no finite limit is given, and the recording knows none of '{component}'")
     return judge(check, component, found, f"stayed within its {', '.join(m.says for m in found)}", "left")
