@@ -21,7 +21,7 @@ from takt.belt_object_log import objects_of
 from takt.cam import Table
 from takt.component import Component
 from takt.errors import ConnectionError, TaktError
-from takt.feedback import Feedback
+from takt.feedback import Feedback, FeedbackState
 from takt.figures import DROPPED, figures_of
 from takt.keys import Key, KeyFile, first_key_not_taken, no_key, not_the_key, read_key
 from takt.mover import Mover
@@ -48,6 +48,7 @@ STILL_S = 10.0  # how long a heard engine may stay at one cycle
 OTHER_RUN = 3017  # error: the message was for another start of the engine
 QUEUE_FULL = 3012  # error: a queue is full
 ANOTHER = "another engine runs on this network now: it was started again, or there are two"
+STATES = frozenset(FeedbackState)
 JUMP_S = 3600.0  # of engine time between two messages: component states with a larger jump are ignored
 
 
@@ -84,7 +85,7 @@ class RemoteSession(Session):
         self.url = url
         self.client = client
         self.losses: dict[str, int] = {}  # messages lost in transmission, by channel
-        self.ignored = 0  # messages with an implausible cycle
+        self.ignored = 0  # messages with an implausible cycle, or a state that does not exist
         self.refused: Counter[str] = Counter()  # with a key: messages without a valid tag, by reason
         self._session_id = random.SystemRandom().getrandbits(62) + 1
         self._news = threading.Condition()  # guards all members below
@@ -325,6 +326,9 @@ class RemoteSession(Session):
         if message is None:
             return
         with self._news:
+            if message.state not in STATES:
+                self.ignored += 1
+                return
             if self._log is not None:
                 self._log.feedback(message)
             if message.client == self.client and message.session == self._session_id:

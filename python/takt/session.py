@@ -599,11 +599,11 @@ class Session(SessionWithCams):
         return why_refused(error_id, feedback.target, feedback.arguments, self._axes, self._movers, names)
 
     def _object(self, kind: int, number: int) -> Component | None:
-        """Returns the component with the engine's numbers of kind and object (from 1); None for 0."""
-        if not kind or not number:
-            return None
-        alike = [component for component in self._components.values() if OBJECTS[kind] == component.KIND]
-        return alike[number - 1]
+        """Returns the component with the engine's numbers of kind and object (from 1); None for 0, and for what is no
+        component of this machine."""
+        named_so = OBJECTS[kind] if 0 <= kind < len(OBJECTS) else ""
+        alike = [component for component in self._components.values() if component.KIND == named_so]
+        return alike[number - 1] if 1 <= number <= len(alike) else None
 
     def _object_of(self, kind: str, number: int) -> Component | None:
         """As `_object`, with the kind by name; None for other kinds."""

@@ -118,6 +118,34 @@ def test_no_heartbeat_keeps_what_was_let_go_of(tmp_path: Path) -> None:
         assert jog.wait_final(1.0).final
 
 
+@pytest.mark.parametrize(
+    "damage",
+    [{"state": 5}, {"state": -1}, {"object_kind": 6, "object_number": 1}, {"object_kind": 99}, {"object_number": 99}],
+)
+def test_a_damaged_answer_does_not_end_a_session(damage: dict[str, int], tmp_path: Path) -> None:
+    """EN-22: an answer to a command of its own, with a state or an object that does not exist."""
+    url = new_url()
+    with running(tmp_path, url), takt.connect(url) as session:
+        commands: list[msgs.command] = []
+        network = lcm.LCM(url)
+        network.subscribe("takt/command", lambda _, data: commands.append(msgs.command.decode(data)))
+        x = session.axis("x")
+        x.power().wait()
+        move = x.move_absolute(position=20.0, velocity=50.0).wait(until="active")
+        while not (commands and commands[-1].verb == "move_absolute"):
+            network.handle_timeout(100)
+        answer = msgs.feedback()
+        answer.client, answer.session, answer.id = commands[-1].client, commands[-1].session, commands[-1].id
+        answer.ticket, answer.state, answer.cycle = move.ticket, 1, session.cycle
+        answer.object_kind, answer.object_number = 1, 1
+        for field, value in damage.items():
+            setattr(answer, field, value)
+        network.publish("takt/feedback", answer.encode())
+        assert move.wait().done
+        assert session.ignored == ("state" in damage)
+        assert move.object is None
+
+
 @pytest.mark.parametrize("ended", ["power off", "emergency stop"])
 def test_a_hold_outlasts_the_end_of_its_stop(ended: str, tmp_path: Path) -> None:
     """EN-23, AX-37: what ends a held stop while the axis brakes does not end its hold; the release does."""

@@ -98,8 +98,8 @@ class Client(ABC):
                 self._network.publish("takt/command", given.message.encode())
 
     def take(self, message: msgs.feedback) -> None:
-        """Processes a feedback; those of other clients are ignored."""
-        if message.client != self.name or message.session != self._session:
+        """Processes a feedback; those of other clients, and states that do not exist, are ignored."""
+        if message.client != self.name or message.session != self._session or not 0 <= message.state <= ERROR:
             return
         given = self._given.get(message.id)
         if given is None:
