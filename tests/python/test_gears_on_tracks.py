@@ -351,7 +351,7 @@ def test_trails() -> None:
         arguments = {"master": "axis", "master_sync_position": 0, "slave_sync_position": 0, **options}
         mover.gear_in_pos_on_track(**arguments).wait(until="active")
 
-    with pytest.raises(takt.CommandError, match="do not make such a trail"):
+    with pytest.raises(takt.CommandError, match="form no such trail"):
         gear(trail=["track2", "track1"])
     with pytest.raises(takt.CommandError, match="or the mover is not on it"):
         gear(trail=["track2"])

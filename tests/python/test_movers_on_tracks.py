@@ -55,7 +55,7 @@ def test_two_movers_on_a_track(engine: Engine) -> None:
     one.move_on_track(position=30)
     engine.step()
     assert track.operation_mode == "Moving"
-    with pytest.raises(takt.CommandError, match="movers on the track do what does not go with this"):
+    with pytest.raises(takt.CommandError, match="a command of a mover on the track does not allow this"):
         two.leave_track(x=0, y=0).wait()
     moves = [one.move_on_track(position=150), two.move_on_track(position=350)]
     engine.wait(lambda: one.track_position >= 149.9 and two.track_position >= 349.9, 5)
@@ -170,7 +170,7 @@ def test_through_a_network(network: Engine) -> None:
     # Red stands where one on track two could touch it.
     assert not back.final
     assert blue.waits_for == 1
-    with pytest.raises(takt.CommandError, match="no way along tracks leads there"):
+    with pytest.raises(takt.CommandError, match="no route along tracks leads there"):
         red.move_on_track(position=0, track="one").wait()
     red.leave_track(x=300, y=900).wait()
     network.run(4)
@@ -562,7 +562,7 @@ def test_what_ends_with_set_points_from_outside_names_what_was_in_the_way() -> N
         engine.run(0.5)
     for feedback in (outside, move):
         assert (feedback.error_id, feedback.object) == (3024, two)
-        assert feedback.sentence == "something would touch something else on the way: mover two"
+        assert feedback.sentence == "there would be a collision on the path: mover two"
 
 
 def test_a_far_place_on_a_loop_is_planned_as_fast_as_a_near_one() -> None:

@@ -93,7 +93,7 @@ def test_a_spline_begins_as_the_tool_is_turned() -> None:
     assert gantry.move_path(path="turned_spline").wait().done
     gantry.move_linear_absolute(x=0, y=0, c=90).wait()
     refused = gantry.move_path(path="turned_spline").wait_final()
-    assert refused.sentence == "the points do not make such a path, in element 1"
+    assert refused.sentence == "the points define no such path, in element 1"
 
 
 def test_positions_are_defined_for_all_or_for_none() -> None:

@@ -99,7 +99,7 @@ def test_why_there_is_no_way(ferry: Engine) -> None:  # PL-83
         3047,
         "the direction does not lead to the target from where the mover can stop: track in",
     )
-    assert refusal(ferry, track="alone", position=10)[:2] == (3047, "no way along tracks leads there: track alone")
+    assert refusal(ferry, track="alone", position=10)[:2] == (3047, "no route along tracks leads there: track alone")
     assert refusal(ferry, track="empty", position=0)[0] == 3050
     ferry.part("ferry").activate_position(index=2).wait()
     number, sentence, feedback = refusal(ferry, track="deck", position=100)
@@ -109,7 +109,7 @@ def test_why_there_is_no_way(ferry: Engine) -> None:  # PL-83
     ferry.part("ferry").activate_position(index=1).wait()
     mover.join_track(track="in").wait()
     mover.move_on_track(track="deck", position=100).wait()
-    assert refusal(ferry, track="in", position=100)[:2] == (3047, "no way along tracks leads there: track in")
+    assert refusal(ferry, track="in", position=100)[:2] == (3047, "no route along tracks leads there: track in")
 
 
 def test_a_way_that_is_too_long() -> None:  # PL-83

@@ -8,7 +8,7 @@ void describe(Enumeration<AxisKind>& e) {
   e.about("How the positions of an axis are counted.");
   e.value(AxisKind::kLinear, "linear", "Bounded travel; positions do not repeat.");
   e.value(AxisKind::kRotary, "rotary",
-          "VelocityMove travel: positions repeat after the modulus and are reported in [0, modulus).");
+          "Endless travel: positions repeat after the modulus and are reported in [0, modulus).");
 }
 
 void describe(Description<AxisLimits>& d) {

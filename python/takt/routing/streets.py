@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 MARGIN = 2e-3  # [mm] distance of rows from zones; in the engine movers wait at half of it
 SAME = 1e-6  # [mm] positions closer than this are equal
-LONGEST = 32  # tracks in one route, as in the engine
+LONGEST = 256  # tracks in one route, as in the engine (kRouteTracks)
 
 
 class RoutingError(TaktError):
