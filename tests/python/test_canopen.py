@@ -271,7 +271,8 @@ def test_two_masters() -> None:
     url, bus = new_url(), new_bus()
     text = machine(url, bus, 1)
     signs = [
-        f"{bus}: another master is at work: somebody {does}" for does in ("sends SYNC, too", "has node 127 of this end")
+        f"{bus}: another master is active: another node {does}"
+        for does in ("sends SYNC, too", "has node 127 of this end")
     ]
     with emulated(text), run(text, url) as (_, said):
         why = (

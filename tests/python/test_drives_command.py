@@ -46,7 +46,7 @@ def test_processes_of_their_own(tmp_path: Path) -> None:
                 stranger.send(can.Message(arbitration_id=0x080, is_extended_id=False))
             with takt.Engine(text) as engine:
                 engine.run(0.1)
-            served.wait_for("another master is at work: somebody sends SYNC, too")
+            served.wait_for("another master is active: another node sends SYNC, too")
             assert served.end() == 0
             assert "cycles, " in served.lines[-1]
         emulation.tell("frighten 1")

@@ -388,7 +388,7 @@ def test_what_is_wrong_at_start(tmp_path: Path, capsys: pytest.CaptureFixture[st
         url = new_url()
         with run(machine(url, 2), url):  # sends frames by itself
             assert wrong(machine(url, 2)) == (
-                f"{BUS}: another master is at work on {MASTER}; two on one wire disturb each other"
+                f"{BUS}: another master is active on {MASTER}; two on one wire disturb each other"
             )
 
 

@@ -182,8 +182,8 @@ class CanopenBus(FieldBus):
         time.sleep(LISTENED_S)
         if heard:
             raise TaktError(
-                f"{self.bus_name}: another master is at work: somebody {heard[0]} (another takt drives run, or a drive "
-                f"that is set up to send SYNC, 0x1005); two on one bus disturb each other"
+                f"{self.bus_name}: another master is active: another node {heard[0]} (another takt drives run, or a "
+                f"drive that is set up to send SYNC, 0x1005); two on one bus disturb each other"
             )
 
     def _on_master(self, heard: list[str], does: str) -> None:
@@ -191,7 +191,9 @@ class CanopenBus(FieldBus):
             return
         heard.append(does)
         if self._listened:
-            self._say(f"{self.bus_name}: another master is at work: somebody {does}; two on one bus disturb each other")
+            self._say(
+                f"{self.bus_name}: another master is active: another node {does}; two on one bus disturb each other"
+            )
 
     def _subscribe(self, node: _Node) -> None:
         network = self._link.network

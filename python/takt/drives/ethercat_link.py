@@ -162,7 +162,7 @@ class Wire:
         self.bus, self.interface = bus, parse(bus)
         for interface in filter(None, (self.interface, ring)):
             if another_master(interface):
-                raise TaktError(f"{bus}: another master is at work on {interface}; two on one wire disturb each other")
+                raise TaktError(f"{bus}: another master is active on {interface}; two on one wire disturb each other")
         self.master = pysoem.Master()
         self.lock = threading.Lock()
         before = _packet_sockets()
