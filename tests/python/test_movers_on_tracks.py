@@ -216,7 +216,7 @@ def test_a_place_that_is_taken(engine: Engine) -> None:
     one, two = engine.mover("one"), engine.mover("two")
     two.leave_track(x=240, y=150).wait()
     one.move_on_track(position=100).wait()
-    with pytest.raises(takt.CommandError, match="would touch"):
+    with pytest.raises(takt.CommandError, match="would be a collision"):
         two.join_track(track="track").wait()
     one.move_on_track(position=0).wait()
     two.join_track(track="track").wait()
@@ -302,7 +302,7 @@ def test_bad_commands(network: Engine) -> None:
     with pytest.raises(takt.CommandError, match="not enabled"):
         red.move_on_track(position=0, track="three").wait()
     network.track("one").disable().wait()
-    with pytest.raises(takt.CommandError, match=r"movers on the track .*: mover red"):
+    with pytest.raises(takt.CommandError, match=r"a command of a mover on the track .*: mover red"):
         network.track("one").clear().wait()
 
 
