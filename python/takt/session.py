@@ -602,7 +602,7 @@ class Session(SessionWithCams):
         """Returns the component with the engine's numbers of kind and object (from 1); None for 0, and for what is no
         component of this machine."""
         named_so = OBJECTS[kind] if 0 <= kind < len(OBJECTS) else ""
-        alike = [component for component in self._components.values() if component.KIND == named_so]
+        alike = [component for component in self._components.values() if named_so == component.KIND]
         return alike[number - 1] if 1 <= number <= len(alike) else None
 
     def _object_of(self, kind: str, number: int) -> Component | None:

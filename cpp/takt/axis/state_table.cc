@@ -13,7 +13,8 @@ void describe(Enumeration<PlcState>& e) {
   e.value(PlcState::kSynchronizedMotion, "SynchronizedMotion", "Following a master.");
   e.value(PlcState::kHoming, "Homing", "Searching its reference.");
   e.value(PlcState::kStopping, "Stopping", "Being stopped; takes no other motion.");
-  e.value(PlcState::kErrorStop, "ErrorStop", "Stopped by a fault; a reset leads out, or power off to Disabled, where the fault stays.");
+  e.value(PlcState::kErrorStop, "ErrorStop",
+          "Stopped by a fault; a reset leads out, or power off to Disabled, where the fault stays.");
 }
 
 }  // namespace takt::axis
